@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
@@ -14,16 +15,17 @@ from rulec.logic.causes import deciding_instants
 from rulec.logic.kleene import Unknown, holds, objects_counted, weighted_sum
 from rulec.logic.printing import formula_text, term_text
 from rulec.logic.semantics import values_of_parts
-from rulec.monitoring.binding import Binding, bindings
-from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
+from rulec.monitoring.binding import bindings
+from rulec.monitoring.explain.nearest_satisfying import Letter, Repair, nearest_satisfying
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import letter_reader_of
 from rulec.trace import Trace, Value
 from rulec.value_display import short_repr
-from rulec.vocabulary import Quantity as QuantityDeclaration
-from rulec.vocabulary import Vocabulary
+from rulec.vocabulary import Quantity, Vocabulary
+
+_Known = TypeVar("_Known")
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,13 +87,16 @@ class Explanation:
 def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> Explanation:
     """Explain a violation that ``verify`` reported for this trace and rulebook."""
     rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
-    binding = _binding(violation, rule, trace, rulebook.vocabulary)
-    columns = letter_reader_of(trace, rulebook)
+    candidates = bindings(
+        rule, rulebook.vocabulary, trace.objects, trace.present, len(trace.states)
+    )
+    binding = next(binding for binding in candidates if binding.objects == violation.binding)
+    reader = letter_reader_of(trace, rulebook)
     stretch = range(binding.first, binding.last + 1)
     decisive = binding.last if violation.step is None else violation.step
     states = _shown(stretch, decisive)
     observed = _ObservedStates(
-        [columns.view(number) for number in stretch],
+        [reader.view(number) for number in stretch],
         binding.objects,
         [number - binding.first for number in states],
         decisive - binding.first,
@@ -103,42 +108,19 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
     formula = in_steps(rule.formula, exact(trace.step_s))
     values = values_of_parts(formula, word, rulebook.semantics)
     instants = deciding_instants(formula, word, rulebook.semantics)
-    decides = {part for part, at in instants.items() if any(at)}
+    deciding = {part for part, at in instants.items() if any(at)}
+    repair = nearest_satisfying(rule.machine, observed.word(rule.machine))
     return Explanation(
         rule=rule,
         violation=violation,
         states=states,
         decisive=decisive,
-        facts=tuple(_facts(truths, decides, observed)),
-        parts=tuple(
-            _parts(
-                written=rule.formula,
-                stepped=formula,
-                truths=values,
-                deciding=decides,
-                observed=observed,
-                depth=0,
-            )
-        ),
-        repair=_repair(rule.machine, observed, binding.first),
+        facts=tuple(_facts(truths, deciding, observed)),
+        parts=tuple(_parts((rule.formula, formula), values, deciding, observed)),
+        repair=repair
+        and tuple([replace(change, place=binding.first + change.place) for change in repair]),
         vocabulary=rulebook.vocabulary,
     )
-
-
-def _repair(
-    machine: MealyMonitor, observed: _ObservedStates, first: int
-) -> tuple[Repair, ...] | None:
-    result = nearest_satisfying(
-        machine, [observed.letter(machine, view) for view in observed.views]
-    )
-    return result and tuple([replace(repair, place=first + repair.place) for repair in result])
-
-
-def _binding(
-    violation: Violation, rule: CompiledRule, trace: Trace, vocabulary: Vocabulary
-) -> Binding:
-    candidates = bindings(rule, vocabulary, trace.objects, trace.present, len(trace.states))
-    return next(binding for binding in candidates if binding.objects == violation.binding)
 
 
 def _shown(stretch: range, decisive: int) -> tuple[int, ...]:
@@ -147,6 +129,11 @@ def _shown(stretch: range, decisive: int) -> tuple[int, ...]:
     last = min(decisive + 1, stretch[-1])
     first = max(stretch[0], last - LIMITS.states_shown + 2)
     return tuple(sorted({stretch[0], *range(first, last + 1)}))
+
+
+def _known(value: _Known | Unknown) -> _Known:
+    assert not isinstance(value, Unknown), "verify has read it"
+    return value
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,35 +148,33 @@ class _ObservedStates:
     shown: Sequence[int]
     decisive: int
 
+    def items(self, variables: Sequence[str]) -> tuple[str, ...]:
+        """The objects of some variables."""
+        return tuple([self.bound[variable] for variable in variables])
+
+    def value(self, name: str, variables: Sequence[str], view: StateView) -> Value:
+        """The value of a declaration in one of the states."""
+        value = view.value(name, self.items(variables))
+        assert not isinstance(value, Unknown), "verify has read it"
+        return value
+
     def truths(self, proposition: ltl.Proposition) -> list[bool]:
         """Truth of a proposition in each state."""
         return [holds(proposition, self.bound, view) is True for view in self.views]
 
-    def values(self, name: str, arguments: Sequence[str]) -> list[Value]:
-        """The value of a declaration in each state."""
-        items = tuple(self.bound[variable] for variable in arguments)
-        result = [view.value(name, items) for view in self.views]
-        return [value for value in result if not isinstance(value, Unknown)]
-
-    def letter(self, machine: MealyMonitor, view: StateView) -> tuple[int, ...]:
-        """The letter that a machine reads of a state, digit by digit."""
-        digits = []
-        for read in machine.reads:
-            if isinstance(read, NumberRead):
-                number = weighted_sum(read.terms, self.bound, view)
-                assert not isinstance(number, Unknown), "verify has read it"
-                digits.append(read.digit(number))
-            else:
-                items = tuple([self.bound[variable] for variable in read.variables])
-                value = view.value(read.name, items)
-                assert not isinstance(value, Unknown), "verify has read it"
-                digits.append(read.digit(value))
-        return tuple(digits)
-
-    def counted(self, term: ltl.Count) -> list[tuple[str, ...]]:
-        """The objects that count in each state."""
-        result = [objects_counted(term, self.bound, view) for view in self.views]
-        return [objects for objects in result if not isinstance(objects, Unknown)]
+    def word(self, machine: MealyMonitor) -> list[Letter]:
+        """The letters that a machine reads, digit by digit."""
+        return [
+            tuple(
+                [
+                    read.digit(_known(weighted_sum(read.terms, self.bound, view)))
+                    if isinstance(read, NumberRead)
+                    else read.digit(self.value(read.name, read.variables, view))
+                    for read in machine.reads
+                ]
+            )
+            for view in self.views
+        ]
 
     def changes(self, values: Sequence[object]) -> bool:
         """Tell whether the decisive state's value differs from the one before."""
@@ -204,88 +189,62 @@ def _facts(
     """Observations of all reads, in order of first mention."""
     readers: dict[ltl.Atom | ltl.Term, list[ltl.Proposition]] = {}
     for proposition in truths:
-        for read in _read_by(proposition):
-            readers.setdefault(read, []).append(proposition)
+        if isinstance(proposition, ltl.Comparison):
+            for _, term in proposition.terms:
+                readers.setdefault(term, []).append(proposition)
+        else:
+            atom = ltl.Atom(proposition.name, proposition.arguments)
+            readers.setdefault(atom, []).append(proposition)
+    views, vocabulary = observed.views, observed.views[0].vocabulary
     for read, propositions in readers.items():
         # A number always changes a little; what counts is whether it passes a limit.
         passes = isinstance(read, ltl.Atom) or any(
             observed.changes(truths[proposition]) for proposition in propositions
         )
-        decides = not deciding.isdisjoint(propositions)
+        values: Sequence[Value]
+        unit, objects = "", None
         if isinstance(read, ltl.Count):
-            objects = observed.counted(read)
-            yield Observation(
-                term_text(read),
-                tuple(len(objects[n]) for n in observed.shown),
-                passes and observed.changes([len(object_) for object_ in objects]),
-                decides,
-                objects=tuple(objects[n] for n in observed.shown),
-            )
+            text = term_text(read)
+            counted = [_known(objects_counted(read, observed.bound, view)) for view in views]
+            values, objects = list(map(len, counted)), tuple(counted[n] for n in observed.shown)
         else:
-            values = observed.values(read.name, read.arguments)
-            items = tuple(observed.bound[variable] for variable in read.arguments)
-            declaration = observed.views[0].vocabulary.declarations[read.name]
-            yield Observation(
-                str(ltl.Atom(read.name, items)),
-                tuple(values[n] for n in observed.shown),
-                passes and observed.changes(values),
-                decides,
-                declaration.unit if isinstance(declaration, QuantityDeclaration) else "",
-            )
-
-
-def _read_by(proposition: ltl.Proposition) -> list[ltl.Atom | ltl.Term]:
-    if isinstance(proposition, ltl.Comparison):
-        return [term for _, term in proposition.terms]
-    return [ltl.Atom(proposition.name, proposition.arguments)]
+            text = str(ltl.Atom(read.name, observed.items(read.arguments)))
+            values = [observed.value(read.name, read.arguments, view) for view in views]
+            declaration = vocabulary.declarations[read.name]
+            unit = declaration.unit if isinstance(declaration, Quantity) else ""
+        yield Observation(
+            text,
+            values=tuple(values[n] for n in observed.shown),
+            changed=passes and observed.changes(values),
+            decides=not deciding.isdisjoint(propositions),
+            unit=unit,
+            objects=objects,
+        )
 
 
 def _parts(
-    written: ltl.Formula,
-    stepped: ltl.Formula,
+    formulas: tuple[ltl.Formula, ltl.Formula],
     truths: Mapping[ltl.Formula, list[bool]],
     deciding: Set[ltl.Formula],
     observed: _ObservedStates,
-    depth: int,
+    depth: int = 0,
 ) -> Iterator[Part]:
     """Subformulas as written, with the truth of those in steps."""
-    values = truths[stepped]
-    shown = tuple(values[n] for n in observed.shown)
-    text, decides = formula_text(written), stepped in deciding
+    written, stepped = formulas
     yield Part(
         formula=written,
-        text=text,
+        text=formula_text(written),
         depth=depth,
-        values=shown,
-        changed=observed.changes(values),
-        decides=decides,
+        values=tuple(truths[stepped][n] for n in observed.shown),
+        changed=observed.changes(truths[stepped]),
+        decides=stepped in deciding,
     )
-    match written, stepped:
+    match formulas:
         case ltl.Unary(_, operand), ltl.Unary(_, same):
-            yield from _parts(
-                written=operand,
-                stepped=same,
-                truths=truths,
-                deciding=deciding,
-                observed=observed,
-                depth=depth + 1,
-            )
+            operands = [(operand, same)]
         case ltl.Binary(_, left, right), ltl.Binary(_, same_left, same_right):
-            yield from _parts(
-                written=left,
-                stepped=same_left,
-                truths=truths,
-                deciding=deciding,
-                observed=observed,
-                depth=depth + 1,
-            )
-            yield from _parts(
-                written=right,
-                stepped=same_right,
-                truths=truths,
-                deciding=deciding,
-                observed=observed,
-                depth=depth + 1,
-            )
+            operands = [(left, same_left), (right, same_right)]
         case _:
-            return
+            operands = []
+    for both in operands:
+        yield from _parts(both, truths, deciding, observed, depth + 1)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.monitoring.limits import LIMITS
+from rulec.monitoring.verify import run
 from rulec.witnesses.state_synthesis import are_consistent
 
 Letter = tuple[int, ...]
@@ -105,13 +106,7 @@ def _as_good(
         return np.array([target == row[symbol] for target in row])
     if not rest:
         return np.array(machine.outputs[state])
-    return np.array([_accepts(machine, target, rest) for target in row])
-
-
-def _accepts(machine: MealyMonitor, state: int, rest: Sequence[int]) -> bool:
-    for symbol in rest[:-1]:
-        state = machine.successors[state][symbol]
-    return machine.outputs[state][rest[-1]]
+    return np.array([run(machine, rest, target)[0] for target in row])
 
 
 class _LetterDistances:
@@ -125,9 +120,7 @@ class _LetterDistances:
         self._digits = np.array(
             [numbers // stride % size for stride, size in zip(self._strides, sizes, strict=True)]
         ).reshape(len(sizes), len(numbers))
-        self._is_number = np.array(
-            [isinstance(read, NumberRead) for read in self._reads], dtype=bool
-        )
+        self._numbers = [n for n, read in enumerate(machine.reads) if isinstance(read, NumberRead)]
         self._classes = np.array(machine.letters)
         self._n_classes = len(machine.successors[0])
         self._near: dict[Letter, _Near] = {}
@@ -155,14 +148,14 @@ class _LetterDistances:
 
     def exclude(self, letters: Sequence[int]) -> None:
         """Exclude these letters, and all with the same digits of numbers."""
-        numbers = self._digits[self._is_number]
+        numbers = self._digits[self._numbers]
         for letter in letters:
             self._classes[(numbers == numbers[:, [letter]]).all(axis=0)] = IMPOSSIBLE
         self._near.clear()
 
     def can_be(self, number: int) -> bool:
         """Tell whether some numbers have the digits of this letter."""
-        digits = tuple(self._digits[self._is_number, number].tolist())
+        digits = tuple(self._digits[self._numbers, number].tolist())
         if digits not in self._can_be:
             reads = [read for read in self._reads if isinstance(read, NumberRead)]
             self._can_be[digits] = are_consistent(list(zip(reads, digits, strict=True)))
@@ -172,10 +165,11 @@ class _LetterDistances:
         """Cubes of equally good letters, as near to a given one."""
         key = given, number, does.tobytes()
         if key not in self._ways:
-            self._ways[key] = self._found_ways(given, number, does)
+            cubes = islice(self._all_ways(given, number, does), LIMITS.repairs_listed)
+            self._ways[key] = tuple(cubes)
         return self._ways[key]
 
-    def _found_ways(self, given: Letter, number: int, does: NDArray[np.bool_]) -> tuple[Cube, ...]:
+    def _all_ways(self, given: Letter, number: int, does: NDArray[np.bool_]) -> Iterator[Cube]:
         differ = self._differ(given)
         as_near = differ.sum(axis=0) == differ[:, number].sum()
         good = as_near & (self._classes != IMPOSSIBLE) & does[self._classes]
@@ -183,8 +177,8 @@ class _LetterDistances:
         for letter in [number, *np.flatnonzero(good).tolist()]:
             reads = tuple(np.flatnonzero(differ[:, letter]).tolist())
             by_reads.setdefault(reads, []).append(letter)
-        generator = (self._cubes(reads, letters) for reads, letters in sorted(by_reads.items()))
-        return tuple(islice((cube for cubes in generator for cube in cubes), LIMITS.repairs_listed))
+        for reads, letters in sorted(by_reads.items()):
+            yield from self._cubes(reads, letters)
 
     def _cubes(self, changed: tuple[int, ...], letters: Sequence[int]) -> Iterator[Cube]:
         """Cubes of letters with common changes, one cube if that is exact."""
@@ -195,13 +189,11 @@ class _LetterDistances:
         }
         columns = [frozenset(digits) for digits in zip(*rows, strict=True)]
         if rows and prod(map(len, columns)) == len(rows):
-            yield self._cube(changed, columns)
-            return
-        for row in sorted(rows):
-            yield self._cube(changed, [frozenset({digit}) for digit in row])
-
-    def _cube(self, changed: Sequence[int], digits: Sequence[frozenset[int]]) -> Cube:
-        cube = [frozenset(range(read.size)) for read in self._reads]
-        for place, allowed in zip(changed, digits, strict=True):
-            cube[place] = allowed
-        return tuple(cube)
+            ways = [columns]
+        else:
+            ways = [[frozenset({digit}) for digit in row] for row in sorted(rows)]
+        for digits in ways:
+            cube = [frozenset(range(read.size)) for read in self._reads]
+            for place, allowed in zip(changed, digits, strict=True):
+                cube[place] = allowed
+            yield tuple(cube)
