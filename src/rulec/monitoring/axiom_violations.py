@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
-from rulec.logic.formula import Atom, Count, Term, atoms_of
+from rulec.logic.formula import Atom, Count, atoms_of
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import Unknown, holds, number_of
 from rulec.logic.printing import formula_text, term_text
 from rulec.logic.renaming import rename_variables
 from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
 from rulec.monitoring.state_view import StateView
+from rulec.trace import Value
 from rulec.vocabulary.object_choices import choices
 
 
@@ -33,7 +35,7 @@ class ImpossibleStateError(RulecError):
         return type(self), (self.diagnostics[0], self.number)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _AxiomInstance:
     """An axiom about certain objects."""
 
@@ -64,17 +66,11 @@ def impossible_state(
     """
     types = {objects[variable.name]: variable.type for variable in rule.variables}
     about_letters = [axiom for axiom in axioms if not counts(axiom.formula)]
-    instances = list(_instances(about_letters, types, view))
-    truths = [instance.truth(view) for instance in instances]
-    broken = [
-        instance for instance, truth in zip(instances, truths, strict=True) if truth is False
-    ][:1]
-    if not broken:
-        # Each may hold by itself: what is unknown cannot be so that all of them do.
-        broken = [
-            instance for instance, truth in zip(instances, truths, strict=True) if truth is not True
-        ]
-    why = f"rule `{rule.name}` depends on it"
+    truths = {instance: instance.truth(view) for instance in _instances(about_letters, types, view)}
+    broken = [instance for instance, truth in truths.items() if truth is False][:1]
+    # Each may hold by itself: what is unknown cannot be so that all of them do.
+    broken = broken or [instance for instance, truth in truths.items() if truth is not True]
+    why = (f"rule `{rule.name}` depends on it",)
     return _error(broken, view, number=number, where=where, place=place, why=why)
 
 
@@ -101,9 +97,7 @@ def check_counting_axioms(
         state = view(number)
         for instance in _instances(counting, state.objects, state):
             if instance.truth(state) is False:
-                raise _error(
-                    [instance], state, number=number, where=where(number), place=place, why=""
-                )
+                raise _error([instance], state, number=number, where=where(number), place=place)
 
 
 def _instances(
@@ -123,49 +117,38 @@ def _error(
     number: int,
     where: str,
     place: SourceLocation | None,
-    why: str,
+    why: tuple[str, ...] = (),
 ) -> ImpossibleStateError:
-    stated = " and ".join(map(str, broken))
-    places = dict.fromkeys(
-        instance.axiom.place for instance in broken if instance.axiom.place is not None
-    )
+    axioms = " and ".join(map(str, broken))
+    places = dict.fromkeys(instance.axiom.place for instance in broken)
     values = dict.fromkeys(value for instance in broken for value in _values(instance, view))
-    # A compiled rulebook has no text to show.
-    unseen = [
-        f"the fact is in {place.file}, line {place.line}" for place in places if not place.excerpt
-    ]
-    return ImpossibleStateError(
-        VIOLATED_AXIOM.at(
-            place,
-            f"{where} cannot be: {stated} {'holds' if len(broken) == 1 else 'hold'} in every state",
-            help="correct the state; or the fact, if there can be such states",
-            labels=tuple(
-                Label(place, "what holds in every state") for place in places if place.excerpt
-            ),
-            notes=(f"here {', '.join(values)}", *unseen, *([why] if why else [])),
-        ),
-        number,
+    labels = []
+    notes = [f"here {', '.join(values)}"]
+    for axiom_place in filter(None, places):
+        if axiom_place.excerpt:
+            labels.append(Label(axiom_place, "what holds in every state"))
+        else:
+            # A compiled rulebook has no text to show.
+            notes.append(f"the fact is in {axiom_place.file}, line {axiom_place.line}")
+    diagnostic = VIOLATED_AXIOM.at(
+        place,
+        f"{where} cannot be: {axioms} {'holds' if len(broken) == 1 else 'hold'} in every state",
+        help="correct the state; or the fact, if there can be such states",
+        labels=tuple(labels),
+        notes=(*notes, *why),
     )
+    return ImpossibleStateError(diagnostic, number)
 
 
 def _values(instance: _AxiomInstance, view: StateView) -> Iterator[str]:
     """The known values of all that an axiom speaks of, in words."""
-    for proposition in atoms_of(instance.axiom.formula):
-        terms = [] if isinstance(proposition, Atom) else [term for _, term in proposition.terms]
-        for read in (proposition,) if isinstance(proposition, Atom) else terms:
-            value = _value(read, instance.bound, view)
-            if value is not None:
-                yield value
-
-
-def _value(read: Atom | Term, bound: Mapping[str, str], view: StateView) -> str | None:
-    if isinstance(read, Count):
-        number = number_of(read, bound, view)
-        return None if isinstance(number, Unknown) else f"`{term_text(read)}` is {number}"
-    items = tuple(bound[variable] for variable in read.arguments)
-    value = view.value(read.name, items)
-    if isinstance(value, Unknown):
-        return None
-    return (
-        f"`{Atom(read.name, items)}` is {str(value).lower() if isinstance(value, bool) else value}"
-    )
+    for part in atoms_of(instance.axiom.formula):
+        for read in (part,) if isinstance(part, Atom) else [term for _, term in part.terms]:
+            value: Value | Unknown | Fraction
+            if isinstance(read, Count):
+                text, value = term_text(read), number_of(read, instance.bound, view)
+            else:
+                items = tuple(instance.bound[variable] for variable in read.arguments)
+                text, value = str(Atom(read.name, items)), view.value(read.name, items)
+            if not isinstance(value, Unknown):
+                yield f"`{text}` is {str(value).lower() if isinstance(value, bool) else value}"

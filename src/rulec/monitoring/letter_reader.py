@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass
 from types import MappingProxyType
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
+from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
 from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.kleene import Unknown, weighted_sum
@@ -25,6 +26,7 @@ Digits = int | list[int]
 """The digit of one read in the letter of every state; a number if it is one for all."""
 
 
+@dataclass(eq=False)
 class LetterReader:
     """A reader of states that have passed ``check_state``, column by column.
 
@@ -33,24 +35,16 @@ class LetterReader:
     ``present`` are a trace's, ``axioms`` the rulebook's.
     """
 
-    def __init__(
-        self,
-        states: Sequence[State],
-        vocabulary: Vocabulary,
-        where: Callable[[int], str],
-        *,
-        place: SourceLocation | None = None,
-        objects: Mapping[str, str] = NO_OBJECTS,
-        present: Mapping[str, tuple[int, int]] = ALWAYS_PRESENT,
-        axioms: Sequence[CompiledAxiom] = (),
-    ) -> None:
-        self._states = states
-        self._vocabulary = vocabulary
-        self._where = where
-        self._place = place
-        self._objects = objects
-        self._present = present
-        self._axioms = axioms
+    states: Sequence[State]
+    vocabulary: Vocabulary
+    where: Callable[[int], str]
+    _: KW_ONLY
+    place: SourceLocation | None = None
+    objects: Mapping[str, str] = NO_OBJECTS
+    present: Mapping[str, tuple[int, int]] = ALWAYS_PRESENT
+    axioms: Sequence[CompiledAxiom] = ()
+
+    def __post_init__(self) -> None:
         self._values: dict[tuple[object, ...], list[Value]] = {}
         self._digits_of_reads: dict[tuple[object, ...], Digits] = {}
         self._given: dict[str, list[Any]] = {}
@@ -60,8 +54,8 @@ class LetterReader:
     def view(self, number: int) -> StateView:
         """A state with the objects that are present."""
         if number not in self._views:
-            present = present_in(number, self._objects, self._present)
-            self._views[number] = StateView(self._states[number], present, self._vocabulary)
+            present = present_in(number, self.objects, self.present)
+            self._views[number] = StateView(self.states[number], present, self.vocabulary)
         return self._views[number]
 
     def word(
@@ -76,11 +70,7 @@ class LetterReader:
         same, stride = 0, 1
         varying: list[int] | None = None
         for read in machine.reads:
-            if isinstance(read, Read):
-                items = tuple([objects[variable] for variable in read.variables])
-                digits = self._digits(read, items, first, last, rule.name)
-            else:
-                digits = self._number_digits(scale(read), objects, first, last, rule.name)
+            digits = self._digits(read, objects, first, last, rule.name)
             if isinstance(digits, int):
                 same += stride * digits
             elif varying is None:
@@ -97,23 +87,45 @@ class LetterReader:
             raise impossible_state(
                 rule,
                 objects,
-                self._axioms,
+                self.axioms,
                 self.view(number),
                 number=number,
-                where=self._where(number),
-                place=self._place,
+                where=self.where(number),
+                place=self.place,
             )
         return word
 
     def _digits(
-        self, read: Read, items: tuple[str, ...], first: int, last: int, rule: str
+        self,
+        read: Read | NumberRead,
+        objects: Mapping[str, str],
+        first: int,
+        last: int,
+        rule: str,
     ) -> Digits:
         # Rules tell different values apart, so a column is known by the whole read, bar variables.
-        key = (read.name, read.values, items, first, last)
+        about: Read | ThresholdScale
+        kind: object
+        if isinstance(read, Read):
+            about, kind = read, (read.name, read.values)
+        else:
+            about = kind = scale(read)
+        items = tuple([objects[variable] for variable in about.variables])
+        key = (kind, items, first, last)
         if key not in self._digits_of_reads:
-            values = self._values_of(read.name, items, first, last, rule)
-            digits = {value: read.digit(value) for value in set(values)}
-            self._digits_of_reads[key] = _digits([digits[value] for value in values])
+            if isinstance(about, Read):
+                values = self._values_of(about.name, items, first, last, rule)
+                digit_of = {value: about.digit(value) for value in set(values)}
+                digits = [digit_of[value] for value in values]
+            elif about.quantity is None:
+                bound = dict(zip(about.variables, items, strict=True))
+                numbers = self._numbers_of(about.names, first, last)
+                digits = [self._digit(about.read, bound, number, rule) for number in numbers]
+            else:
+                arguments = tuple([objects[variable] for variable in about.quantity.arguments])
+                values = self._values_of(about.quantity.name, arguments, first, last, rule)
+                digits = [about.digit(value) for value in values]
+            self._digits_of_reads[key] = digits[0] if len(set(digits)) == 1 else digits
         return self._digits_of_reads[key]
 
     def _values_of(
@@ -126,7 +138,7 @@ class LetterReader:
             given: Iterable[Any] = self._given_by_states(name)[numbers.start : numbers.stop]
             for item in items:
                 given = [None if inner is None else inner.get(item) for inner in given]
-            default = self._vocabulary.declarations[name].default
+            default = self.vocabulary.declarations[name].default
             values: list[Any] = [default if value is None else value for value in given]
             if None in values:
                 raise self._missing(name, items, numbers[values.index(None)], rule)
@@ -136,32 +148,12 @@ class LetterReader:
     def _given_by_states(self, name: str) -> list[Any]:
         """The value that each state gives for a name, None if nothing."""
         if name not in self._given:
-            self._given[name] = [state.get(name) for state in self._states]
+            self._given[name] = [state.get(name) for state in self.states]
         return self._given[name]
-
-    def _number_digits(
-        self, read: ThresholdScale, objects: Mapping[str, str], first: int, last: int, rule: str
-    ) -> Digits:
-        """The digits of a number, which are how many thresholds it passes."""
-        items = tuple([objects[variable] for variable in read.variables])
-        key = (read, items, first, last)
-        if key not in self._digits_of_reads:
-            if read.quantity is None:
-                numbers = self._numbers_of(read.names, first, last)
-                bound = dict(zip(read.variables, items, strict=True))
-                self._digits_of_reads[key] = _digits(
-                    self._digit(read, bound, n, rule) for n in numbers
-                )
-            else:
-                name = read.quantity.name
-                arguments = tuple([objects[variable] for variable in read.quantity.arguments])
-                values = self._values_of(name, arguments, first, last, rule)
-                self._digits_of_reads[key] = _digits(read.digit(value) for value in values)
-        return self._digits_of_reads[key]
 
     def _numbers_of(self, names: Sequence[str], first: int, last: int) -> range:
         """Indices of the states to read; the first if all are identical."""
-        if self._present or not all(self._is_constant(name) for name in names):
+        if self.present or not all(self._is_constant(name) for name in names):
             return range(first, last + 1)
         return range(first, last + 1)[:1]
 
@@ -172,24 +164,19 @@ class LetterReader:
             self._constant[name] = all(value is given[0] for value in given)
         return self._constant[name]
 
-    def _digit(self, read: ThresholdScale, bound: Mapping[str, str], number: int, rule: str) -> int:
-        total = weighted_sum(read.read.terms, bound, self.view(number))
+    def _digit(self, read: NumberRead, bound: Mapping[str, str], number: int, rule: str) -> int:
+        total = weighted_sum(read.terms, bound, self.view(number))
         if isinstance(total, Unknown):
             raise self._missing(total.name, total.objects, number, rule)
-        return read.read.digit(total)
+        return read.digit(total)
 
     def _missing(self, name: str, items: tuple[str, ...], number: int, rule: str) -> RulecError:
         of = f" of `{', '.join(items)}`" if items else ""
         return MISSING_VALUE.error(
-            self._place,
-            f"{self._where(number)} does not say the `{name}`{of}, which rule `{rule}` needs",
+            self.place,
+            f"{self.where(number)} does not say the `{name}`{of}, which rule `{rule}` needs",
             help="supply it in every state, or declare a default in the vocabulary",
         )
-
-
-def _digits(column: Iterable[int]) -> Digits:
-    digits = list(column)
-    return digits[0] if len(set(digits)) == 1 else digits
 
 
 def present_in(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
 from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALUE
@@ -99,6 +99,7 @@ def check_state(
 
     ``where`` names the state in messages. Raises RulecError R0502, R0503 or R0505.
     """
+    about = _About(objects, vocabulary, where, place)
     for name, value in state.items():
         declaration = vocabulary.declarations.get(name)
         if declaration is None:
@@ -107,31 +108,30 @@ def check_state(
                 f"{where} speaks of `{name}`, which vocabulary `{vocabulary.name}` does not know",
                 help=_unknown_name(name, vocabulary),
             )
-        _check_value(
-            value=value,
-            declaration=declaration,
-            parameters=declaration.parameters,
-            objects=objects,
-            vocabulary=vocabulary,
-            where=where,
-            place=place,
-        )
+        _check_value(value, declaration, declaration.parameters, about)
+
+
+class _About(NamedTuple):
+    """What values are checked against, and what messages call their state."""
+
+    objects: Mapping[str, str]
+    vocabulary: Vocabulary
+    where: str
+    place: SourceLocation | None
 
 
 def _check_value(
-    value: Any,
-    declaration: Declaration,
-    parameters: Sequence[str],
-    objects: Mapping[str, str],
-    vocabulary: Vocabulary,
-    where: str,
-    place: SourceLocation | None,
+    value: Any, declaration: Declaration, parameters: Sequence[str], about: _About
 ) -> None:
+    objects, vocabulary, where, place = about
     name = declaration.name
     if not parameters:
-        if not _fits(value, declaration):
-            message = f"{where} says `{name}` is {_shown(value)}; {_wanted(declaration)}"
-            raise UNFITTING_VALUE.error(place, message, help=_nearest_value(value, declaration))
+        if expected := _misfit(value, declaration):
+            way_out = ""
+            if isinstance(declaration, Enumeration) and isinstance(value, str):
+                way_out = _suggest(value, declaration.values)
+            message = f"{where} says `{name}` is {_shown(value)}; {expected}"
+            raise UNFITTING_VALUE.error(place, message, help=way_out)
         return
     # Asking for a mapping takes far longer than asking for a dictionary.
     if type(value) is not dict and not isinstance(value, Mapping):
@@ -148,29 +148,21 @@ def _check_value(
                 f"`{name}` is about each `{parameters[0]}`"
             )
             raise UNKNOWN_OBJECT.error(place, message)
-        _check_value(
-            value=inner,
-            declaration=declaration,
-            parameters=parameters[1:],
-            objects=objects,
-            vocabulary=vocabulary,
-            where=where,
-            place=place,
-        )
+        _check_value(inner, declaration, parameters[1:], about)
 
 
 def _look(declaration: Declaration, fitting: list[frozenset[str]]) -> _Look:
     if not fitting:
         return _one_value(declaration)
-    values = _many_values(declaration)
-    if len(fitting) == 1:
-        (objects,) = fitting
+    objects, *others = fitting
+    if others:
+        inner = _look(declaration, others)
         return lambda given: (
-            type(given) is dict and objects.issuperset(given) and values(given.values())
+            type(given) is dict and objects.issuperset(given) and all(map(inner, given.values()))
         )
-    objects, inner = fitting[0], _look(declaration, fitting[1:])
+    values = _many_values(declaration)
     return lambda given: (
-        type(given) is dict and objects.issuperset(given) and all(map(inner, given.values()))
+        type(given) is dict and objects.issuperset(given) and values(given.values())
     )
 
 
@@ -196,31 +188,20 @@ def _many_values(declaration: Declaration) -> _Look:
             )
 
 
-def _fits(value: Any, declaration: Declaration) -> bool:
+def _misfit(value: Any, declaration: Declaration) -> str:
+    """What a value ought to be that does not fit; nothing if it does."""
     match declaration:
         case Enumeration():
-            return isinstance(value, str) and value in declaration.values
+            if not isinstance(value, str) or value not in declaration.values:
+                return f"it is one of {named(declaration.values)}"
         case Signal():
-            return isinstance(value, bool)
+            if not isinstance(value, bool):
+                return "it is true or false"
         case Quantity():
             number = isinstance(value, int | float) and not isinstance(value, bool)
             # Neither infinite nor nan; whole numbers may be larger than any float.
-            return number and -math.inf < value < math.inf
-
-
-def _wanted(declaration: Declaration) -> str:
-    match declaration:
-        case Enumeration():
-            return f"it is one of {named(declaration.values)}"
-        case Signal():
-            return "it is true or false"
-        case Quantity():
-            return f"it is a finite number, in {declaration.unit}"
-
-
-def _nearest_value(value: Any, declaration: Declaration) -> str:
-    if isinstance(declaration, Enumeration) and isinstance(value, str):
-        return _suggest(value, declaration.values)
+            if not number or not -math.inf < value < math.inf:
+                return f"it is a finite number, in {declaration.unit}"
     return ""
 
 
