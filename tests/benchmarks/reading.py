@@ -20,7 +20,7 @@ from pyarrow import parquet
 from timing import Timed, children_ms, in_turns, processor_time
 
 import rulec
-from rulec.monitoring.batch.table_verdicts import verify_items
+from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.trace import Trace
 from rulec.trace.formats.trace_files import FORMATS, Format, format_of, read_chunks, write_traces
 

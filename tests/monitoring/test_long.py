@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import verify_chunk
-from rulec.monitoring.batch.machines import chunked_run
-from rulec.monitoring.batch.machines.chunked_run import visited
+from rulec.monitoring.batch.machines import table_run
+from rulec.monitoring.batch.machines.table_run import visited
 from rulec.monitoring.verify import verify_or_reason
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
@@ -27,9 +27,9 @@ from support.generators.timed_formulas import TIMED_VOCABULARY
     st.randoms(use_true_random=False),
 )
 @example(1, 1, 1, Random(0))
-@example(32, 2, chunked_run.FEWEST_STEPS, Random(0))
-@example(33, 2, chunked_run.FEWEST_STEPS, Random(0))
-@example(2, 2, chunked_run.FEWEST_STEPS - 1, Random(0))
+@example(32, 2, table_run.FEWEST_STEPS, Random(0))
+@example(33, 2, table_run.FEWEST_STEPS, Random(0))
+@example(2, 2, table_run.FEWEST_STEPS - 1, Random(0))
 def test_states_are_those_that_are_passed_one_by_one(n_states, n_letters, length, chance):
     following = [[chance.randrange(n_states) for _ in range(n_letters)] for _ in range(n_states)]
     word = [chance.randrange(n_letters) for _ in range(length)]
@@ -45,7 +45,7 @@ def test_answers_are_those_of_the_traces_alone(rulebook, traces):
     """As if any trace were long."""
     compiled = compile_here(rulebook)
     alone = [told(verify_or_reason(trace, compiled)) for trace in traces]
-    with mock.patch.object(chunked_run, "FEWEST_STEPS", 1):
+    with mock.patch.object(table_run, "FEWEST_STEPS", 1):
         assert [told(one) for one in verify_chunk(traces, compiled, fewest=1)] == alone
 
 

@@ -15,8 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.automata.bundle.bundle_file import to_json
-from rulec.monitoring.batch import table_verdicts
-from rulec.monitoring.batch.table_verdicts import rulebook_for, verify_items
+from rulec.monitoring.batch import batch_verify
+from rulec.monitoring.batch.batch_verify import rulebook_for, verify_items
 from rulec.monitoring.verify import verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
@@ -48,7 +48,7 @@ def by_columns(data, form, rules, block_bytes=1 << 22):
         mock.patch.object(csv_table, "LARGE_BYTES", 1),
         mock.patch.object(plain_csv, "_BLOCK_BYTES", block_bytes),
         mock.patch.object(parquet_table, "_ROWS_AT_ONCE", 1 + block_bytes // 40),
-        mock.patch.object(table_verdicts, "_FEWEST_ROWS", 0),
+        mock.patch.object(batch_verify, "_FEWEST_ROWS", 0),
     ):
         return answers(data, form, rules)
 
@@ -313,7 +313,7 @@ PEAK = """
 import sys
 from pathlib import Path
 import rulec
-from rulec.monitoring.batch.table_verdicts import verify_items
+from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.trace.formats import csv_table
 from rulec.trace.formats.arrow import arrow_csv, parquet
 from rulec.trace.formats.trace_files import read_chunks

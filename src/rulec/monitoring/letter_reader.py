@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass
-from types import MappingProxyType
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
@@ -17,10 +16,6 @@ from rulec.monitoring.monitoring_messages import MISSING_VALUE
 from rulec.monitoring.state_view import StateView
 from rulec.trace import State, Value
 from rulec.vocabulary import Vocabulary
-
-NO_OBJECTS: Mapping[str, str] = MappingProxyType({})
-ALWAYS_PRESENT: Mapping[str, tuple[int, int]] = MappingProxyType({})
-
 
 Digits = int | list[int]
 """The digit of one read in the letter of every state; a number if it is one for all."""
@@ -40,8 +35,8 @@ class LetterReader:
     where: Callable[[int], str]
     _: KW_ONLY
     place: SourceLocation | None = None
-    objects: Mapping[str, str] = NO_OBJECTS
-    present: Mapping[str, tuple[int, int]] = ALWAYS_PRESENT
+    objects: Mapping[str, str] = field(default_factory=dict)
+    present: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     axioms: Sequence[CompiledAxiom] = ()
 
     def __post_init__(self) -> None:

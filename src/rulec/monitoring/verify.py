@@ -2,20 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.monitoring.axiom_violations import check_counting_axioms
-from rulec.monitoring.binding import bindings
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
 from rulec.trace.trace_validation import check_trace
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.object_choices import choices
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """Objects for a rule's variables, from state ``first`` to ``last`` (inclusive)."""
+
+    objects: Mapping[str, str]
+    first: int
+    last: int
+
+
+def bindings(
+    rule: CompiledRule,
+    vocabulary: Vocabulary,
+    objects: Mapping[str, str],
+    present: Mapping[str, tuple[int, int]],
+    n_states: int,
+) -> Iterator[Binding]:
+    """All bindings of a rule's variables to distinct objects of their types.
+
+    A binding counts on the stretch in which all its objects are present; one whose objects are
+    never present together is left out. A rule without variables has one binding, the empty one.
+    """
+    names = [variable.name for variable in rule.variables]
+    for chosen in choices([variable.type for variable in rule.variables], objects, vocabulary):
+        stretches = [present.get(item, (0, n_states - 1)) for item in chosen]
+        first = max((start for start, _ in stretches), default=0)
+        last = min((end for _, end in stretches), default=n_states - 1)
+        if first <= last:
+            yield Binding(dict(zip(names, chosen, strict=True)), first, last)
 
 
 def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:

@@ -122,7 +122,7 @@ class _Run:
     def traces(self, files: Sequence[str], form: Format | None) -> None:
         """Judge the traces of files, with one summary for all of them."""
         # Tables of automata and verdicts, 230 ms: not for --help, and not for recordings alone.
-        from rulec.monitoring.batch.table_verdicts import rulebook_for
+        from rulec.monitoring.batch.batch_verify import rulebook_for
         from rulec.monitoring.explain.explanation import explain
         from rulec.monitoring.verdict import Verdict
         from rulec.report.verdicts import verdict_json, verdict_report
@@ -208,7 +208,7 @@ def _answers(
 ) -> Iterator[Answer]:
     """Traces, which of them, and its verdict, or why there is none."""
     # Tables of automata, 160 ms: as for ``_Run.traces``.
-    from rulec.monitoring.batch.table_verdicts import verify_items
+    from rulec.monitoring.batch.batch_verify import verify_items
     from rulec.monitoring.verdict import NotJudged
     from rulec.trace.formats.trace_files import format_of, read_chunks
 

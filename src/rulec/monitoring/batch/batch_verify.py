@@ -14,6 +14,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axiom_violations import check_counting_axioms
+from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block, groups_of
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
@@ -29,8 +30,10 @@ from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import rulebook_for_trace, verify_or_reason
+from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
+from rulec.trace.formats.block_presence import outlined
+from rulec.trace.formats.table_blocks import Block, OddTableError
 from rulec.trace.trace_validation import check_frame, check_presence
 
 FEWEST = 4
@@ -46,6 +49,11 @@ Answer = Verdict | NotJudged
 
 _Placed = tuple[int, Trace]
 """A trace, and its place among all."""
+
+_FEWEST_ROWS = 200
+"""Where a shape of a block has fewer rows, on average, its traces are read row by row."""
+
+Items = Sequence[Trace | RulecError]
 
 
 def verify_many(
@@ -178,3 +186,59 @@ def violations_in(
     for trace in range(n_traces):
         if trace not in unread:
             yield trace, by_trace.get(trace, ())
+
+
+def verify_items(items: Items, rulebook: CompiledRulebook) -> tuple[Items, Sequence[Answer]]:
+    """Traces as they were read, perhaps a block, and their answers."""
+    if isinstance(items, Block):
+        answers = _verify_block(items, rulebook)
+        if answers is not None:
+            return items, answers
+        items = list(items)
+    return items, verify_chunk(items, rulebook)
+
+
+def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
+    """The rulebook that one of ``verify_items`` was judged by."""
+    if isinstance(items, Block):
+        return rulebook_for_step(items.step_s(place), rulebook)
+    trace = items[place]
+    assert isinstance(trace, Trace)
+    return rulebook_for_trace(trace, rulebook)
+
+
+def _verify_block(block: Block, rulebook: CompiledRulebook) -> list[Answer] | None:
+    """None if something is odd about the block."""
+    answers: list[Answer | None] = [None] * len(block)
+    try:
+        presence = outlined(block)
+        groups = groups_of(block, presence)
+        if len(groups) * _FEWEST_ROWS > len(presence.trace) + _FEWEST_ROWS:
+            return None
+        for group in groups:
+            _verify_block_group(group, rulebook, answers)
+    except (OddTableError, UnencodableError, NotGivenError, RulecError):
+        return None
+    return [
+        verify_or_reason(block[place], rulebook) if answer is None else answer
+        for place, answer in enumerate(answers)
+    ]
+
+
+def _verify_block_group(
+    group: BlockGroup, rulebook: CompiledRulebook, answers: list[Answer | None]
+) -> None:
+    """Answer for those traces of a group whose values are all readable."""
+    presence = group.presence
+    objects = dict(zip(group.objects, group.types, strict=True))
+    step_s = float(presence.step_s[group.traces[0]])
+    rules = rules_for(Trace("", step_s, objects, ()), rulebook)
+    if any(counts(axiom.formula) for axiom in rules.axioms):
+        raise UnencodableError
+    verdicts = verify_columns(columnize_block(group, rules.vocabulary), rules)
+    traces = group.traces.tolist()
+    for number, violations in violations_in(verdicts, len(traces)):
+        trace = traces[number]
+        own = presence.objects_of(trace) if violations else ()
+        violations = under_own_names(violations, group.objects, own)
+        answers[trace] = Verdict(presence.names[trace], violations)

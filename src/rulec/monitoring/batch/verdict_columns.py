@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.monitoring.batch.machines.chunked_run import first_lost_of_one, run_alone
 from rulec.monitoring.batch.machines.joint_machine import join_machines
-from rulec.monitoring.batch.machines.table_run import first_lost, run
+from rulec.monitoring.batch.machines.table_run import first_lost, first_lost_of_one, run, run_alone
 from rulec.trace.trace_columns import Array, Layout
 from rulec.value_display import short_repr
 

@@ -15,12 +15,11 @@ from rulec.logic.causes import deciding_instants
 from rulec.logic.kleene import Unknown, holds, objects_counted, weighted_sum
 from rulec.logic.printing import formula_text, term_text
 from rulec.logic.semantics import values_of_parts
-from rulec.monitoring.binding import bindings
 from rulec.monitoring.explain.nearest_satisfying import Letter, Repair, nearest_satisfying
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import Violation
-from rulec.monitoring.verify import letter_reader_of
+from rulec.monitoring.verify import bindings, letter_reader_of
 from rulec.trace import Trace, Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Quantity, Vocabulary

@@ -14,10 +14,10 @@ from rulec.monitoring.online.encoding.encoded_values import (
     MISSING,
     Breakpoints,
     Encoded,
+    MonitorInput,
     encoded_default,
     values_at,
 )
-from rulec.monitoring.online.encoding.letter_inputs import MonitorInput
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView

@@ -13,8 +13,13 @@ from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE
-from rulec.monitoring.online.encoding.encoded_values import Breakpoints, breakpoints_of
-from rulec.monitoring.online.encoding.letter_inputs import DigitWeight, MonitorInput, monitor_inputs
+from rulec.monitoring.online.encoding.encoded_values import (
+    Breakpoints,
+    DigitWeight,
+    MonitorInput,
+    breakpoints_of,
+    monitor_inputs,
+)
 from rulec.monitoring.online.four_valued import (
     FourValued,
     LinkedMonitor,

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.monitoring.letter_reader import NO_OBJECTS
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.monitor_state import (
     MonitorState,
@@ -26,6 +26,8 @@ from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import CarriedState, Violation
 from rulec.trace import State
 from rulec.trace.trace_messages import NOT_A_TRACE
+
+NO_OBJECTS: Mapping[str, str] = MappingProxyType({})
 
 _Now: TypeAlias = tuple[MonitorState, int, tuple[VerdictChange, ...], TransitionCache]
 """The monitor's state, the number of the trace's last state, its changes, and a cache of steps.

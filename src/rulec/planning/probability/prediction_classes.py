@@ -10,8 +10,8 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.formula import Comparison, Count, Formula, atoms_of
 from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import holds
-from rulec.monitoring.binding import Binding
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.verify import Binding
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.trace import TraceGraph
 from rulec.vocabulary import Vocabulary

@@ -8,9 +8,8 @@ from math import prod
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.monitoring.binding import Binding, bindings
 from rulec.monitoring.letter_reader import LetterReader
-from rulec.monitoring.verify import run
+from rulec.monitoring.verify import Binding, bindings, run
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event

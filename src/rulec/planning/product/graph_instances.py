@@ -9,11 +9,10 @@ from fractions import Fraction
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
 from rulec.automata.thresholds import exact
 from rulec.monitoring.axiom_violations import check_counting_axioms
-from rulec.monitoring.binding import Binding, bindings
 from rulec.monitoring.letter_reader import LetterReader, present_in
 from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
-from rulec.monitoring.verify import run
+from rulec.monitoring.verify import Binding, bindings, run
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph
 
