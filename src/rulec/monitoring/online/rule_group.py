@@ -99,10 +99,10 @@ class RuleGroup:
     classes of each letter, one for each rule; ``cache_size`` counts for all groups together.
     """
 
-    def __init__(self, rules: Sequence[PreparedRule], cache_size: CacheSize) -> None:
-        self.cache_size = cache_size
-        self.rules = tuple(rules)
-        self.types = tuple([variable.type for variable in rules[0].rule.variables])
+    def __init__(
+        self, rules: Sequence[PreparedRule], types: tuple[str, ...], cache_size: CacheSize
+    ) -> None:
+        self.rules, self.types, self.cache_size = tuple(rules), types, cache_size
         inputs = dict.fromkeys(read for prepared in rules for read, _ in prepared.inputs)
         self.own = tuple([read for read in inputs if read.places or read.name is None])
         self.world = tuple([read for read in inputs if read not in self.own])
@@ -140,42 +140,34 @@ class RuleGroup:
         return self.letter(tuple(classes))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class RuleGroups:
     """Rules of a rulebook, singly and grouped by their variables' types.
 
     The groups cache their nodes, letters and transitions.
     """
 
-    rules: tuple[PreparedRule, ...]
-    groups: tuple[RuleGroup, ...]
-    breakpoints: Breakpoints
-    cache_size: CacheSize
+    def __init__(self, rules: Sequence[PreparedRule], breakpoints: Breakpoints) -> None:
+        self.rules, self.breakpoints = tuple(rules), breakpoints
+        self.cache_size = CacheSize()
+        by_types: dict[tuple[str, ...], list[PreparedRule]] = {}
+        for prepared in rules:
+            types = tuple([variable.type for variable in prepared.rule.variables])
+            by_types.setdefault(types, []).append(prepared)
+        self.groups = tuple(
+            [RuleGroup(members, types, self.cache_size) for types, members in by_types.items()]
+        )
 
     def without_cache(self) -> RuleGroups:
         """These groups as they were at first."""
-        return _by_types(self.rules, self.breakpoints)
+        return RuleGroups(self.rules, self.breakpoints)
 
 
 def rule_groups(rulebook: CompiledRulebook) -> RuleGroups:
     """Prepare the rules of a rulebook."""
-    vocabulary = rulebook.vocabulary
-    return _by_types(
-        [
-            PreparedRule(
-                rule, linked_monitor(rule.machine), tuple(monitor_inputs(rule, vocabulary))
-            )
-            for rule in rulebook.rules
-        ],
-        breakpoints_of(rulebook),
-    )
-
-
-def _by_types(rules: Sequence[PreparedRule], breakpoints: Breakpoints) -> RuleGroups:
-    by_types: dict[tuple[str, ...], list[PreparedRule]] = {}
-    for prepared in rules:
-        types = tuple([variable.type for variable in prepared.rule.variables])
-        by_types.setdefault(types, []).append(prepared)
-    cache_size = CacheSize()
-    groups = tuple([RuleGroup(members, cache_size) for members in by_types.values()])
-    return RuleGroups(tuple(rules), groups, breakpoints, cache_size)
+    rules = [
+        PreparedRule(
+            rule, linked_monitor(rule.machine), tuple(monitor_inputs(rule, rulebook.vocabulary))
+        )
+        for rule in rulebook.rules
+    ]
+    return RuleGroups(rules, breakpoints_of(rulebook))

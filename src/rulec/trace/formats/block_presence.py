@@ -78,7 +78,7 @@ def outlined(block: Block) -> BlockPresence:
         raise OddTableError
     rows = np.flatnonzero(is_about)
     keys = trace[rows] * max(len(items.values), 1) + items.codes[rows]
-    result, first_row, which = np.unique(keys, return_index=True, return_inverse=True)
+    distinct, first_row, which = np.unique(keys, return_index=True, return_inverse=True)
     order = np.argsort(first_row)
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))
@@ -89,8 +89,8 @@ def outlined(block: Block) -> BlockPresence:
     item = np.full(n_rows, NOBODY)
     item[rows] = numbers - starts_of_objects[trace[rows]]
     kind = types.codes[rows[first_row[order]]]
-    told = types.codes[rows]
-    if (kind < 0).any() or ((told != kind[numbers]) & (told >= 0)).any():
+    kind_of_row = types.codes[rows]
+    if (kind < 0).any() or ((kind_of_row != kind[numbers]) & (kind_of_row >= 0)).any():
         raise OddTableError
     # Rows are in the order of steps.
     last_row = np.zeros(len(order), dtype=np.int64)
@@ -102,7 +102,7 @@ def outlined(block: Block) -> BlockPresence:
         trace=trace,
         step=step,
         item=item,
-        other=_others(others, items, trace, (result, rank), starts_of_objects),
+        other=_others(others, items, trace, (distinct, rank), starts_of_objects),
         names=[names.values[code] for code in names.codes[starts[:-1]].tolist()],
         length=length,
         step_s=_step_s(block.columns.get(STEP_S), trace, starts),
@@ -144,9 +144,9 @@ def _others(
     places = {name: place for place, name in enumerate(items.values)}
     codes = np.array([places.get(name, -1) for name in others.values]).take(others.codes[rows])
     keys, rank = known
-    wanted = trace[rows] * max(len(items.values), 1) + codes
-    at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-    if (codes < 0).any() or (keys[at] != wanted).any():
+    keys_of_rows = trace[rows] * max(len(items.values), 1) + codes
+    at = np.minimum(np.searchsorted(keys, keys_of_rows), len(keys) - 1)
+    if (codes < 0).any() or (keys[at] != keys_of_rows).any():
         raise OddTableError
     result[rows] = rank[at] - starts[trace[rows]]
     return result

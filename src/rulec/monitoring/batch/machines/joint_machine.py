@@ -61,20 +61,22 @@ def join_machines(
 def _one_by_one(
     members: Sequence[int], machines: Sequence[LetteredMachine], most_entries: int
 ) -> Iterator[JointMachine]:
-    joint_machine: JointMachine | None = None
+    joint: JointMachine | None = None
     for place in members:
-        one = machines[place]
-        more = None
-        if joint_machine is not None:
-            together = (*(machines[member] for member in joint_machine.members), one)
-            more = _join((*joint_machine.members, place), together, most_entries)
-        if more is None:
-            if joint_machine is not None:
-                yield joint_machine
-            more = _join((place,), (one,), most_entries) or _unjoined(place, *one)
-        joint_machine = more
-    if joint_machine is not None:
-        yield joint_machine
+        larger = None
+        if joint is not None:
+            together = (*joint.members, place)
+            joined = tuple([machines[member] for member in together])
+            larger = _join(together, joined, most_entries)
+            if larger is None:
+                yield joint
+        joint = larger or _join((place,), (machines[place],), most_entries)
+        if joint is None:
+            machine, letters = machines[place]
+            outputs = tuple(tuple(map(int, row)) for row in machine.outputs)
+            joint = JointMachine((place,), letters, machine.successors, outputs)
+    if joint is not None:
+        yield joint
 
 
 @lru_cache(maxsize=256)
@@ -86,24 +88,24 @@ def _join(
     Cached: many traces come in chunks, each of which needs the same product.
     """
     columns = list(zip(*(letters for _, letters in machines), strict=True))
-    spelled = list(dict.fromkeys(columns))
+    distinct = list(dict.fromkeys(columns))
     states = {(0,) * len(machines): 0}
     successors: list[list[int]] = []
     verdicts: list[list[int]] = []
     waiting = list(states)
     while waiting:
         state = waiting.pop(0)
-        if len(states) * len(spelled) > 4 * most_entries:
+        if len(states) * len(distinct) > 4 * most_entries:
             return None
         successors.append([])
         verdicts.append([])
-        for column in spelled:
+        for column in distinct:
             target, verdict = [], 0
-            for bit, ((machine, _), one, letter) in enumerate(
+            for bit, ((machine, _), own_state, letter) in enumerate(
                 zip(machines, state, column, strict=True)
             ):
-                target.append(machine.successors[one][letter])
-                verdict |= machine.outputs[one][letter] << bit
+                target.append(machine.successors[own_state][letter])
+                verdict |= machine.outputs[own_state][letter] << bit
             reached = tuple(target)
             if reached not in states:
                 states[reached] = len(states)
@@ -116,15 +118,10 @@ def _join(
     if len(smaller) * len(numbers) > most_entries:
         return None
     kept = [effects.index(effect) for effect in numbers]
-    letter_of = {one: numbers[effect] for one, effect in zip(spelled, effects, strict=True)}
+    letter_of = dict(zip(distinct, map(numbers.__getitem__, effects), strict=True))
     return JointMachine(
         members,
         tuple([letter_of[column] for column in columns]),
         tuple([tuple([row[place] for place in kept]) for row in smaller]),
         tuple([tuple([row[place] for place in kept]) for row in outputs]),
     )
-
-
-def _unjoined(place: int, machine: MealyMonitor, letters: tuple[int, ...]) -> JointMachine:
-    verdicts = tuple(tuple(map(int, row)) for row in machine.outputs)
-    return JointMachine((place,), letters, machine.successors, verdicts)
