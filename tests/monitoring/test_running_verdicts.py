@@ -49,7 +49,7 @@ def test_verdicts_are_those_of_all_continuations(formula, ends, word):
     """By walking through the machine, behind every prefix, with every state that there could be."""
     rules = compiled(formula, ends)
     machine = rules.rules[0].machine
-    columns = LetterReader([*EVERY_STATE, *word], VOCABULARY, str)
+    columns = LetterReader([*EVERY_STATE, *word], rules, str)
     symbols = columns.word(rules.rules[0], {"x": "car1"}, 0, len(EVERY_STATE) + len(word) - 1)
     possible = set(symbols[: len(EVERY_STATE)])
     state, expected = 0, []

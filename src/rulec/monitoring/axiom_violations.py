@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
@@ -22,10 +22,7 @@ from rulec.vocabulary.object_choices import choices
 
 
 class ImpossibleStateError(RulecError):
-    """A state contradicts what the vocabulary knows of every state (R0508).
-
-    ``number`` is the state's.
-    """
+    """A state contradicts what the vocabulary knows of every state (R0508)."""
 
     def __init__(self, diagnostic: Diagnostic, number: int) -> None:
         super().__init__(diagnostic)
@@ -50,28 +47,28 @@ class _AxiomInstance:
         return holds(self.axiom.formula, self.bound, view)
 
 
+class StatePlace(NamedTuple):
+    """A state's number, what messages call it, and where it was read."""
+
+    number: int
+    name: str
+    place: SourceLocation | None
+
+
 def impossible_state(
     rule: CompiledRule,
-    objects: Mapping[str, str],
+    types: Mapping[str, str],
     axioms: Sequence[CompiledAxiom],
     view: StateView,
-    *,
-    number: int,
-    where: str,
-    place: SourceLocation | None,
+    place: StatePlace,
 ) -> ImpossibleStateError:
-    """The error about a state whose letter no axiom-abiding state has.
-
-    ``objects`` are those of the rule's variables, ``where`` names the state.
-    """
-    types = {objects[variable.name]: variable.type for variable in rule.variables}
+    """The error about a state whose letter, for objects of these types, no possible state has."""
     about_letters = [axiom for axiom in axioms if not counts(axiom.formula)]
     truths = {instance: instance.truth(view) for instance in _instances(about_letters, types, view)}
     broken = [instance for instance, truth in truths.items() if truth is False][:1]
     # Each may hold by itself: what is unknown cannot be so that all of them do.
     broken = broken or [instance for instance, truth in truths.items() if truth is not True]
-    why = (f"rule `{rule.name}` depends on it",)
-    return _error(broken, view, number=number, where=where, place=place, why=why)
+    return _error(broken, view, place, f"rule `{rule.name}` depends on it")
 
 
 def check_counting_axioms(
@@ -84,9 +81,7 @@ def check_counting_axioms(
     """Check the counting axioms in every state, for the objects present.
 
     Only those that speak of something that a rule reads: machines know nothing of such axioms.
-
-    Raises:
-        RulecError: R0508.
+    Raises RulecError R0508.
     """
     counting = [axiom for axiom in rulebook.axioms if counts(axiom.formula)]
     if not counting:
@@ -97,7 +92,7 @@ def check_counting_axioms(
         state = view(number)
         for instance in _instances(counting, state.objects, state):
             if instance.truth(state) is False:
-                raise _error([instance], state, number=number, where=where(number), place=place)
+                raise _error([instance], state, StatePlace(number, where(number), place))
 
 
 def _instances(
@@ -111,15 +106,10 @@ def _instances(
 
 
 def _error(
-    broken: Sequence[_AxiomInstance],
-    view: StateView,
-    *,
-    number: int,
-    where: str,
-    place: SourceLocation | None,
-    why: tuple[str, ...] = (),
+    broken: Sequence[_AxiomInstance], view: StateView, state: StatePlace, *why: str
 ) -> ImpossibleStateError:
     axioms = " and ".join(map(str, broken))
+    hold = "holds" if len(broken) == 1 else "hold"
     places = dict.fromkeys(instance.axiom.place for instance in broken)
     values = dict.fromkeys(value for instance in broken for value in _values(instance, view))
     labels = []
@@ -131,13 +121,13 @@ def _error(
             # A compiled rulebook has no text to show.
             notes.append(f"the fact is in {axiom_place.file}, line {axiom_place.line}")
     diagnostic = VIOLATED_AXIOM.at(
-        place,
-        f"{where} cannot be: {axioms} {'holds' if len(broken) == 1 else 'hold'} in every state",
+        state.place,
+        f"{state.name} cannot be: {axioms} {hold} in every state",
         help="correct the state; or the fact, if there can be such states",
         labels=tuple(labels),
         notes=(*notes, *why),
     )
-    return ImpossibleStateError(diagnostic, number)
+    return ImpossibleStateError(diagnostic, state.number)
 
 
 def _values(instance: _AxiomInstance, view: StateView) -> Iterator[str]:

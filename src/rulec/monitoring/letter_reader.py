@@ -6,16 +6,15 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import Any
 
-from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
 from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.kleene import Unknown, weighted_sum
-from rulec.monitoring.axiom_violations import impossible_state
+from rulec.monitoring.axiom_violations import StatePlace, impossible_state
 from rulec.monitoring.monitoring_messages import MISSING_VALUE
 from rulec.monitoring.state_view import StateView
 from rulec.trace import State, Value
-from rulec.vocabulary import Vocabulary
 
 Digits = int | list[int]
 """The digit of one read in the letter of every state; a number if it is one for all."""
@@ -27,17 +26,16 @@ class LetterReader:
 
     The digits of some objects are looked up once, whatever rules and bindings ask for them.
     ``where`` names a state in messages, ``place`` is where they were read. ``objects`` and
-    ``present`` are a trace's, ``axioms`` the rulebook's.
+    ``present`` are a trace's.
     """
 
     states: Sequence[State]
-    vocabulary: Vocabulary
+    rulebook: CompiledRulebook
     where: Callable[[int], str]
     _: KW_ONLY
     place: SourceLocation | None = None
     objects: Mapping[str, str] = field(default_factory=dict)
     present: Mapping[str, tuple[int, int]] = field(default_factory=dict)
-    axioms: Sequence[CompiledAxiom] = ()
 
     def __post_init__(self) -> None:
         self._values: dict[tuple[object, ...], list[Value]] = {}
@@ -50,7 +48,7 @@ class LetterReader:
         """A state with the objects that are present."""
         if number not in self._views:
             present = present_in(number, self.objects, self.present)
-            self._views[number] = StateView(self.states[number], present, self.vocabulary)
+            self._views[number] = StateView(self.states[number], present, self.rulebook.vocabulary)
         return self._views[number]
 
     def word(
@@ -58,8 +56,7 @@ class LetterReader:
     ) -> tuple[int, ...]:
         """The letter classes of states ``first`` to ``last`` (inclusive).
 
-        Raises:
-            RulecError: R0504 if a value is missing that has no default, R0508 if a state cannot be.
+        Raises RulecError R0504 if a value without default is missing, R0508 if a state cannot be.
         """
         machine = rule.machine
         same, stride = 0, 1
@@ -79,15 +76,9 @@ class LetterReader:
             word = tuple([machine.letters[same + number] for number in varying])
         if IMPOSSIBLE in word:
             number = first + word.index(IMPOSSIBLE)
-            raise impossible_state(
-                rule,
-                objects,
-                self.axioms,
-                self.view(number),
-                number=number,
-                where=self.where(number),
-                place=self.place,
-            )
+            types = {objects[variable.name]: variable.type for variable in rule.variables}
+            place = StatePlace(number, self.where(number), self.place)
+            raise impossible_state(rule, types, self.rulebook.axioms, self.view(number), place)
         return word
 
     def _digits(
@@ -133,7 +124,7 @@ class LetterReader:
             given: Iterable[Any] = self._given_by_states(name)[numbers.start : numbers.stop]
             for item in items:
                 given = [None if inner is None else inner.get(item) for inner in given]
-            default = self.vocabulary.declarations[name].default
+            default = self.rulebook.vocabulary.declarations[name].default
             values: list[Any] = [default if value is None else value for value in given]
             if None in values:
                 raise self._missing(name, items, numbers[values.index(None)], rule)

@@ -52,10 +52,9 @@ def bindings(
 def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     """Verify a trace against every rule, for every binding of its variables.
 
-    Raises:
-        RulecError: R0501 to R0506 if it is no trace or does not fit the rulebook's vocabulary,
-            R0507 if a rule was compiled for traces of another step, R0508 if a state contradicts
-            a fact that a rule depends on, with the trace's own place.
+    Raises RulecError R0501 to R0506 if it is no trace or does not fit the rulebook's vocabulary,
+    R0507 if a rule was compiled for traces of another step, R0508 if a state contradicts a fact
+    that a rule depends on, with the trace's own place.
     """
     check_trace(trace)
     rulebook = rulebook_for_trace(trace, rulebook)
@@ -88,15 +87,9 @@ def letter_reader_of(
     trace: Trace, rulebook: CompiledRulebook, where: Callable[[int], str] = "state {}".format
 ) -> LetterReader:
     """Letter reader of a checked trace; ``where`` names states in messages."""
-    vocabulary = rulebook.vocabulary
+    place, objects, present = trace.place, trace.objects, trace.present
     return LetterReader(
-        trace.states,
-        vocabulary,
-        where,
-        place=trace.place,
-        objects=trace.objects,
-        present=trace.present,
-        axioms=rulebook.axioms,
+        trace.states, rulebook, where, place=place, objects=objects, present=present
     )
 
 
@@ -139,9 +132,8 @@ def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Ve
 def run(machine: MealyMonitor, word: Sequence[int], start: int = 0) -> tuple[bool, int | None]:
     """Run a machine on a non-empty word of letter classes from ``start``.
 
-    Returns:
-        Whether it accepts, and the index of the letter with which it was lost, however the word
-        goes on or ends there, if any. A machine that starts out dead is lost with the first letter.
+    The result is whether it accepts, and the index of the letter with which it was lost, however
+    the word goes on or ends there, if any. One that starts out dead is lost with the first letter.
     """
     successors, rejecting_sink = machine.successors, machine.rejecting_sink
     state = before = start

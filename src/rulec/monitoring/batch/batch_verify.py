@@ -1,8 +1,6 @@
 """Verification of many traces together, with verdicts equal to ``verify``'s.
 
-Traces that are alike but for their objects' names run through the machines together. Whatever is
-odd about a trace, from an unknown name to a missing value, is left to ``verify``, which says it
-best.
+Whatever is odd about a trace, from an unknown name to a missing value, is left to ``verify``.
 """
 
 from __future__ import annotations

@@ -18,7 +18,6 @@ from rulec.monitoring.batch.verdict_columns import (
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.verify import bindings
 from rulec.trace.trace_columns import TraceCells, TraceColumns
-from rulec.vocabulary import Vocabulary
 
 
 def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[VerdictColumns]:
@@ -35,7 +34,7 @@ def verify_cells(traces: TraceCells, rulebook: CompiledRulebook) -> list[Verdict
     """Verdicts on traces as cells, whose states have passed ``check_state``."""
     bound_rules = rule_bindings(traces, rulebook)
     by_stretch: dict[tuple[int, int | None], list[tuple[RuleBinding, list[int]]]] = {}
-    all_letters = _letters_by_cell(traces, bound_rules, rulebook.vocabulary)
+    all_letters = _letters_by_cell(traces, bound_rules, rulebook)
     for binding, letters in zip(bound_rules, all_letters, strict=True):
         by_stretch.setdefault(binding.stretch, []).append((binding, letters))
     joint = (
@@ -72,7 +71,7 @@ def _verdicts(
 
 
 def _letters_by_cell(
-    traces: TraceCells, bound_rules: Sequence[RuleBinding], vocabulary: Vocabulary
+    traces: TraceCells, bound_rules: Sequence[RuleBinding], rulebook: CompiledRulebook
 ) -> list[list[int]]:
     """For each binding the letter class of each cell; -1 where there is none to read.
 
@@ -86,7 +85,7 @@ def _letters_by_cell(
     for scene, cells in scenes.items():
         objects = dict(scene)
         states = [traces.states[cell] for cell in cells]
-        reader = LetterReader(states, vocabulary, str, objects=objects)
+        reader = LetterReader(states, rulebook, str, objects=objects)
         for binding, letters in zip(bound_rules, all_letters, strict=True):
             if objects.keys() >= set(binding.objects.values()):
                 word = _word(binding, reader, 0, len(cells) - 1)

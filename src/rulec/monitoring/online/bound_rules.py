@@ -80,8 +80,7 @@ class BoundRules:
     ) -> tuple[Letters, KnownState | None]:
         """Letters of a state, and its encoding if it has one.
 
-        Raises:
-            RulecError: R0502 to R0505 or R0508, naming the state by its ``number``.
+        Raises RulecError R0502 to R0505 or R0508, naming the state by its ``number``.
         """
         known = None
         try:
@@ -112,17 +111,11 @@ class BoundRules:
 
     def _careful_letters(self, state: State, number: int, place: SourceLocation | None) -> Letters:
         """Letters read like ``verify`` does, with all cases and errors."""
-        where = f"state {number}"
-        check_state(state, self.objects, self._rulebook.vocabulary, where, place)
-        reader = LetterReader(
-            (state,),
-            self._rulebook.vocabulary,
-            where=lambda _: where,
-            place=place,
-            objects=self.objects,
-            axioms=self._rulebook.axioms,
-        )
-        check_counting_axioms(self._rulebook, 1, reader.view, lambda _: where, place)
+        name, rulebook = f"state {number}", self._rulebook
+        check_state(state, self.objects, rulebook.vocabulary, name, place)
+        where = name.format
+        reader = LetterReader((state,), rulebook, where, place=place, objects=self.objects)
+        check_counting_axioms(rulebook, 1, reader.view, where, place)
         classes = {
             bound_rule.prepared.name: [
                 reader.word(bound_rule.prepared.rule, bound_rule.prepared.bound(items), 0, 0)[0]

@@ -37,8 +37,7 @@ _ReadLetters: TypeAlias = Callable[[State, Sequence[Encoded]], Iterable[int]]
 class GroupLetters:
     """Reader of the letters of groups with bindings, for one shape.
 
-    Raises:
-        LookupError, TypeError: such states need a closer look.
+    Raises LookupError or TypeError if such states need a closer look.
     """
 
     def __init__(

@@ -19,8 +19,7 @@ from rulec.trace.trace_validation import check_trace
 def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> Monitor:
     """A monitor behind the last state of a trace.
 
-    Raises:
-        RulecError: R0501 to R0508 if the trace does not fit the rulebook, as in ``verify``.
+    Raises RulecError R0501 to R0508 if the trace does not fit the rulebook, as in ``verify``.
     """
     check_trace(trace)
     monitor = Monitor(rulebook, trace.step_s)

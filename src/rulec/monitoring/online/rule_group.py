@@ -128,8 +128,7 @@ class RuleGroup:
     def letter_of(self, digits: dict[MonitorInput, Any]) -> int:
         """The letter where inputs have these digits.
 
-        Raises a LookupError or a TypeError if one is missing or wrong, or if there is no such
-        state.
+        Raises LookupError or TypeError if one is missing or wrong, or if no state is such.
         """
         classes = []
         for prepared in self.rules:

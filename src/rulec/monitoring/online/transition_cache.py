@@ -42,9 +42,7 @@ class TransitionCache:
     ) -> MonitorState:
         """Keep the step from ``current`` by the state with this number.
 
-        Returns:
-            The monitor's state with the same nodes that is kept already, or the step's; to profit
-            from what is kept behind it, go on from this one.
+        To profit from what is kept behind it, go on from the state returned, which has equal nodes.
         """
         after, changes = step
         if number < self._rests_until:

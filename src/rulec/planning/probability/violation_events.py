@@ -126,11 +126,10 @@ class ViolationEvents:
     def _columns(self, objects: Mapping[str, str]) -> LetterReader:
         return LetterReader(
             self._states,
-            self._book.vocabulary,
+            self._book,
             "the maneuver's cell of layer {}".format,
             objects=objects,
             present=self._words.present,
-            axioms=self._book.axioms,
         )
 
     def _bindings(self, rule: CompiledRule) -> Iterator[Binding]:

@@ -72,10 +72,9 @@ def instances(
     columns = [
         LetterReader(
             states,
-            vocabulary,
+            rulebook,
             f"a cell of layer {layer}".format,
             objects=present_in(layer, graph.objects, graph.present),
-            axioms=rulebook.axioms,
         )
         for layer, states in enumerate(graph.states)
     ]

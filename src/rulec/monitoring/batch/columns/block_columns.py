@@ -93,10 +93,7 @@ def _by_objects(
     group: BlockGroup,
     vocabulary: Vocabulary,
 ) -> dict[Key, Array]:
-    """Columns of a name's values by the objects that they describe.
-
-    ``given`` tells which of the group's rows have a value.
-    """
+    """Columns of a name's values, given in some rows, by the objects that they describe."""
     rows, state = group.rows[given], group.state[given]
     n_objects, n_states = len(group.objects), group.layout.n_states
     n_parameters = len(declaration.parameters)

@@ -30,9 +30,8 @@ def columnize(
 
     ``names`` has for each state what the objects are called there, unless they have their names.
 
-    Raises:
-        UnencodableError: if ``check_state`` would refuse a state, or a value is given in some
-            states only and has no default; sometimes, too, if a value is of an unusual type.
+    Raises UnencodableError if ``check_state`` would refuse a state, or a value is given in some
+    states only and has no default; sometimes, too, if a value is of an unusual type.
     """
     if not set(map(type, traces.states)) <= {dict}:
         raise UnencodableError
@@ -110,26 +109,19 @@ class _Columnizer:
         self, values: Sequence[Any], declaration: Declaration, items: tuple[str, ...]
     ) -> Array:
         if _NOT_GIVEN in values:
-            values = self._filled(values, declaration, items)
+            filler = declaration.default
+            if filler is None:
+                if self._are_there_in_any(items, values):
+                    raise UnencodableError
+                # Where an object is not there, nothing reads what would be said of it.
+                filler = next(value for value in values if value is not _NOT_GIVEN)
+            values = [filler if value is _NOT_GIVEN else value for value in values]
         return encode_values(values, declaration).take(self._traces.cells)
 
-    def _filled(
-        self, values: Sequence[Any], declaration: Declaration, items: tuple[str, ...]
-    ) -> Sequence[Any]:
-        """The values with the default where none is given."""
-        filler = declaration.default
-        if filler is None:
-            if self._are_there_in_any(items, _places(values)):
-                raise UnencodableError
-            # Where an object is not there, nothing reads what would be said of it.
-            filler = next(value for value in values if value is not _NOT_GIVEN)
-        return [filler if value is _NOT_GIVEN else value for value in values]
-
-    def _are_there_in_any(self, items: tuple[str, ...], places: Sequence[int]) -> bool:
-        """Tell whether all these objects are present together in some state."""
-        if not self._traces.there:
-            return bool(places)
-        return bool(set(places).intersection(*map(self._places_of, items)))
+    def _are_there_in_any(self, items: tuple[str, ...], values: Sequence[Any]) -> bool:
+        """Tell whether all these objects are present in a state without a value."""
+        places = {place for place, value in enumerate(values) if value is _NOT_GIVEN}
+        return not self._traces.there or bool(places.intersection(*map(self._places_of, items)))
 
     def _places_of(self, item: str) -> Set[int]:
         """The states that an object is there in, by their places."""
@@ -144,10 +136,6 @@ def _under(about: Mapping[str, Any], names: Mapping[str, str]) -> Mapping[str, A
         return {names[item]: value for item, value in about.items()}
     except KeyError:
         raise UnencodableError from None
-
-
-def _places(values: Sequence[Any]) -> list[int]:
-    return [place for place, value in enumerate(values) if value is _NOT_GIVEN]
 
 
 def column_dtype(declaration: Declaration) -> np.dtype[Any]:

@@ -48,15 +48,8 @@ def run(
 ) -> NDArray[np.uint8]:
     """The verdicts on all traces, from step ``first`` to ``last`` (inclusive).
 
-    Args:
-        joint: the machine.
-        cells: unsigned integers in the layout's order.
-        layout: the traces; all have step ``last``.
-        first: where the runs begin.
-        last: where they end; None for the end of each trace.
-
-    Returns:
-        For each trace a joint verdict, as in ``JointMachine``.
+    ``cells`` are unsigned integers in the layout's order. All traces have step ``last``; None is
+    for the end of each. The result has for each trace a joint verdict, as in ``JointMachine``.
     """
     n_states, n_cells = len(joint.successors), len(joint.letters)
     if run_alone(layout.n_traces, layout.n_steps - first, n_states):
@@ -202,11 +195,8 @@ def first_lost(
 ) -> NDArray[np.int64]:
     """Step that loses each trace, from its first here; -1 for none.
 
-    Args:
-        machine: the machine.
-        letters: for each cell the class of its letter.
-        by_step: for each step the cells of the traces that have it, which are the first ones.
-        lengths: how many steps the traces have, in descending order.
+    ``letters`` has for each cell the class of its letter, ``by_step`` for each step the cells of
+    the traces that have it, which are the first ones, as ``lengths`` descend.
     """
     if machine.rejecting_sink is None:
         return np.full(len(lengths), -1, dtype=np.int64)

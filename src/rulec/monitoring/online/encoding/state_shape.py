@@ -35,10 +35,8 @@ class StateShape:
     ``places`` has by name and objects the part of an encoded state in which a value stands, and
     its place there; ``sizes`` are the parts' sizes. The first ``n_world`` parts are about the
     world, each other one about one of the ``names``. ``key`` is a state's key, ``key_of`` the same
-    from the state encoded.
-
-    Raises:
-        LookupError: such a state needs a closer look, as if there is no declaration of a name.
+    from the state encoded. Raises LookupError if such states need a closer look, as if there is no
+    declaration of a name.
     """
 
     def __init__(
@@ -92,8 +90,7 @@ class StateShape:
     def encode(self, state: Any) -> tuple[Encoded, ...]:
         """Encode a state in parts; equal parts are alike for every rule.
 
-        Raises a LookupError or a TypeError if the state has another shape, or needs a closer
-        look. Values of enumerations may be wrong.
+        Raises LookupError or TypeError if the state has another shape, or needs a closer look.
         """
         if type(state) is not dict or len(state) != self._n_names:
             raise LookupError
