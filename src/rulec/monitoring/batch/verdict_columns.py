@@ -82,18 +82,14 @@ class VerdictColumns:
             letters = np.array(self._letters)
             words = (self._cells[layout.places(trace, first, last)] for trace in chosen.tolist())
             lost = np.array([first_lost_of_one(machine, letters.take(word)) for word in words])
-            return np.where(lost < 0, lost, lost + first)
-        steps = range(first, int(ends[0]) if len(ends) else first)
-        by_step = (
-            self._cells[layout.starts[step] + chosen[: _n_longer(ends, step)]] for step in steps
-        )
-        lost = first_lost(machine, self._letters, by_step, ends - first)
+        else:
+            # The ends descend: those above a step come first.
+            by_step = (
+                self._cells[layout.starts[step] + chosen[: np.searchsorted(-ends, -step)]]
+                for step in range(first, int(ends[0]) if len(ends) else first)
+            )
+            lost = first_lost(machine, self._letters, by_step, ends - first)
         return np.where(lost < 0, lost, lost + first)
-
-
-def _n_longer(ends: NDArray[np.int64], step: int) -> int:
-    """Number of ends, in descending order, that are above a step."""
-    return int(np.searchsorted(-ends, -step))
 
 
 def verdict_columns(cells: JointCells) -> Iterator[VerdictColumns]:
@@ -101,8 +97,7 @@ def verdict_columns(cells: JointCells) -> Iterator[VerdictColumns]:
     if not cells.bindings:
         return
     first, last = cells.bindings[0].stretch
-    unread = [_unread(cells, letters) for letters in cells.letters]
-    letters_read = [_any_where_none(letters) for letters in cells.letters]
+    unread, letters_read = zip(*[_read(cells, letters) for letters in cells.letters], strict=True)
     machines = [binding.rule.machine for binding in cells.bindings]
     for joint in join_machines(list(zip(machines, letters_read, strict=True))):
         verdicts = run(joint, cells.cells, cells.layout, first, last)
@@ -117,19 +112,14 @@ def verdict_columns(cells: JointCells) -> Iterator[VerdictColumns]:
             )
 
 
-def _any_where_none(letters: Sequence[int]) -> tuple[int, ...]:
-    """Letters with 0 for cells without one, met in unread traces only."""
+def _read(cells: JointCells, letters: Sequence[int]) -> tuple[NDArray[np.intp], tuple[int, ...]]:
+    """The unread traces, and the letters with 0 for cells without one, met only there."""
     if min(letters, default=0) >= 0:
-        return tuple(letters)
-    return tuple([max(letter, 0) for letter in letters])
-
-
-def _unread(cells: JointCells, letters: Sequence[int]) -> NDArray[np.intp]:
-    if min(letters, default=0) >= 0:
-        return np.empty(0, dtype=np.intp)
-    missing = np.array(letters) < 0
+        return np.empty(0, dtype=np.intp), tuple(letters)
     (first, last), layout = cells.bindings[0].stretch, cells.layout
     start = layout.starts[first]
     end = layout.starts[-1 if last is None else last + 1]
+    missing = np.array(letters) < 0
     places = np.flatnonzero(missing.take(cells.cells[start:end])) + start
-    return np.unique(layout.traces_at(places))
+    unread = np.unique(layout.traces_at(places))
+    return unread, tuple([max(letter, 0) for letter in letters])

@@ -71,10 +71,7 @@ def four_valued(machine: MealyMonitor, state: int, *, accepted: bool) -> FourVal
 def conjunction(verdicts: Iterable[FourValued]) -> FourValued:
     """The verdict on several rules together; nothing at all is satisfied."""
     distinct = set(verdicts)
-    for verdict in _WORST_FIRST:
-        if verdict in distinct:
-            return verdict
-    return "satisfied"
+    return next((verdict for verdict in _WORST_FIRST if verdict in distinct), "satisfied")
 
 
 _WORST_FIRST: tuple[FourValued, ...] = ("violated", "pending", "holds so far")

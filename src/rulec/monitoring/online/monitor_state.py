@@ -73,6 +73,8 @@ class MonitorState(msgspec.Struct, frozen=True, eq=False):
     after: dict[Hashable, StepResult] = msgspec.field(default_factory=dict)
 
 
+_NONE_KNOWN: Mapping[str, FourValued] = MappingProxyType({})
+
 StepResult: TypeAlias = tuple[MonitorState, tuple[VerdictChange, ...]]
 """The next state of a monitor, and what changes by the step."""
 
@@ -83,21 +85,7 @@ def initial_state(bound_rules: BoundRules) -> MonitorState:
         bound_rule.prepared.name: [bound_rule.prepared.monitor.start] * len(bound_rule.bindings)
         for bound_rule in bound_rules.rules
     }
-    return state_at(bound_rules, start, frozenset(), 0)
-
-
-def state_at(
-    bound_rules: BoundRules,
-    edges: Mapping[str, Sequence[MonitorEdge]],
-    violated_rules: Set[str],
-    n_violations: int,
-) -> MonitorState:
-    """The monitor's state with these edges for each rule and binding.
-
-    ``violated_rules`` are those that have been violated for good by then.
-    """
-    nodes = nodes_at(bound_rules, edges)
-    return _with_verdicts(bound_rules, nodes, violated_rules, n_violations, {})
+    return state_at(bound_rules, nodes_at(bound_rules, start), frozenset(), 0)
 
 
 def nodes_at(
@@ -139,8 +127,7 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
     # A rule's verdict changes only if it does so for an object that stays, comes or leaves.
     unchanged = current.rules.keys() - {change.rule for change in changes}
     known = {rule: current.rules[rule] for rule in unchanged}
-    after = _with_verdicts(bound_rules, nodes, violated_rules, n_violations, known)
-    return after, tuple(changes)
+    return state_at(bound_rules, nodes, violated_rules, n_violations, known), tuple(changes)
 
 
 def carry_over(
@@ -187,17 +174,16 @@ def _changes(
                 yield VerdictChange(prepared.name, binding, old, new)
 
 
-def _with_verdicts(
+def state_at(
     bound_rules: BoundRules,
     nodes: tuple[GroupNode, ...],
     violated_rules: Set[str],
     n_violations: int,
-    known: Mapping[str, FourValued],
+    known: Mapping[str, FourValued] = _NONE_KNOWN,
 ) -> MonitorState:
-    """The monitor's state with these nodes.
+    """The monitor's state with these nodes, where some rules' verdicts are ``known``.
 
-    ``violated_rules`` are violated for good, by objects now present or not. Of some rules the
-    verdict is ``known``.
+    ``violated_rules`` are violated for good, by objects now present or not.
     """
     rules = {
         bound_rule.prepared.name: known.get(bound_rule.prepared.name)

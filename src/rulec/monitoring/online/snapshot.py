@@ -17,7 +17,7 @@ from rulec.diagnostics.json_problems import json_words
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.four_valued import FourValued, MonitorEdge
-from rulec.monitoring.online.monitor_state import MonitorState, initial_state, state_at
+from rulec.monitoring.online.monitor_state import MonitorState, initial_state, nodes_at, state_at
 from rulec.monitoring.online.rule_group import RuleGroups
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
@@ -168,7 +168,8 @@ def restored(
     except (LookupError, ValueError, RulecError):
         raise _refused("this saved monitor is damaged", place) from None
     violated_rules = {violation.rule for violation in violations}
-    current = state_at(bound_rules, edges, violated_rules, len(violations))
+    nodes = nodes_at(bound_rules, edges)
+    current = state_at(bound_rules, nodes, violated_rules, len(violations))
     return saved.states - 1, current, violations
 
 

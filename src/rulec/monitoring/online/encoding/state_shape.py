@@ -167,11 +167,12 @@ def _of_objects(
     """Encoder of a name's values for all choices of distinct objects."""
     items = tuple([item for item in fitting[0] if item not in before])
     if len(fitting) > 1:
-        inner = [
-            (item, _of_objects(declaration, fitting[1:], breakpoints, (*before, item)))
-            for item in items
-        ]
-        return _of_more_objects(inner)
+        return _of_more_objects(
+            {
+                item: _of_objects(declaration, fitting[1:], breakpoints, (*before, item))
+                for item in items
+            }
+        )
     encode_all, n_items = _encoded(values_at(items), declaration, breakpoints), len(items)
     encode = encoder_of(declaration, breakpoints)
     default = encoded_default(declaration, breakpoints)
@@ -191,12 +192,12 @@ def _of_objects(
     return encode_objects
 
 
-def _of_more_objects(inner: Sequence[tuple[str, _EncodePart]]) -> _EncodePart:
-    known = frozenset([item for item, _ in inner])
+def _of_more_objects(inner: Mapping[str, _EncodePart]) -> _EncodePart:
+    parts = list(inner.items())
 
     def encode_objects(given: Any) -> Encoded:
-        if type(given) is dict and known.issuperset(given):
-            return tuple([value for item, part in inner for value in part(given.get(item, {}))])
+        if type(given) is dict and inner.keys() >= given.keys():
+            return tuple([value for item, part in parts for value in part(given.get(item, {}))])
         raise LookupError
 
     return encode_objects
