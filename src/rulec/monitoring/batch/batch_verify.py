@@ -12,17 +12,11 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axiom_violations import check_counting_axioms
+from rulec.monitoring.batch import trace_groups
 from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block, groups_of
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
-from rulec.monitoring.batch.trace_groups import (
-    Shape,
-    group_traces,
-    shape_of,
-    under_common_names,
-    under_own_names,
-)
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import check_objects, check_state
@@ -78,11 +72,11 @@ def verify_chunk(
 ) -> list[Answer]:
     """Answers for some traces, together from ``fewest`` of one shape on."""
     answers: list[Answer | None] = [None] * len(items)
-    shapes: dict[Shape, list[_Placed]] = {}
+    shapes: dict[trace_groups.Shape, list[_Placed]] = {}
     for place, item in enumerate(items):
         if isinstance(item, Trace):
             try:
-                shapes.setdefault(shape_of(item), []).append((place, item))
+                shapes.setdefault(trace_groups.shape_of(item), []).append((place, item))
             except (TypeError, AttributeError, KeyError):
                 continue  # it is no trace, which ``verify`` will say
     for alike in shapes.values():
@@ -116,7 +110,7 @@ def _verify_group(
         rules = rules_for(traces[0][1], rulebook)
     except RulecError:
         return
-    group = group_traces([trace for _, trace in traces])
+    group = trace_groups.group_traces([trace for _, trace in traces])
     if len(group.cells.states) * _SHARED > group.cells.layout.n_states:
         if any(counts(axiom.formula) for axiom in rules.axioms):
             return
@@ -126,7 +120,7 @@ def _verify_group(
         except (UnencodableError, NotGivenError):
             return
     else:
-        cells = under_common_names(group)
+        cells = trace_groups.under_common_names(group)
         scenes = cells.there or (cells.objects,) * len(cells.states)
         refused = {
             id(state)
@@ -137,13 +131,13 @@ def _verify_group(
             traces = [placed for placed in traces if refused.isdisjoint(map(id, placed[1].states))]
             if not traces:
                 return
-            group = group_traces([trace for _, trace in traces])
-            cells = under_common_names(group)
+            group = trace_groups.group_traces([trace for _, trace in traces])
+            cells = trace_groups.under_common_names(group)
         verdicts = verify_cells(cells, rules)
     objects = tuple(group.cells.objects)
     for number, violations in violations_in(verdicts, len(traces)):
         place, trace = traces[group.order[number]]
-        own = under_own_names(violations, objects, tuple(trace.objects))
+        own = trace_groups.under_own_names(violations, objects, tuple(trace.objects))
         answers[place] = Verdict(trace.id, own)
 
 
@@ -238,5 +232,5 @@ def _verify_block_group(
     for number, violations in violations_in(verdicts, len(traces)):
         trace = traces[number]
         own = presence.objects_of(trace) if violations else ()
-        violations = under_own_names(violations, group.objects, own)
+        violations = trace_groups.under_own_names(violations, group.objects, own)
         answers[trace] = Verdict(presence.names[trace], violations)

@@ -25,13 +25,12 @@ _Key = tuple[object, ...]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Digit:
-    """Joint read's digits below ``size``: a column, or a constant for all.
+    """Joint read's numbers: a column, or a constant for all.
 
     ``meanings`` are the digits of a machine's letter that these numbers stand for.
     """
 
     key: _Key
-    size: int
     values: Array | int
     meanings: Array
 
@@ -114,12 +113,12 @@ def _digits_of(
         if isinstance(read, NumberRead):
             items = tuple([binding.objects[variable] for variable in scale(read).variables])
             key: _Key = (read.terms, read.thresholds, scale(read).variables, items)
-            digits.append(_Digit(key, read.size, reader.digits(read, binding.objects), meanings))
+            digits.append(_Digit(key, reader.digits(read, binding.objects), meanings))
         else:
             items = tuple([binding.objects[variable] for variable in read.variables])
             values = reader.given(read.name, items)
             column = values if isinstance(values, np.ndarray) else int(values)
-            digits.append(_Digit((read.name, items), len(meanings), column, meanings))
+            digits.append(_Digit((read.name, items), column, meanings))
     return digits
 
 
@@ -134,7 +133,7 @@ def _columns(read_bindings: Sequence[_ReadBinding]) -> Mapping[_Key, _Digit]:
 
 
 def _size(columns: Mapping[_Key, _Digit]) -> int:
-    return prod(digit.size for digit in columns.values())
+    return prod(len(digit.meanings) for digit in columns.values())
 
 
 def _joint_cells(layout: Layout, read_bindings: Sequence[_ReadBinding]) -> JointCells:
@@ -148,7 +147,7 @@ def _joint_cells(layout: Layout, read_bindings: Sequence[_ReadBinding]) -> Joint
         part = digit.values.astype(cells.dtype, copy=False)
         cells += part * cells.dtype.type(stride) if stride > 1 else part
         strides[key] = stride
-        stride *= digit.size
+        stride *= len(digit.meanings)
     codes = np.arange(size)
     if size > _BYTE:
         # Few of the combinations occur.
@@ -156,7 +155,7 @@ def _joint_cells(layout: Layout, read_bindings: Sequence[_ReadBinding]) -> Joint
         numbers = np.zeros(size, dtype=smallest_unsigned(len(codes)))
         numbers[codes] = np.arange(len(codes))
         cells = numbers.take(cells)
-    varying = {key: codes // strides[key] % digit.size for key, digit in columns.items()}
+    varying = {key: codes // strides[key] % len(digit.meanings) for key, digit in columns.items()}
     return JointCells(
         layout,
         cells,

@@ -34,20 +34,10 @@ class MonitorEdge:
     verdict: FourValued
 
 
-@dataclass(frozen=True, slots=True)
-class LinkedMonitor:
-    """A Mealy monitor as edges that lead to edges.
-
-    Before its first letter a monitor is at ``start``. ``edges`` are all others, by the state that
-    they lead to and the verdict there.
-    """
-
-    start: MonitorEdge
-    edges: dict[tuple[int, FourValued], MonitorEdge]
-
-
-def linked_monitor(machine: MealyMonitor) -> LinkedMonitor:
-    """Link the edges of a Mealy monitor."""
+def linked_edges(
+    machine: MealyMonitor,
+) -> tuple[MonitorEdge, dict[tuple[int, FourValued], MonitorEdge]]:
+    """Where a monitor is before its first letter, and its edges by state reached and verdict."""
     rows: list[list[MonitorEdge]] = [[] for _ in machine.successors]
     edges: dict[tuple[int, FourValued], MonitorEdge] = {}
     for state, row in enumerate(rows):
@@ -57,7 +47,7 @@ def linked_monitor(machine: MealyMonitor) -> LinkedMonitor:
                 edges[target, verdict] = MonitorEdge(rows[target], target, verdict)
             row.append(edges[target, verdict])
     before_all: FourValued = "satisfied" if machine.accepting_sink == 0 else "holds so far"
-    return LinkedMonitor(MonitorEdge(rows[0], 0, before_all), edges)
+    return MonitorEdge(rows[0], 0, before_all), edges
 
 
 def four_valued(machine: MealyMonitor, state: int, *, accepted: bool) -> FourValued:

@@ -10,14 +10,8 @@ from operator import itemgetter
 from typing import Any, TypeAlias
 
 from rulec.logic.kleene import Unknown, weighted_sum
-from rulec.monitoring.online.encoding.encoded_values import (
-    MISSING,
-    Breakpoints,
-    Encoded,
-    MonitorInput,
-    encoded_default,
-    values_at,
-)
+from rulec.monitoring.online.encoding import encoded_values
+from rulec.monitoring.online.encoding.encoded_values import Encoded, MonitorInput
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView
@@ -51,7 +45,7 @@ class GroupLetters:
         for (name, items), (part, place) in shape.places.items():
             declaration = shape.vocabulary.declarations[name]
             if isinstance(declaration, Enumeration) and (name, items) not in read:
-                values = frozenset([*declaration.values, MISSING])
+                values = frozenset([*declaration.values, encoded_values.MISSING])
                 self._unread.append((part, slice(place, place + 1), values))
         self._by_world: dict[tuple[Encoded, ...], list[_ReadLetters]] = {}
 
@@ -87,7 +81,7 @@ class _LetterTable(dict[Any, int]):
         group: RuleGroup,
         own: Sequence[MonitorInput],
         others: Mapping[MonitorInput, Any],
-        breakpoints: Breakpoints,
+        breakpoints: encoded_values.Breakpoints,
     ) -> None:
         self._group = group
         self._own = own
@@ -130,7 +124,7 @@ class _GroupReader:
                 continue
             if read.name not in shape.names:
                 declaration = shape.vocabulary.declarations[read.name]
-                default = encoded_default(declaration, shape.breakpoints)
+                default = encoded_values.encoded_default(declaration, shape.breakpoints)
                 self._not_given[read] = read.digit(default, shape.breakpoints)
                 continue
             self.read.update((read.name, items) for items in about)
@@ -177,7 +171,7 @@ def _part_column(part: int) -> _ReadColumn:
 
 def _values_column(places: Sequence[tuple[int, int]]) -> _ReadColumn:
     """The encoded values at these places, which are all in one part."""
-    part, pick = places[0][0], values_at([place for _, place in places])
+    part, pick = places[0][0], encoded_values.values_at([place for _, place in places])
     return lambda _, parts: pick(parts[part])
 
 

@@ -82,7 +82,7 @@ StepResult: TypeAlias = tuple[MonitorState, tuple[VerdictChange, ...]]
 def initial_state(bound_rules: BoundRules) -> MonitorState:
     """The monitor's state before the first state of a trace."""
     start = {
-        bound_rule.prepared.name: [bound_rule.prepared.monitor.start] * len(bound_rule.bindings)
+        bound_rule.prepared.name: [bound_rule.prepared.start] * len(bound_rule.bindings)
         for bound_rule in bound_rules.rules
     }
     return state_at(bound_rules, nodes_at(bound_rules, start), frozenset(), 0)
@@ -150,9 +150,7 @@ def carry_over(
             elif edge.verdict == "pending":
                 binding = MappingProxyType(prepared.bound(items))
                 ended.append(VerdictChange(prepared.name, binding, "pending", "violated", True))
-        entered[prepared.name] = [
-            known.get(items, prepared.monitor.start) for items in after.bindings
-        ]
+        entered[prepared.name] = [known.get(items, prepared.start) for items in after.bindings]
     return entered, ended
 
 

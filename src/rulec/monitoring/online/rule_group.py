@@ -7,7 +7,7 @@ when they are first met.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,12 +20,7 @@ from rulec.monitoring.online.encoding.encoded_values import (
     breakpoints_of,
     monitor_inputs,
 )
-from rulec.monitoring.online.four_valued import (
-    FourValued,
-    LinkedMonitor,
-    MonitorEdge,
-    linked_monitor,
-)
+from rulec.monitoring.online.four_valued import FourValued, MonitorEdge, linked_edges
 
 MOST_CACHED = 1 << 18
 """Nodes, letters and transitions that are kept before all are forgotten."""
@@ -33,10 +28,11 @@ MOST_CACHED = 1 << 18
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PreparedRule:
-    """A rule prepared for any objects."""
+    """A rule prepared for any objects: its monitor's ``start`` and ``edges``, and its inputs."""
 
     rule: CompiledRule
-    monitor: LinkedMonitor
+    start: MonitorEdge
+    edges: Mapping[tuple[int, FourValued], MonitorEdge]
     inputs: tuple[tuple[MonitorInput, DigitWeight], ...]
 
     @property
@@ -165,7 +161,7 @@ def rule_groups(rulebook: CompiledRulebook) -> RuleGroups:
     """Prepare the rules of a rulebook."""
     rules = [
         PreparedRule(
-            rule, linked_monitor(rule.machine), tuple(monitor_inputs(rule, rulebook.vocabulary))
+            rule, *linked_edges(rule.machine), tuple(monitor_inputs(rule, rulebook.vocabulary))
         )
         for rule in rulebook.rules
     ]

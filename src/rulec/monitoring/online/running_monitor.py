@@ -47,8 +47,7 @@ class Monitor:
         step_s: seconds from one state to the next; needed only by rules with bounds in seconds. If
             left out, the step that they were compiled for.
 
-    Raises:
-        RulecError: R0507 if a rule was compiled for another step and cannot be compiled again.
+    Raises RulecError R0507 if a rule was compiled for another step and cannot be compiled again.
     """
 
     def __init__(self, rulebook: CompiledRulebook, step_s: Fraction | float | None = None) -> None:
@@ -107,12 +106,9 @@ class Monitor:
                 among them has left; if it comes back later it begins anew.
             place: where the state was read, for messages.
 
-        Returns:
-            The verdicts as of this state, and what has changed.
-
-        Raises:
-            RulecError: R0501 to R0505 or R0508 if the state does not fit the rulebook, as in
-                ``verify``. Then the monitor is as if there had been no such state.
+        The result are the verdicts as of this state, and what has changed. Raises RulecError R0501
+        to R0505 or R0508 if the state does not fit the rulebook, as in ``verify``; then the monitor
+        is as if there had been no such state.
         """
         current, number, _, cache = self._now
         same_objects = objects == current.bound_rules.objects
@@ -202,8 +198,7 @@ class Monitor:
             snapshot: what its ``snapshot`` has returned, or JSON has made of that.
             place: where it was read, for messages.
 
-        Raises:
-            RulecError: R0510 if this is no snapshot, one of other rules, or damaged.
+        Raises RulecError R0510 if this is no snapshot, one of other rules, or damaged.
         """
         saved, step_s = from_data(snapshot, rulebook, place)
         monitor = cls(rulebook, step_s)

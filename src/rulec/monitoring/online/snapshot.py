@@ -177,12 +177,14 @@ def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[Monit
     """Edges of exactly these bindings. Raises LookupError or ValueError otherwise."""
     edges: dict[str, list[MonitorEdge]] = {}
     for bound_rule, rule in zip(bound_rules.rules, saved.rules, strict=True):
-        name, monitor = bound_rule.prepared.name, bound_rule.prepared.monitor
+        prepared = bound_rule.prepared
         by_objects = {binding.objects: binding for binding in rule.bindings}
-        if rule.rule != name or len(rule.bindings) != len(bound_rule.bindings):
+        if rule.rule != prepared.name or len(rule.bindings) != len(bound_rule.bindings):
             raise ValueError
         bindings = [by_objects[items] for items in bound_rule.bindings]
-        edges[name] = [monitor.edges[binding.state, binding.verdict] for binding in bindings]
+        edges[prepared.name] = [
+            prepared.edges[binding.state, binding.verdict] for binding in bindings
+        ]
     return edges
 
 

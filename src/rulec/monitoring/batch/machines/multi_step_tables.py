@@ -114,10 +114,10 @@ def _after(last: Array, successors: Rows, length: int, begins: int) -> Array:
     """Entries of ``last`` for all words of ``length`` letters."""
     if length == 1:
         return last[:begins].ravel()
-    n_continuing = np.array(successors, dtype=np.uint16)
-    before = n_continuing[:begins]
+    onward = np.array(successors, dtype=np.uint16)
+    before = onward[:begins]
     for _ in range(length - 2):
-        before = n_continuing[before].reshape(begins, -1)
+        before = onward[before].reshape(begins, -1)
     return last[before].ravel()
 
 
