@@ -10,8 +10,8 @@ import rulec
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Constant
+from rulec.monitoring.online.monitor_sources import replay_trace
 from rulec.monitoring.online.monitor_state import SoFar
-from rulec.monitoring.online.replay import replay_trace
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verdict import Violation
 from rulec.rulebook.loader import parse_rulebook

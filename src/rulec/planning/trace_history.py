@@ -13,9 +13,8 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.printing import number_in_words
-from rulec.monitoring.online.replay import replay_trace
+from rulec.monitoring.online.monitor_sources import read_saved, replay_trace
 from rulec.monitoring.online.running_monitor import Monitor
-from rulec.monitoring.online.snapshot_file import read_saved
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import CarriedState
 from rulec.planning.planning_messages import UNFITTING_PAST

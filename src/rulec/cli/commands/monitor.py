@@ -59,23 +59,22 @@ def command(
     could not be judged. With --save the trace is not over, and what is pending is no violation.
     """
     # Monitors and the reader of states, 60 ms: not for --help.
-    from rulec.monitoring.online.replay import answer
+    from rulec.monitoring.online import monitor_sources
     from rulec.monitoring.online.running_monitor import Monitor
-    from rulec.monitoring.online.snapshot_file import read_saved, saved_at_the_end, step_of
     from rulec.report.verdicts import monitor_json, monitor_lines
     from rulec.trace.formats.live_states import read_live
 
-    saved = None if restore is None else read_saved(restore)
-    step_s = step_s or step_of(saved)
+    saved = None if restore is None else monitor_sources.read_saved(restore)
+    step_s = step_s or monitor_sources.step_of(saved)
     rules = open_session(at).compile_rulebook(rulebook, step_s=step_s)
     if restore is None:
         monitor = Monitor(rules, step_s)
     else:
         monitor = Monitor.restore(rules, saved, SourceLocation(str(restore)))
     complaints, refused = Complaints(), False
-    with saved_at_the_end(monitor, save):
+    with monitor_sources.saved_at_the_end(monitor, save):
         for live in read_live(sys.stdin.buffer, "standard input"):
-            result = answer(monitor, live)
+            result = monitor_sources.answer(monitor, live)
             if isinstance(result, RulecError):
                 refused = True
                 complaints.add(result)

@@ -41,36 +41,32 @@ LetteredMachine = tuple[MealyMonitor, tuple[int, ...]]
 """A machine, and for each cell the class of the letter that the machine reads there."""
 
 
-def join_machines(
-    machines: Sequence[LetteredMachine], most_entries: int = MOST_ENTRIES
-) -> Iterator[JointMachine]:
+def join_machines(machines: Sequence[LetteredMachine]) -> Iterator[JointMachine]:
     """Join neighbouring machines into products, in their order.
 
-    Neighbours are joined as long as what comes out has no more than ``most_entries``; a machine
+    Neighbours are joined as long as what comes out has no more than ``MOST_ENTRIES``; a machine
     that is larger by itself stays alone.
     """
     for start in range(0, len(machines), MOST_VERDICTS):
         members = tuple(range(start, min(start + MOST_VERDICTS, len(machines))))
-        everything = _join(members, tuple([machines[member] for member in members]), most_entries)
-        if everything is not None:
-            yield everything
+        joint = _joined(members, machines)
+        if joint is not None:
+            yield joint
         else:
-            yield from _one_by_one(members, machines, most_entries)
+            yield from _one_by_one(members, machines)
 
 
 def _one_by_one(
-    members: Sequence[int], machines: Sequence[LetteredMachine], most_entries: int
+    members: Sequence[int], machines: Sequence[LetteredMachine]
 ) -> Iterator[JointMachine]:
     joint: JointMachine | None = None
     for place in members:
         larger = None
         if joint is not None:
-            together = (*joint.members, place)
-            joined = tuple([machines[member] for member in together])
-            larger = _join(together, joined, most_entries)
+            larger = _joined((*joint.members, place), machines)
             if larger is None:
                 yield joint
-        joint = larger or _join((place,), (machines[place],), most_entries)
+        joint = larger or _joined((place,), machines)
         if joint is None:
             machine, letters = machines[place]
             outputs = tuple(tuple(map(int, row)) for row in machine.outputs)
@@ -79,10 +75,12 @@ def _one_by_one(
         yield joint
 
 
+def _joined(members: tuple[int, ...], machines: Sequence[LetteredMachine]) -> JointMachine | None:
+    return _join(members, tuple([machines[member] for member in members]))
+
+
 @lru_cache(maxsize=256)
-def _join(
-    members: tuple[int, ...], machines: tuple[LetteredMachine, ...], most_entries: int
-) -> JointMachine | None:
+def _join(members: tuple[int, ...], machines: tuple[LetteredMachine, ...]) -> JointMachine | None:
     """Minimal product of machines; None if it gets too large.
 
     Cached: many traces come in chunks, each of which needs the same product.
@@ -95,7 +93,7 @@ def _join(
     waiting = list(states)
     while waiting:
         state = waiting.pop(0)
-        if len(states) * len(distinct) > 4 * most_entries:
+        if len(states) * len(distinct) > 4 * MOST_ENTRIES:
             return None
         successors.append([])
         verdicts.append([])
@@ -115,7 +113,7 @@ def _join(
     smaller, outputs = minimise(successors, verdicts, 0)
     effects = list(zip(*smaller, *outputs, strict=True))
     numbers = {effect: number for number, effect in enumerate(dict.fromkeys(effects))}
-    if len(smaller) * len(numbers) > most_entries:
+    if len(smaller) * len(numbers) > MOST_ENTRIES:
         return None
     kept = [effects.index(effect) for effect in numbers]
     letter_of = dict(zip(distinct, map(numbers.__getitem__, effects), strict=True))
