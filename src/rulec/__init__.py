@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRule as CompiledRule
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook as CompiledRulebook
     from rulec.automata.mealy_monitor import MealyMonitor as MealyMonitor
-    from rulec.book_tests.edge_coverage import RuleCoverage as RuleCoverage
-    from rulec.book_tests.edge_coverage import UncoveredEdge as UncoveredEdge
+    from rulec.book_tests.example_coverage import RuleCoverage as RuleCoverage
+    from rulec.book_tests.example_coverage import UncoveredEdge as UncoveredEdge
     from rulec.book_tests.example_runs import ExampleOutcome as ExampleOutcome
     from rulec.book_tests.example_runs import ExampleRun as ExampleRun
     from rulec.diagnostics import Diagnostic as Diagnostic
@@ -112,7 +112,7 @@ _HOME = {
     "write_compiled write_traces",
     "rulec.automata.bundle.compiled_rulebook": "CompiledRule CompiledRulebook",
     "rulec.automata.mealy_monitor": "MealyMonitor",
-    "rulec.book_tests.edge_coverage": "RuleCoverage UncoveredEdge",
+    "rulec.book_tests.example_coverage": "RuleCoverage UncoveredEdge",
     "rulec.book_tests.example_runs": "ExampleOutcome ExampleRun",
     "rulec.diagnostics": "Diagnostic Label RulecError SourceLocation",
     "rulec.diagnostics.code": "Code",

@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rulec import compile_rulebook
+from rulec.book_tests.example_coverage import uncovered_verdicts, verdicts
 from rulec.book_tests.example_runs import run_rulebook_examples
-from rulec.book_tests.verdict_coverage import uncovered_verdicts, verdicts
 from rulec.rulebook.loader import parse_rulebook
 
 HEAD = "rulebook sample\nsignal p, q default false\nquantity v in m default 0\n"

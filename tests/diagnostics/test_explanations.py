@@ -10,7 +10,7 @@ import pytest
 
 import rulec
 from rulec import compile_rulebook, find_maneuvers
-from rulec.book_tests.verdict_coverage import uncovered_verdicts
+from rulec.book_tests.example_coverage import uncovered_verdicts
 from rulec.diagnostics import RulecError
 from rulec.monitoring.verify import verify_or_reason
 from rulec.partition import navigation_graph

@@ -4,7 +4,7 @@ import pytest
 
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.automata.compiler import compile_rulebook
-from rulec.book_tests.edge_coverage import coverage
+from rulec.book_tests.example_coverage import coverage
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.diagnostics import RulecError
 from rulec.monitoring.verify import verify

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
-from rulec.book_tests.edge_coverage import coverage
+from rulec.book_tests.example_coverage import coverage
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.report.tests.example_text import missing_example

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rulec.analysis.lineage.rule_lineage import BookLineage
     from rulec.api.rulebook_compilation import Rules
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.book_tests.edge_coverage import RuleCoverage
+    from rulec.book_tests.example_coverage import RuleCoverage
     from rulec.book_tests.example_runs import ExampleRun
     from rulec.diagnostics import Diagnostic
     from rulec.diagnostics.code import Code
@@ -116,7 +116,7 @@ class RulebookVerbs(SessionSettings):
 
     def coverage(self, run: ExampleRun) -> tuple[RuleCoverage, ...]:
         """Measure what the examples of a run cover, rule by rule."""
-        from rulec.book_tests.edge_coverage import coverage
+        from rulec.book_tests.example_coverage import coverage
 
         return coverage(run)
 

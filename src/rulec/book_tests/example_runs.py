@@ -98,13 +98,11 @@ def run_rulebook_examples(
         _outcome(rule, machine, compiled, example, number)
         for rule, machine in zip(rulebook.rules, compiled.rules, strict=True)
         for number, example in enumerate(rule.examples, 1)
-        if pattern is None or _is_like(pattern, rule.name, example.label or str(number))
+        if pattern is None
+        or fnmatchcase(rule.name, pattern)
+        or fnmatchcase(f"{rule.name}/{example.label or number}", pattern)
     )
     return ExampleRun(rulebook, compiled, outcomes, warnings, pattern)
-
-
-def _is_like(pattern: str, rule: str, example: str) -> bool:
-    return fnmatchcase(rule, pattern) or fnmatchcase(f"{rule}/{example}", pattern)
 
 
 def _outcome(
@@ -136,15 +134,8 @@ def _no_state(rule: Rule, example: Example, error: ImpossibleStateError) -> Rule
     (diagnostic,) = error.diagnostics
     spans = example.state_spans
     place = spans[error.number].place if spans else at(example.span)
-    note = f"in an example of rule `{rule.name}`"
-    return RulecError(
-        replace(
-            diagnostic,
-            code=CONTRADICTORY_STATE.code,
-            place=place,
-            notes=(*diagnostic.notes[:1], note),
-        )
-    )
+    notes = (*diagnostic.notes[:1], f"in an example of rule `{rule.name}`")
+    return RulecError(replace(diagnostic, code=CONTRADICTORY_STATE.code, place=place, notes=notes))
 
 
 def example_trace(rule: Rule, example: Example) -> Trace:
@@ -177,11 +168,9 @@ def example_warnings(
     Raises RulecError.
     """
     # A rule with bounds in seconds but no examples need not fit the step that those would have.
-    rules = tuple(
-        [rule for rule in rulebook.rules if rule.examples or not has_seconds(rule.formula)]
-    )
+    rules = tuple(rule for rule in rulebook.rules if rule.examples or not has_seconds(rule.formula))
     outcomes = run_rulebook_examples(replace(rulebook, rules=rules), compiled(rules)).outcomes
-    return [example_warning(rule) for rule in outcomes if not rule.passed]
+    return [example_warning(outcome) for outcome in outcomes if not outcome.passed]
 
 
 def example_warning(outcome: ExampleOutcome) -> Diagnostic:
@@ -189,25 +178,26 @@ def example_warning(outcome: ExampleOutcome) -> Diagnostic:
     rule, example = outcome.rule, outcome.example
     name = f"`{example.label}`" if example.label else f"number {outcome.number}"
     claim, truth = ("accept", "rejects") if example.accepts else ("reject", "accepts")
-    labels: tuple[Label, ...] = ()
-    notes: tuple[str, ...] = ()
-    if outcome.lost_after is not None:
-        notes = (
-            f"the rule cannot be kept any more after state {outcome.lost_after}, counted from 0",
-        )
+    labels: list[Label] = []
+    notes = []
+    after = outcome.lost_after
+    if after is not None:
+        notes.append(f"the rule cannot be kept any more after state {after}, counted from 0")
         if example.state_spans:
-            place = example.state_spans[outcome.lost_after].place
-            labels = (Label(place, "cannot be kept any more after this state"),)
+            place = example.state_spans[after].place
+            labels.append(Label(place, "cannot be kept any more after this state"))
     elif not outcome.accepted:
-        end = "the example did not end here"
-        if not outcome.ends:
-            end = "the last state did not go on for ever"
-        notes = (f"the rule could still be kept, if {end}",)
+        end = (
+            "the example did not end here"
+            if outcome.ends
+            else "the last state did not go on for ever"
+        )
+        notes.append(f"the rule could still be kept, if {end}")
     return EXAMPLE_FAILED.at(
         example.span,
         f"example {name} of rule `{rule.name}` says `{claim}`, but the rule {truth} it",
         help="either the formula or the example does not say what is meant",
-        labels=labels,
-        notes=notes,
+        labels=tuple(labels),
+        notes=tuple(notes),
         severity="warning",
     )

@@ -74,8 +74,7 @@ def command(
     could not be read or compiled.
     """
     # Rulebooks and their automata, 130 ms: not for --help.
-    from rulec.book_tests.edge_coverage import coverage
-    from rulec.book_tests.verdict_coverage import uncovered_verdicts
+    from rulec.book_tests.example_coverage import coverage, uncovered_verdicts
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import shortcomings
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rulec.book_tests.edge_coverage import RuleCoverage
+from rulec.book_tests.example_coverage import RuleCoverage
 from rulec.book_tests.example_runs import ExampleRun
 from rulec.report.tests.example_text import as_text
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
-from rulec.book_tests.edge_coverage import RuleCoverage, percent
+from rulec.book_tests.example_coverage import RuleCoverage, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from rulec.automata.thresholds import exact
-from rulec.book_tests.edge_coverage import RuleCoverage, UncoveredEdge, percent
+from rulec.book_tests.example_coverage import RuleCoverage, UncoveredEdge, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_warning
 from rulec.diagnostics import Diagnostic
 from rulec.logic.constant_folding import fold_constants

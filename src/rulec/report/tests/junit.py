@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from rulec.book_tests.edge_coverage import RuleCoverage, percent
+from rulec.book_tests.example_coverage import RuleCoverage, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.report.findings.diagnostics_text import render_diagnostics

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from hypothesis.strategies import composite
 
 from rulec import compile_rulebook
-from rulec.book_tests.edge_coverage import coverage, percent
+from rulec.book_tests.example_coverage import coverage, percent
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom
 from rulec.logic.printing import formula_text

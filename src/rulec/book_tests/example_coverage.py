@@ -1,17 +1,19 @@
-"""Coverage of a rule by examples: monitor edges and truth values."""
+"""Coverage of rules by examples: monitor edges, truth values, and verdicts."""
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.axiom_instances import axiom_instances
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.book_tests.book_test_messages import unexercised
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_trace, own_names
+from rulec.diagnostics import Diagnostic
 from rulec.logic.formula import Formula, Proposition, atoms_of
 from rulec.logic.kleene import holds
-from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verify import letter_reader_of
 from rulec.rulebook.rulebook_model import Rule
 from rulec.value_display import short_repr
@@ -78,13 +80,20 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
     Where a pattern chose among the examples, rules without a chosen one are left out.
     """
     covered = []
-    for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
-        outcomes = [outcome for outcome in run.outcomes if outcome.rule is rule]
+    for rule, compiled, outcomes in _by_rule(run):
         if outcomes or run.pattern is None:
             known = axiom_instances(rule.variables, run.rulebook.axioms, run.rulebook.vocabulary)
             axioms = [outcome.formula for outcome in known]
             covered.append(_coverage(rule, compiled, outcomes, run.compiled, axioms))
     return tuple(covered)
+
+
+def _by_rule(run: ExampleRun) -> Iterator[tuple[Rule, CompiledRule, list[ExampleOutcome]]]:
+    outcomes: defaultdict[int, list[ExampleOutcome]] = defaultdict(list)
+    for outcome in run.outcomes:
+        outcomes[id(outcome.rule)].append(outcome)
+    for rule, compiled in zip(run.rulebook.rules, run.compiled.rules, strict=True):
+        yield rule, compiled, outcomes[id(rule)]
 
 
 def _coverage(
@@ -94,13 +103,19 @@ def _coverage(
     rulebook: CompiledRulebook,
     axioms: Sequence[Formula],
 ) -> RuleCoverage:
-    machine, vocabulary = compiled.machine, rulebook.vocabulary
+    machine = compiled.machine
     letters = possible_letters(machine)
     paths = _shortest_paths(machine, letters)
-    edges = list(_edges(machine, paths, letters))
+    sinks = (machine.rejecting_sink, machine.accepting_sink)
+    edges = [
+        (state, symbol)
+        for state in sorted(paths)
+        if state not in sinks
+        for symbol in sorted(letters)
+    ]
     taken = {edge for outcome in outcomes for edge in _taken(machine, outcome.word)}
     states = {
-        symbol: coverage_witness(letter, machine, rule.formula, vocabulary, axioms)
+        symbol: coverage_witness(letter, machine, rule.formula, rulebook.vocabulary, axioms)
         for symbol, letter in letters.items()
     }
     missing_edges = tuple(
@@ -113,37 +128,22 @@ def _coverage(
         for source, symbol in edges
         if (source, symbol) not in taken
     )
-    propositions = list(dict.fromkeys(atoms_of(rule.formula)))
     values = [
         (proposition, value)
-        for proposition, possible in truth_values(propositions, machine).items()
+        for proposition, possible in truth_values(
+            list(dict.fromkeys(atoms_of(rule.formula))), machine
+        ).items()
         for value in possible
     ]
-    seen = {
-        (proposition, holds(proposition, own_names(rule), moment))
-        for moment in _moments(rule, outcomes, rulebook)
-        for proposition, _ in values
-    }
-    missing_values = tuple(value for value in values if value not in seen)
-    return RuleCoverage(rule.name, len(edges), missing_edges, len(values), missing_values)
-
-
-def _moments(
-    rule: Rule, outcomes: Sequence[ExampleOutcome], rulebook: CompiledRulebook
-) -> Iterator[StateView]:
+    seen = set()
     for outcome in outcomes:
         trace = example_trace(rule, outcome.example)
         reader = letter_reader_of(trace, rulebook)
-        yield from (reader.view(number) for number in range(len(trace.states)))
-
-
-def _edges(
-    machine: MealyMonitor, reachable: Container[int], symbols: Iterable[int]
-) -> Iterator[tuple[int, int]]:
-    for state in range(len(machine.successors)):
-        if state not in (machine.rejecting_sink, machine.accepting_sink) and state in reachable:
-            for symbol in sorted(symbols):
-                yield state, symbol
+        for number in range(len(trace.states)):
+            state = reader.view(number)
+            seen |= {(atom, holds(atom, own_names(rule), state)) for atom, _ in values}
+    missing_values = tuple(value for value in values if value not in seen)
+    return RuleCoverage(rule.name, len(edges), missing_edges, len(values), missing_values)
 
 
 def _taken(machine: MealyMonitor, word: Sequence[int]) -> Iterator[tuple[int, int]]:
@@ -164,3 +164,24 @@ def _shortest_paths(machine: MealyMonitor, symbols: Iterable[int]) -> Mapping[in
                 paths[target] = (*paths[state], symbol)
                 waiting.append(target)
     return paths
+
+
+def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
+    """Warnings (R0408) about rules whose examples show one of two verdicts.
+
+    Rules with an example that fails are left out, for that has to be mended first. So is every rule
+    where a pattern chose among the examples.
+    """
+    for rule, compiled, outcomes in _by_rule(run) if run.pattern is None else ():
+        shown = {outcome.accepted for outcome in outcomes}
+        if len(shown) < 2 and all(outcome.passed for outcome in outcomes):
+            missing = verdicts(compiled.machine) - shown
+            if missing:
+                yield unexercised(rule, missing, any_examples=bool(outcomes))
+
+
+def verdicts(machine: MealyMonitor) -> set[bool]:
+    """Verdicts that a rule can have: accepted (True), rejected (False), or both."""
+    symbols = possible_letters(machine)
+    reachable = _shortest_paths(machine, symbols)
+    return {machine.outputs[state][symbol] for state in reachable for symbol in symbols}
