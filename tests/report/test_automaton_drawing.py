@@ -8,7 +8,6 @@ from hypothesis import given
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
-from rulec.report.automata.automaton_dot import as_dot
 from rulec.report.automata.automaton_layout import (
     LINE,
     MOST_STATES,
@@ -18,6 +17,7 @@ from rulec.report.automata.automaton_layout import (
 )
 from rulec.report.automata.automaton_model import Automaton, Transition, automaton_of
 from rulec.report.automata.automaton_picture import as_picture
+from rulec.report.automata.automaton_text import as_dot
 from rulec.report.pictures.drawing.canvas import text_width
 from rulec.report.pictures.drawing.svg import as_svg
 from support.builders.rulebooks import P, Q, book, compile_here, rule

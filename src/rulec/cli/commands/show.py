@@ -164,10 +164,9 @@ def _compiled(book: Rulebook, rule: Rule, compiled: CompiledRulebook | None) -> 
 
 def _automaton(automaton: Automaton, output_format: str, name: str, width: int) -> str:
     # Pictures of automata, 40 ms: only with --automaton.
-    from rulec.report.automata.automaton_dot import as_dot
     from rulec.report.automata.automaton_layout import is_too_large
     from rulec.report.automata.automaton_picture import as_picture
-    from rulec.report.automata.automaton_text import as_text
+    from rulec.report.automata.automaton_text import as_dot, as_text
     from rulec.report.pictures.drawing.svg import as_svg
 
     if output_format == "text":

@@ -17,11 +17,10 @@ Fate = Literal["open", "violated", "satisfied"]
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """Some steps from one state to another.
+    """Steps between two states; ``accepted`` judges a trace that ends there.
 
     ``condition`` is what holds of the state of the world that is read, ``otherwise`` that this is
-    easier said as what the other transitions from there are not. ``accepted`` is the verdict on a
-    trace that ends with such a step.
+    easier said as what the other transitions from there are not.
     """
 
     source: int

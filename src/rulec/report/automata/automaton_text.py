@@ -1,11 +1,11 @@
-"""A rule's automaton as lines of text."""
+"""A rule's automaton as lines of text, and in the language of Graphviz."""
 
 from __future__ import annotations
 
 from textwrap import wrap
 
-from rulec.report.automata.automaton_model import Automaton, Transition
-from rulec.report.text.terminal_text import styled, table_lines
+from rulec.report.automata.automaton_model import Automaton, Fate, Transition
+from rulec.report.text.terminal_text import styled, table_lines, visible
 
 WORDS = {True: "accepted", False: "rejected"}
 
@@ -60,3 +60,43 @@ def _leaving(transitions: list[Transition], state: int, width: int) -> list[str]
 def _broken(label: str, room: int) -> list[str]:
     lines = wrap(label, room, subsequent_indent="  ")
     return lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "  … (all: --json)"]
+
+
+_WIDEST = 32
+"""Labels are broken at so many characters."""
+
+_DOT_NAMES: dict[Fate, str] = {
+    "open": "{}",
+    "violated": "{}\\nviolated\\nfor good",
+    "satisfied": "{}\\nsatisfied\\nfor good",
+}
+
+_DOT_STYLES: dict[Fate, str] = {
+    "open": "shape=circle",
+    "violated": 'shape=octagon, style=filled, fillcolor="#f3c2a8"',
+    "satisfied": 'shape=box, style="rounded,filled", fillcolor="#bcd9ee"',
+}
+
+
+def as_dot(automaton: Automaton, name: str) -> str:
+    """A digraph in DOT; accepting edges are solid, rejecting ones dashed."""
+    lines = [
+        f"// {visible(name)}: a trace that ends with a dashed edge is rejected.",
+        f'digraph "{_escaped(name)}" {{',
+        "  rankdir=LR",
+        '  node [fontname="sans-serif"]',
+        '  edge [fontname="sans-serif", fontsize=11]',
+        '  start [shape=point, width=0.1, label=""]',
+        "  start -> 0",
+    ]
+    for state, fate in enumerate(automaton.fates):
+        lines.append(f'  {state} [label="{_DOT_NAMES[fate].format(state)}", {_DOT_STYLES[fate]}]')
+    for transition in automaton.transitions:
+        style = "" if transition.accepted else ', style=dashed, color="#b34700"'
+        label = "\\n".join(_escaped(line) for line in wrap(transition.label, _WIDEST))
+        lines.append(f'  {transition.source} -> {transition.target} [label="{label}"{style}]')
+    return "\n".join([*lines, "}"])
+
+
+def _escaped(text: str) -> str:
+    return visible(text).replace("\\", "\\\\").replace('"', '\\"')

@@ -13,7 +13,7 @@ from rulec.monitoring.state_view import value_in
 from rulec.monitoring.verdict import Verdict, Violation
 from rulec.report.verdicts.violation_table import shown
 from rulec.trace import State, Trace, Value
-from rulec.vocabulary import Declaration, Enumeration, Quantity
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,56 +72,62 @@ def ribbon(
     What the trace does not speak of has a row only if a rule that is violated reads it. ``only``:
     the objects to tell of, if not of all.
     """
-    wanted = set(only) or set(trace.objects)
+    shown_objects = set(only) or set(trace.objects)
     violations = tuple(
         violation
         for violation in verdict.violations
-        if wanted.issuperset(violation.binding.values())
+        if shown_objects.issuperset(violation.binding.values())
     )
-    read = dict.fromkeys(name for rule in rules.rules for name in names_in(rule.formula))
     violated = {violation.rule for violation in violations}
-    matters = {
-        name for rule in rules.rules if rule.name in violated for name in names_in(rule.formula)
-    }
+    # Name -> whether a violated rule reads it.
+    read: dict[str, bool] = {}
+    for rule in rules.rules:
+        for name in names_in(rule.formula):
+            read[name] = read.get(name, False) or rule.name in violated
     rows = []
     left_out = 0
     for objects in [(), *((name,) for name in trace.objects), *_pairs(trace, read)]:
-        for name in read if wanted.issuperset(objects) else ():
-            row = _row(trace, rules, name, objects)
-            if row is not None:
-                told = name in matters or any(_said(state, name, objects) for state in trace.states)
-                rows += [row] if told else []
-                left_out += not told
+        for name, matters in read.items() if shown_objects.issuperset(objects) else ():
+            row = _row(trace, rules.vocabulary, name, objects)
+            if row is None:
+                continue
+            if matters or any(_said(state, name, objects) for state in trace.states):
+                rows.append(row)
+            else:
+                left_out += 1
     return Ribbon(trace, tuple(rows), left_out, violations)
 
 
 def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
     """Pairs of objects mentioned in some state; others have defaults alone."""
-    values = (state.get(name) for name in names for state in trace.states)
-    result = {
-        (one, other): None
-        for value in values
-        if isinstance(value, Mapping)
-        for one, inner in value.items()
+    pairs = {
+        (first, second)
+        for name in names
+        for state in trace.states
+        if isinstance(value := state.get(name), Mapping)
+        for first, inner in value.items()
         if isinstance(inner, Mapping)
-        for other in inner
+        for second in inner
     }
     order = {name: place for place, name in enumerate(trace.objects)}
-    return sorted(result, key=lambda pair: (order[pair[0]], order[pair[1]]))
+    return sorted(pairs, key=lambda pair: (order[pair[0]], order[pair[1]]))
 
 
 def _row(
-    trace: Trace, rules: CompiledRulebook, name: str, objects: tuple[str, ...]
+    trace: Trace, vocabulary: Vocabulary, name: str, objects: tuple[str, ...]
 ) -> RibbonRow | None:
-    vocabulary = rules.vocabulary
     declaration = vocabulary.declarations[name]
     if len(declaration.parameters) != len(objects) or not all(
         vocabulary.is_subtype(trace.objects[item], kind)
         for item, kind in zip(objects, declaration.parameters, strict=True)
     ):
         return None
+    presences = [trace.present.get(item, (0, len(trace.states))) for item in objects]
     values = [
-        _value(trace, number, name, objects, declaration) for number in range(len(trace.states))
+        value_in(state, name, objects, declaration)
+        if all(first <= number <= last for first, last in presences)
+        else None
+        for number, state in enumerate(trace.states)
     ]
     if all(value is None for value in values):
         return None
@@ -134,17 +140,6 @@ def _said(state: State, name: str, objects: Sequence[str]) -> bool:
     for item in objects:
         value = value.get(item) if value is not None else None
     return value is not None
-
-
-def _value(
-    trace: Trace, number: int, name: str, objects: Sequence[str], declaration: Declaration
-) -> Value | None:
-    whole = (0, len(trace.states) - 1)
-    for item in objects:
-        first, last = trace.present.get(item, whole)
-        if not first <= number <= last:
-            return None
-    return value_in(trace.states[number], name, objects, declaration)
 
 
 def _runs(values: Sequence[Value | None]) -> Iterator[ValueRun]:

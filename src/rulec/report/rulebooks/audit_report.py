@@ -35,33 +35,32 @@ def render(
     audits: Sequence[Audit], compared: Compared, output_format: str, width: int = PAGE_WIDTH
 ) -> str:
     """All audits as ``text`` of a width, ``markdown`` or ``json``."""
+    pairs = [(audit, compared.get(audit.rulebook)) for audit in audits]
     match output_format:
         case "json":
-            return _as_json(audits, compared)
+            return as_indented(AuditDocument(audits=[_with_changes(*pair) for pair in pairs]))
         case "markdown":
-            return "\n\n".join(
-                _as_markdown(audit, compared.get(audit.rulebook)) for audit in audits
-            )
+            return "\n\n".join(_as_markdown(*pair) for pair in pairs)
         case _:
-            return "\n\n\n".join(
-                _as_text(audit, compared.get(audit.rulebook), width) for audit in audits
-            )
+            return "\n\n\n".join(_as_text(*pair, width) for pair in pairs)
+
+
+def _with_changes(audit: Audit, changes: AuditChanges | None) -> ComparedAudit:
+    known = {field.name: getattr(audit, field.name) for field in fields(audit)}
+    return ComparedAudit(**known, changes=changes)
 
 
 def counts(audit: Audit) -> Iterator[tuple[str, str]]:
     """Counts of the audit, each with its name in words."""
-    audit_counts = audit.counts
-    of_all = f"of {audit_counts.rules:,}"
-    yield (
-        "rules",
-        f"{audit_counts.rules:,} ({audit_counts.hard:,} hard, {audit_counts.soft:,} soft)",
-    )
-    yield "with a provision cited", f"{audit_counts.cited:,} {of_all}"
-    yield "with examples for both verdicts", f"{audit_counts.tested:,} {of_all}"
-    yield "verified in the law itself", f"{audit_counts.verified:,} {of_all}"
-    yield "examples", f"{audit_counts.examples:,}"
-    yield "provisions of the law", f"{audit_counts.articles:,}"
-    yield "words of the vocabulary in use", f"{audit_counts.words_used:,} of {audit_counts.words:,}"
+    n = audit.counts
+    of_all = f"of {n.rules:,}"
+    yield "rules", f"{n.rules:,} ({n.hard:,} hard, {n.soft:,} soft)"
+    yield "with a provision cited", f"{n.cited:,} {of_all}"
+    yield "with examples for both verdicts", f"{n.tested:,} {of_all}"
+    yield "verified in the law itself", f"{n.verified:,} {of_all}"
+    yield "examples", f"{n.examples:,}"
+    yield "provisions of the law", f"{n.articles:,}"
+    yield "words of the vocabulary in use", f"{n.words_used:,} of {n.words:,}"
 
 
 def law_of(audit: Audit) -> str:
@@ -75,10 +74,9 @@ def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
     rows = [("law", law_of(audit)), ("judged by the law of", audit.at), *counts(audit)]
     head = styled(visible(f"{audit.rulebook}{title}"), "bold")
     blocks = ["\n".join([head, *fact_lines(rows, width)])]
-    for kind, audit_findings in groupby(audit.findings, key=lambda finding: finding.kind):
-        blocks.append(
-            f"{styled(kind, 'bold')}: {KINDS[kind]}\n{_lines(list(audit_findings), width)}"
-        )
+    for kind, findings in groupby(audit.findings, key=lambda finding: finding.kind):
+        title = f"{styled(kind, 'bold')}: {KINDS[kind]}"
+        blocks.append(f"{title}\n{_lines(list(findings), width)}")
     for book, articles in groupby(audit.articles, key=lambda article: article.book):
         title = f"{styled('provisions', 'bold')} cited in {book}, and the rules they are in"
         rows = [(article.cite, ", ".join(article.rules)) for article in articles]
@@ -88,19 +86,19 @@ def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
     return "\n\n".join(blocks)
 
 
-def _lines(audit_findings: Sequence[AuditFinding], width: int) -> str:
-    if not any(audit_finding.note for audit_finding in audit_findings):
-        names = ", ".join(visible(audit_finding.name) for audit_finding in audit_findings)
+def _lines(findings: Sequence[AuditFinding], width: int) -> str:
+    if not any(finding.note for finding in findings):
+        names = ", ".join(visible(finding.name) for finding in findings)
         return fill(names, width, initial_indent="  ", subsequent_indent="  ")
-    facts = [(audit_finding.name, audit_finding.note) for audit_finding in audit_findings]
+    facts = [(finding.name, finding.note) for finding in findings]
     return "\n".join(fact_lines(facts, width))
 
 
 def _changes_as_text(compared: AuditChanges) -> str:
     lines = [
-        f"{sign} {audit_finding.kind}: {visible(audit_finding.name)}"
-        for sign, audit_findings in (("+", compared.appeared), ("-", compared.vanished))
-        for audit_finding in audit_findings
+        f"{sign} {finding.kind}: {visible(finding.name)}"
+        for sign, findings in (("+", compared.appeared), ("-", compared.vanished))
+        for finding in findings
     ]
     title = styled("changed", "bold")
     return f"{title}: + is new, - is gone\n" + "\n".join(
@@ -110,23 +108,18 @@ def _changes_as_text(compared: AuditChanges) -> str:
 
 def _as_markdown(audit: Audit, compared: AuditChanges | None) -> str:
     title = f": {escaped(audit.title)}" if audit.title else ""
+    findings = [
+        [finding.kind, escaped(finding.name), escaped(finding.note)] for finding in audit.findings
+    ]
     blocks = [
         f"# Audit of {code(audit.rulebook)}{title}",
         f"Law: {escaped(law_of(audit))}. Judged by the law of {audit.at}.",
-        table(["count", "number"], [[name, value] for name, value in counts(audit)]),
+        table(["count", "number"], counts(audit)),
         "## Findings",
-        table(
-            ["kind", "what it is about", "note"],
-            [
-                [finding.kind, escaped(finding.name), escaped(finding.note) if finding.note else ""]
-                for finding in audit.findings
-            ],
-        )
-        if audit.findings
-        else "None.",
+        table(["kind", "what it is about", "note"], findings) if findings else "None.",
     ]
-    if audit.findings:
-        kinds = dict.fromkeys(finding.kind for finding in audit.findings)
+    if findings:
+        kinds = dict.fromkeys(kind for kind, _, _ in findings)
         blocks.append("\n".join(f"- *{kind}*: {KINDS[kind]}" for kind in kinds))
     if audit.articles:
         rows = [
@@ -141,22 +134,8 @@ def _as_markdown(audit: Audit, compared: AuditChanges | None) -> str:
 
 def _changes_as_markdown(compared: AuditChanges) -> str:
     rows = [
-        [word, audit_finding.kind, escaped(audit_finding.name)]
-        for word, audit_findings in (("new", compared.appeared), ("gone", compared.vanished))
-        for audit_finding in audit_findings
+        [word, finding.kind, escaped(finding.name)]
+        for word, findings in (("new", compared.appeared), ("gone", compared.vanished))
+        for finding in findings
     ]
     return table(["change", "kind", "what it is about"], rows) if rows else "None."
-
-
-def _as_json(audits: Sequence[Audit], compared: Compared) -> str:
-    return as_indented(
-        AuditDocument(
-            audits=[
-                ComparedAudit(
-                    **{field.name: getattr(audit, field.name) for field in fields(audit)},
-                    changes=compared.get(audit.rulebook),
-                )
-                for audit in audits
-            ]
-        )
-    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from difflib import unified_diff
 from textwrap import wrap
 
@@ -43,17 +43,14 @@ def rule_heading(rule: Rule) -> str:
 def rule_section(rule: Rule, inherited: BookLineage, vocabulary: Vocabulary) -> Iterator[Block]:
     """The section on a rule of the rulebook at a chain's end."""
     book = inherited.book
-    (history,) = [
-        rule_history for rule_history in inherited.rules if rule_history.name == rule.name
-    ]
+    history = next(history for history in inherited.rules if history.name == rule.name)
     laws = {book.name: book.law or book.title or book.name for book in inherited.books}
     elsewhere = "" if history.cited_by == book else f" of: {laws[history.cited_by]}"
     yield Heading(3, rule_heading(rule))
     if rule.says:
         yield f"> {escaped(rule.says)}"
-    yield "\n".join(
-        f"- **{name}:** {text}" for name, text in _facts(rule, history, book, elsewhere)
-    )
+    facts = _facts(rule, history, book, elsewhere)
+    yield "\n".join(f"- **{name}:** {text}" for name, text in facts)
     yield Heading(4, "In plain English")
     for phrase in (phrase_of(rule, vocabulary), *restrictions_of(rule)):
         yield _sentence(phrase)
@@ -82,9 +79,7 @@ def _facts(
     yield "Kind of rule", f"{kind}{weight}"
     if rule.level:
         yield "Level", code(rule.level)
-    objects = [
-        f"every {spoken(variable.type)} {code(variable.name)}" for variable in rule.variables
-    ]
+    objects = [f"every {spoken(item.type)} {code(item.name)}" for item in rule.variables]
     yield "Speaks of", listed(objects) if objects else "the road user in question and the world"
     yield "Certainty", CERTAINTY[rule.certainty]
     if rule.source:
@@ -104,17 +99,21 @@ def _sentence(phrase: Phrase) -> str:
 def _formula(rule: Rule, written: tree.RuleItem | None) -> Iterator[str]:
     """The formula as written, and as meant if that differs."""
     clauses = [] if written is None else clauses_of(written)
-    said = [(word, text) for word, text in clauses if word in _FORMULAS]
-    meant = [] if rule.condition is None else [("when", formula_text(rule.condition))]
-    meant.append(("require", formula_text(rule.required or rule.formula)))
-    meant += [
+    original = [(word, text) for word, text in clauses if word in _FORMULAS]
+    expanded = [] if rule.condition is None else [("when", formula_text(rule.condition))]
+    expanded.append(("require", formula_text(rule.required or rule.formula)))
+    expanded += [
         ("unless", f"{formula_text(exemption.formula)} {exemption.scope}")
         for exemption in rule.exemptions
     ]
-    yield fenced("\n".join(line for one in said for line in _clause(*one)), "rulec")
-    if said != meant:
+    yield _fenced(original)
+    if original != expanded:
         yield "With definitions, options and parameters put in:"
-        yield fenced("\n".join(line for one in meant for line in _clause(*one)), "rulec")
+        yield _fenced(expanded)
+
+
+def _fenced(clauses: Sequence[tuple[str, str]]) -> str:
+    return fenced("\n".join(line for clause in clauses for line in _clause(*clause)), "rulec")
 
 
 def _clause(word: str, text: str) -> list[str]:
@@ -128,10 +127,8 @@ def _clause(word: str, text: str) -> list[str]:
 def _example(example: Example, number: int, vocabulary: Vocabulary) -> Iterator[str]:
     word = "allowed ✔" if example.accepts else "forbidden ✘"
     name = f" ({escaped(example.label)})" if example.label else ""
-    also = listed(
-        [f"{code(object_.name)}, a {spoken(object_.type)}" for object_ in example.objects] or [""]
-    )
-    there = f" Also there: {also}." if also else ""
+    objects = [f"{code(object_.name)}, a {spoken(object_.type)}" for object_ in example.objects]
+    there = f" Also there: {listed(objects)}." if objects else ""
     yield f"**Example {number}{name}: {word}**{there}"
     shown = example_table(example, vocabulary)
     rows = [[escaped(about), *map(escaped, cells)] for about, cells in shown.rows]
@@ -145,8 +142,8 @@ def _difference(base: tree.RuleItem, history: RuleHistory) -> Iterator[str]:
     assert history.rule is not None, "an overridden rule is there"
     before, after = _by_word(base), _by_word(history.rule)
     changed = [word for word in {**before, **after} if before.get(word) != after.get(word)]
-    told = history.last.clauses
-    yield f"Changed: {listed(told)}." if told else "Nothing: it says the same again."
+    clauses = history.last.clauses
+    yield f"Changed: {listed(clauses)}." if clauses else "Nothing: it says the same again."
     if changed:
         old = [line for word in changed for line in before.get(word, [])]
         new = [line for word in changed for line in after.get(word, [])]
@@ -156,7 +153,7 @@ def _difference(base: tree.RuleItem, history: RuleHistory) -> Iterator[str]:
 
 
 def _by_word(rule: tree.RuleItem) -> dict[str, list[str]]:
-    result: dict[str, list[str]] = {}
+    lines: dict[str, list[str]] = {}
     for word, text in clauses_of(rule):
-        result.setdefault(word, []).extend(_clause(word, text))
-    return result
+        lines.setdefault(word, []).extend(_clause(word, text))
+    return lines

@@ -14,7 +14,6 @@ from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, ta
 from rulec.rulebook.loader import Loaded
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.overlay.constants_and_macros import in_force
-from rulec.rulebook.rulebook_model import Rulebook
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_in_force
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
@@ -22,19 +21,17 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 def values_section(inherited: BookLineage, at: str) -> Iterator[Block]:
     """Options and parameters that rules speak of, with all their values."""
-    constant_histories = [
-        provision
+    rows = [
+        row
         for provision in inherited.provisions
         if provision.kind != "definition" and provision.used
+        for row in _values(provision)
     ]
-    if not constant_histories:
-        return
-    yield Heading(2, "Options and parameters")
-    yield f"The value that counts on {at} is the one with a mark."
-    head = ["name", "kind", "value", "counts", "in force", "given by", "note"]
-    yield table(
-        head, (row for constant_history in constant_histories for row in _values(constant_history))
-    )
+    if rows:
+        yield Heading(2, "Options and parameters")
+        yield f"The value that counts on {at} is the one with a mark."
+        head = ["name", "kind", "value", "counts", "in force", "given by", "note"]
+        yield table(head, rows)
 
 
 def _values(constant_history: ConstantHistory) -> Iterator[list[str]]:
@@ -53,24 +50,20 @@ def _values(constant_history: ConstantHistory) -> Iterator[list[str]]:
 
 def definitions_section(inherited: BookLineage) -> Iterator[Block]:
     """Definitions that rules use, with final and earlier meanings."""
-    constant_histories = [
+    definitions = [
         provision
         for provision in inherited.provisions
         if provision.kind == "definition" and provision.used
     ]
-    if not constant_histories:
-        return
-    yield Heading(2, "Definitions")
-    for constant_history in constant_histories:
-        last = constant_history.settings[-1]
-        before = [
-            f"in {code(setting.book)} {code(setting.text)}"
-            for setting in constant_history.settings[:-1]
-        ]
+    if definitions:
+        yield Heading(2, "Definitions")
+    for definition in definitions:
+        *earlier, last = definition.settings
+        before = [f"in {code(setting.book)} {code(setting.text)}" for setting in earlier]
         was = f" It was {listed(before)}." if before else ""
         note = f" {escaped(last.note)}" if last.note else ""
-        yield f"{code(constant_history.name)} is defined by {code(last.book)}.{was}{note}"
-        yield fenced("\n".join(_definition(constant_history.head, last.text)), "rulec")
+        yield f"{code(definition.name)} is defined by {code(last.book)}.{was}{note}"
+        yield fenced("\n".join(_definition(definition.head, last.text)), "rulec")
 
 
 def _definition(head: str, text: str) -> list[str]:
@@ -106,30 +99,21 @@ def words_section(loaded: Loaded) -> Iterator[Block]:
     """Words of the vocabulary that the rules use, and axioms."""
     rulebook = loaded.rulebook
     used = used_declarations(rulebook)
-    result = [
-        declaration
-        for name, declaration in rulebook.vocabulary.declarations.items()
+    described = _descriptions(loaded)
+    rows = [
+        [code(name), _about(word), _kind(word), escaped(described.get(name, ""))]
+        for name, word in rulebook.vocabulary.declarations.items()
         if name in used
     ]
-    if result:
-        described = _descriptions(loaded)
+    if rows:
         yield Heading(2, "Vocabulary")
         yield "What the rules speak of, and what it can be; the default is in parentheses."
-        rows = (
-            [code(one.name), _about(one), _kind(one), escaped(described.get(one.name, ""))]
-            for one in result
-        )
         yield table(["word", "is about", "what it can be", "description"], rows)
-    yield from _facts(rulebook)
-
-
-def _facts(rulebook: Rulebook) -> Iterator[Block]:
     if rulebook.axioms:
         yield Heading(2, "What always holds")
         yield "Whatever the rules say, this is so in every state:"
-        yield fenced(
-            "\n".join(f"fact {formula_text(axiom.formula)}" for axiom in rulebook.axioms), "rulec"
-        )
+        axioms = [f"fact {formula_text(axiom.formula)}" for axiom in rulebook.axioms]
+        yield fenced("\n".join(axioms), "rulec")
 
 
 def _descriptions(loaded: Loaded) -> Mapping[str, str]:

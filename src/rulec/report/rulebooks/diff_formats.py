@@ -1,18 +1,22 @@
-"""The difference of two rulebooks, in the format that somebody asked for."""
+"""The difference of two rulebooks as Markdown, CSV, or what else is asked for."""
 
 from __future__ import annotations
 
-from rulec.analysis.diff.rulebook_comparison import RulebookDiff
-from rulec.report.rulebooks.diff_csv import as_csv
-from rulec.report.rulebooks.diff_json import as_json
-from rulec.report.rulebooks.diff_markdown import as_markdown
-from rulec.report.rulebooks.diff_text import as_text
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
 
-FORMATS = ("text", "markdown", "json", "html", "csv")
+from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
+from rulec.report.rulebooks import diff_text
+from rulec.report.rulebooks.diff_json import as_json
+from rulec.report.text.markdown import code, escaped, table
+from rulec.report.verdicts import trace_table_text
+
+CSV_COLUMNS = ("rule", "relation", "strength 1", "strength 2", "cite 1", "cite 2")
 
 
 def render(diff: RulebookDiff, output_format: str) -> str:
-    """Write the difference in one of ``FORMATS``."""
+    """Write the difference as ``text``, ``markdown``, ``json``, ``html`` or ``csv``."""
     match output_format:
         case "json":
             return as_json(diff)
@@ -21,10 +25,77 @@ def render(diff: RulebookDiff, output_format: str) -> str:
             from rulec.report.text.html_page import as_html
 
             title = f"{diff.first.name} compared to {diff.second.name}"
-            return as_html(as_markdown(diff), title, "")
+            return as_html(_as_markdown(diff), title, "")
         case "markdown":
-            return as_markdown(diff)
+            return _as_markdown(diff)
         case "csv":
-            return as_csv(diff)
+            return as_csv([CSV_COLUMNS, *([*row.values()] for row in diff.rows())])
         case _:
-            return as_text(diff)
+            return diff_text.as_text(diff)
+
+
+def as_csv(rows: Iterable[Sequence[str]]) -> str:
+    """Comma-separated values (RFC 4180), without the last line's end."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue().rstrip("\n")
+
+
+def _as_markdown(rulebook_diff: RulebookDiff) -> str:
+    one, other = rulebook_diff.first.name, rulebook_diff.second.name
+    sentences = [diff_text.summary(rulebook_diff), *diff_text.sides(rulebook_diff)]
+    parts = [f"# {code(one)} compared to {code(other)}"]
+    parts += [f"{escaped(sentence)}." for sentence in sentences]
+    parts += [
+        part
+        for pair in rulebook_diff.pairs
+        if diff_text.is_worth_a_block(pair)
+        for part in _pair(pair, rulebook_diff)
+    ]
+    for rules, has, lacks in (
+        (rulebook_diff.only_first, one, other),
+        (rulebook_diff.only_second, other, one),
+    ):
+        if rules:
+            parts += [f"## Only in {code(has)}", _only(rules, lacks)]
+    if rulebook_diff.settings:
+        rows = [
+            [f"{setting.kind} {code(setting.name)}", code(setting.first), code(setting.second)]
+            for setting in rulebook_diff.settings
+        ]
+        parts += ["## Set otherwise", table(["", code(one), code(other)], rows)]
+    same = [code(pair.name) for pair in rulebook_diff.pairs if not diff_text.is_worth_a_block(pair)]
+    if same:
+        parts += ["## The same in both", ", ".join(same)]
+    return "\n\n".join(parts)
+
+
+def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
+    yield f"## {code(pair.name)}"
+    yield f"{escaped(diff_text.verdict(pair, rulebook_diff))}."
+    types = diff_text.about_types(pair, rulebook_diff)
+    if types:
+        yield f"{escaped(types)}."
+    if pair.notes:
+        yield table(
+            ["", code(rulebook_diff.first.name), code(rulebook_diff.second.name)],
+            [[escaped(cell) for cell in note] for note in pair.notes],
+        )
+    for forbids, allows, states in rulebook_diff.tables(pair):
+        yield f"A trace that {code(forbids)} forbids and {code(allows)} allows:"
+        rows = trace_table_text.rows(states)
+        yield table(
+            ["state", *trace_table_text.titles(states)],
+            [[*map(escaped, (title, *cells))] for title, cells in rows],
+        )
+        rest = trace_table_text.left_out(states)
+        if rest:
+            yield f"By default: {', '.join(map(code, rest))}."
+
+
+def _only(rules: Sequence[OneSided], lacks: str) -> str:
+    lines = []
+    for one_sided in rules:
+        rule, why = one_sided.rule, diff_text.only_why(one_sided, lacks)
+        lines.append(f"- {rule.strength} rule {code(rule.name)}{escaped(why)}")
+    return "\n".join(lines)

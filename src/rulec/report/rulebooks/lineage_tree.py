@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 from io import StringIO
 
+from msgspec import convert
 from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
@@ -77,14 +78,10 @@ def chosen(inherited: BookLineage, pattern: str | None) -> BookLineage:
 
 def as_text(inherited: BookLineage, width: int, *, color: bool) -> str:
     """The chain, the most general rulebook first, then its rules and provisions."""
-    chain: Tree | None = None
-    below: Tree | None = None
-    for book in inherited.books:
-        if below is None:
-            below = chain = Tree(_book(book))
-        else:
-            below = below.add(_book(book))
-    assert chain is not None, "a chain has at least one book"
+    first, *others = inherited.books
+    chain = below = Tree(_book(first))
+    for book in others:
+        below = below.add(_book(book))
     trees = [chain]
     if inherited.rules:
         rules = Tree(Text("rules", "bold"))
@@ -92,14 +89,11 @@ def as_text(inherited: BookLineage, width: int, *, color: bool) -> str:
             _rule(rule, inherited.book, rules)
         trees.append(rules)
     for kind in ("option", "parameter", "definition"):
-        constant_histories = [
-            provision for provision in inherited.provisions if provision.kind == kind
-        ]
-        if constant_histories:
-            provisions = Tree(Text(f"{kind}s", "bold"))
-            for constant_history in constant_histories:
+        provisions = Tree(Text(f"{kind}s", "bold"))
+        for constant_history in inherited.provisions:
+            if constant_history.kind == kind:
                 _provision(constant_history, inherited.book, provisions)
-            trees.append(provisions)
+        trees += [provisions] if provisions.children else []
     return "\n\n".join(_drawn(tree_, width, color=color) for tree_ in trees)
 
 
@@ -186,22 +180,22 @@ def _when(setting: ConstantValue) -> str:
 
 def as_json(inherited: BookLineage) -> str:
     """Write the chain, the rules' histories and the provisions."""
+    rules = [
+        RuleLineageData(
+            name=history.name,
+            gone=history.rule is None,
+            steps=convert(history.steps, Sequence[LineageStepData], from_attributes=True),
+        )
+        for history in inherited.rules
+    ]
     return as_indented(
         LineageDocument(
             rulebook=inherited.book,
             books=inherited.books,
-            rules=[_rule_data(history) for history in inherited.rules],
+            rules=rules,
             provisions=inherited.provisions,
         )
     )
-
-
-def _rule_data(history: RuleHistory) -> RuleLineageData:
-    steps = [
-        LineageStepData(book=step.book, deed=step.deed, clauses=step.clauses, because=step.because)
-        for step in history.steps
-    ]
-    return RuleLineageData(name=history.name, gone=history.rule is None, steps=steps)
 
 
 def forest_as_json(branches: Sequence[ExtensionTree]) -> str:

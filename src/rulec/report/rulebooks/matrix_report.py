@@ -8,7 +8,7 @@ from textwrap import fill
 
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
-from rulec.report.rulebooks.diff_csv import table as csv_table
+from rulec.report.rulebooks.diff_formats import as_csv
 from rulec.report.rulebooks.diff_json import BookData, book_data
 from rulec.report.rulebooks.diff_text import WIDTH
 from rulec.report.text.markdown import code, escaped
@@ -183,7 +183,7 @@ def _as_csv(comparison_matrix: ComparisonMatrix) -> str:
         for one, other in pairs(comparison_matrix.books)
         if one in rule.laws and other in rule.laws
     ]
-    return csv_table([("rule", "first", "second", "relation"), *rows])
+    return as_csv([("rule", "first", "second", "relation"), *rows])
 
 
 def _as_json(matrix: ComparisonMatrix) -> str:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from msgspec import UNSET, UnsetType, convert
+from msgspec import UNSET, UnsetType
 from msgspec.structs import replace
 
 from rulec.logic.english.sentence_layout import in_one_line
 from rulec.logic.printing import formula_text
-from rulec.report.automata.automaton_model import Automaton, Fate
+from rulec.report.automata.automaton_model import Fate, Transition
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
-from rulec.report.rulebooks.rule_page import RulePage, ShownTrace, phrase_of, restrictions_of
+from rulec.report.rulebooks.rule_page import RulePage, ShortestTrace, phrase_of, restrictions_of
 from rulec.rulebook.rulebook_model import Certainty, Rule, Strength, Variable
 from rulec.vocabulary import Vocabulary
 
@@ -23,32 +23,11 @@ class StateData(JsonPart, frozen=True, kw_only=True):
     fate: Fate
 
 
-class TransitionData(JsonPart, frozen=True, kw_only=True):
-    """Steps between two states; ``accepted`` judges a trace that ends there.
-
-    ``otherwise``: the condition is easier said as what the other transitions from there are not.
-    """
-
-    source: int
-    target: int
-    condition: str
-    otherwise: bool
-    accepted: bool
-
-
 class AutomatonData(JsonPart, frozen=True, kw_only=True):
     """The rule's automaton; traces start in state 0."""
 
     states: Sequence[StateData]
-    transitions: Sequence[TransitionData]
-
-
-class ShortestTrace(JsonPart, frozen=True, kw_only=True):
-    """A trace as an example: further objects, states, and inexpressible parts."""
-
-    objects: Sequence[Variable]
-    states: Sequence[str]
-    remarks: Sequence[str]
+    transitions: Sequence[Transition]
 
 
 class RuleData(JsonPart, frozen=True, kw_only=True):
@@ -115,24 +94,11 @@ def _rule(rule: Rule, vocabulary: Vocabulary, page: RulePage | None) -> RuleData
     )
     if page is None:
         return data
+    states = [StateData(state=state, fate=fate) for state, fate in enumerate(page.automaton.fates)]
     return replace(
         data,
-        automaton=_automaton(page.automaton),
+        automaton=AutomatonData(states=states, transitions=page.automaton.transitions),
         step_s=None if page.step_s is None else float(page.step_s),
-        accepts=_trace(page.accepted),
-        rejects=_trace(page.rejected),
+        accepts=page.accepted,
+        rejects=page.rejected,
     )
-
-
-def _automaton(automaton: Automaton) -> AutomatonData:
-    return AutomatonData(
-        states=[StateData(state=state, fate=fate) for state, fate in enumerate(automaton.fates)],
-        transitions=[
-            convert(transition, TransitionData, from_attributes=True)
-            for transition in automaton.transitions
-        ],
-    )
-
-
-def _trace(trace: ShownTrace | None) -> ShortestTrace | None:
-    return convert(trace, ShortestTrace | None, from_attributes=True)

@@ -31,12 +31,12 @@ MOST_LISTED = 60
 
 
 @dataclass(frozen=True, slots=True)
-class ShownTrace:
-    """A trace as an example, with ``remarks`` on what that cannot say."""
+class ShortestTrace:
+    """A trace as an example: further objects, states, and inexpressible parts."""
 
     objects: tuple[Variable, ...]
     states: tuple[str, ...]
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +48,8 @@ class RulePage:
 
     rule: Rule
     automaton: Automaton
-    accepted: ShownTrace | None
-    rejected: ShownTrace | None
+    accepted: ShortestTrace | None
+    rejected: ShortestTrace | None
     step_s: Fraction | None
 
 
@@ -66,11 +66,11 @@ def page_of(rule: Rule, compiled: CompiledRule, vocabulary: Vocabulary) -> RuleP
     )
 
 
-def _shown(trace: WitnessTrace | None, wording: GuardWording) -> ShownTrace | None:
+def _shown(trace: WitnessTrace | None, wording: GuardWording) -> ShortestTrace | None:
     if trace is None:
         return None
     states = tuple(map(wording.state, trace.states))
-    return ShownTrace(trace.objects, states, tuple(_remarks(trace)))
+    return ShortestTrace(trace.objects, states, tuple(_remarks(trace)))
 
 
 def _remarks(trace: WitnessTrace) -> Iterator[str]:

@@ -27,6 +27,9 @@ _POINTS = 72 / 96
 """A px in points, in which matplotlib measures lines and letters."""
 
 
+_ALIGNMENTS = {"start": "left", "middle": "center", "end": "right"}
+
+
 def as_png(picture: Picture, file: str) -> bytes:
     """The picture on light ground.
 
@@ -73,13 +76,12 @@ def _draw(axes: Any, mark: Mark, order: int) -> None:
     style = STYLES[mark.style]
     stroke = LIGHT[style.stroke] if style.stroke else "none"
     width = style.width * _POINTS
-    dash = (0, tuple(one * _POINTS for one in style.dash)) if style.dash else "solid"
+    dash = (0, tuple(length * _POINTS for length in style.dash)) if style.dash else "solid"
     match mark:
         case Area(rings):
-            rounds = [_turning(ring, left=n == 0) for n, ring in enumerate(rings)]
-            path = Path.make_compound_path(
-                *[Path([*round_, round_[0]], closed=True) for round_ in rounds]
-            )
+            turned_rings = [_turning(ring, left=n == 0) for n, ring in enumerate(rings)]
+            paths = [Path([*ring, ring[0]], closed=True) for ring in turned_rings]
+            path = Path.make_compound_path(*paths)
             fill = LIGHT[style.fill] if style.fill else "none"
             axes.add_patch(
                 PathPatch(path, fc=fill, ec=stroke, lw=width, ls=dash, zorder=order, clip_on=False)
@@ -97,9 +99,7 @@ def _draw(axes: Any, mark: Mark, order: int) -> None:
                 size=12 * _POINTS,
                 family="DejaVu Sans Mono",
                 weight="bold" if style.bold else "normal",
-                ha={"start": "left", "middle": "center", "end": "right"}[anchor]
-                if not turned
-                else "center",
+                ha="center" if turned else _ALIGNMENTS[anchor],
                 va="center",
                 rotation=90 if turned else 0,
                 zorder=order,

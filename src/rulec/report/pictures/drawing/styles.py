@@ -54,53 +54,39 @@ STYLES: Mapping[str, Style] = MappingProxyType(
         "violation": Style(stroke="rejected", width=5),
         "violated": Style("swept", "rejected", 1.5),
         "off": Style("ground", "faint", 0.8),
-        "value0": Style("cell", "faint", 0.8),
-        "value1": Style("swept", "faint", 0.8),
-        "value2": Style("crossing", "faint", 0.8),
-        "value3": Style("chosen", "faint", 0.8),
-        "value4": Style("value4", "faint", 0.8),
-        "value5": Style("value5", "faint", 0.8),
-        "value6": Style("taken", "faint", 0.8),
+        **{
+            f"value{number}": Style(fill, "faint", 0.8)
+            for number, fill in enumerate(
+                ("cell", "swept", "crossing", "chosen", "value4", "value5", "taken")
+            )
+        },
         "curve": Style(stroke="satisfying", width=1.8),
     }
 )
 
+_ON_LIGHT_AND_DARK = {
+    "ground": ("#ffffff", "#16191d"),
+    "ink": ("#1b1f24", "#e8eaed"),
+    "faint": ("#59636e", "#9aa5b1"),
+    "taken": ("#d5dade", "#3a4149"),
+    "cell": ("#eef3f7", "#1f262d"),
+    "crossing": ("#f6eebc", "#433c14"),
+    "chosen": ("#a9d5f2", "#0d4a73"),
+    "swept": ("#f9d3b8", "#5a3116"),
+    "body": ("#e69f00", "#8a5c00"),
+    "satisfying": ("#0072b2", "#6cb8f0"),
+    "rejected": ("#d55e00", "#ff9d5c"),
+    "unused": ("#8d969f", "#6b747d"),
+    "value4": ("#bfe5d9", "#0c4a3a"),
+    "value5": ("#edcfdf", "#5c2f49"),
+}
+
 LIGHT: Mapping[str, str] = MappingProxyType(
-    {
-        "ground": "#ffffff",
-        "ink": "#1b1f24",
-        "faint": "#59636e",
-        "taken": "#d5dade",
-        "cell": "#eef3f7",
-        "crossing": "#f6eebc",
-        "chosen": "#a9d5f2",
-        "swept": "#f9d3b8",
-        "body": "#e69f00",
-        "satisfying": "#0072b2",
-        "rejected": "#d55e00",
-        "unused": "#8d969f",
-        "value4": "#bfe5d9",
-        "value5": "#edcfdf",
-    }
+    {name: light for name, (light, _) in _ON_LIGHT_AND_DARK.items()}
 )
 
 DARK: Mapping[str, str] = MappingProxyType(
-    {
-        "ground": "#16191d",
-        "ink": "#e8eaed",
-        "faint": "#9aa5b1",
-        "taken": "#3a4149",
-        "cell": "#1f262d",
-        "crossing": "#433c14",
-        "chosen": "#0d4a73",
-        "swept": "#5a3116",
-        "body": "#8a5c00",
-        "satisfying": "#6cb8f0",
-        "rejected": "#ff9d5c",
-        "unused": "#6b747d",
-        "value4": "#0c4a3a",
-        "value5": "#5c2f49",
-    }
+    {name: dark for name, (_, dark) in _ON_LIGHT_AND_DARK.items()}
 )
 
 

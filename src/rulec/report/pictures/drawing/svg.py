@@ -12,7 +12,7 @@ from rulec.report.text.terminal_text import visible
 
 def as_svg(picture: Picture) -> str:
     """A file of its own."""
-    return _element(picture, f"<style>\n{as_css(styles_of([picture]))}\n</style>\n")
+    return as_inline_svg(picture, f"<style>\n{as_css(styles_of([picture]))}\n</style>\n")
 
 
 def styles_of(pictures: Iterable[Picture]) -> set[str]:
@@ -20,12 +20,8 @@ def styles_of(pictures: Iterable[Picture]) -> set[str]:
     return {"ground", *(mark.style for picture in pictures for mark in picture.marks)}
 
 
-def as_inline_svg(picture: Picture) -> str:
+def as_inline_svg(picture: Picture, style: str = "") -> str:
     """A part of a page that has the styles."""
-    return _element(picture, "")
-
-
-def _element(picture: Picture, style: str) -> str:
     size = f'width="{picture.width:.0f}" height="{picture.height:.0f}"'
     box = f'viewBox="0 0 {picture.width:.0f} {picture.height:.0f}"'
     title = escape(visible(picture.title))
