@@ -14,9 +14,17 @@ from rulec.report.automata.automaton_layout import (
     TransitionLine,
     draw,
 )
-from rulec.report.automata.automaton_model import Automaton, Fate
+from rulec.report.automata.automaton_model import Automaton, Fate, Transition
 from rulec.report.pictures.drawing import canvas
-from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
+from rulec.report.pictures.drawing.canvas import (
+    Area,
+    LabelText,
+    Mark,
+    Picture,
+    Point,
+    Polyline,
+    Rectangle,
+)
 
 HEAD = 8.0
 """The length of an arrow's head in px."""
@@ -30,22 +38,19 @@ PIECES = 10
 # Dashes, corners and words tell the verdict; the colours repeat it.
 _STYLES: dict[Fate, str] = {"open": "state", "violated": "violated", "satisfied": "chosen"}
 
-_LEGEND = (
-    (True, "a trace that ends with this step is accepted"),
-    (False, "a trace that ends with this step is rejected"),
-)
+_LEGEND = {
+    "accepted": "a trace that ends with this step is accepted",
+    "rejected": "a trace that ends with this step is rejected",
+}
 
 
 def as_picture(automaton: Automaton, title: str) -> Picture:
     """Draw an automaton below its title and above what the lines mean."""
     drawing = draw(automaton)
-    accepted = {transition.accepted for transition in automaton.transitions}
-    legend = [entry for entry in _LEGEND if entry[0] in accepted]
-    texts = [
-        canvas.text_width([title]) * 1.1,
-        *(canvas.text_width([text]) + 50 for _, text in legend),
-    ]
-    width = max(drawing.width, *texts) + 2 * canvas.MARGIN
+    used = {_line_style(transition) for transition in automaton.transitions}
+    legend = [(style, text) for style, text in _LEGEND.items() if style in used]
+    widest = max((canvas.text_width([text]) + 50 for _, text in legend), default=0)
+    width = max(drawing.width, canvas.text_width([title]) * 1.1, widest) + 2 * canvas.MARGIN
     height = drawing.height + 3 * canvas.MARGIN + LINE * (1 + len(legend))
     right = (width - drawing.width) / 2
     marks = [
@@ -54,6 +59,10 @@ def as_picture(automaton: Automaton, title: str) -> Picture:
         *_legend(legend, height - canvas.MARGIN - LINE * len(legend)),
     ]
     return Picture(title, width, height, tuple(marks))
+
+
+def _line_style(transition: Transition) -> str:
+    return "accepted" if transition.accepted else "rejected"
 
 
 def _marks(drawing: AutomatonDrawing, automaton: Automaton) -> Iterator[Mark]:
@@ -72,8 +81,7 @@ def _transition(line: TransitionLine) -> Iterator[Mark]:
     transition = line.transition
     is_loop = transition.source == transition.target
     points, direction = _loop(line.points) if is_loop else _path(line.points)
-    style = "accepted" if transition.accepted else "rejected"
-    yield Polyline(tuple(points), style, transition.condition)
+    yield Polyline(tuple(points), _line_style(transition), transition.condition)
     yield _head(line.points[-1], direction, accepted=transition.accepted)
     yield from _text(line.text, line.label_at, "end" if line.leftward else "start")
 
@@ -126,23 +134,16 @@ def _head(tip: Point, direction: tuple[int, int], *, accepted: bool) -> Area:
 
 
 def _state(state: AutomatonState, fate: Fate) -> Iterator[Mark]:
-    x, y = state.middle
-    half_width = state.width / 2
-    half_height = state.height / 2
-    box = (x - half_width, y - half_height, x + half_width, y + half_height)
-    outline = canvas.corners(box) if fate == "violated" else tuple(_rounded(*box))
+    box = canvas.centred(state.middle, state.width / 2, state.height / 2)
+    outline = canvas.corners(box) if fate == "violated" else tuple(_rounded(box))
     yield Area((outline,), _STYLES[fate])
     yield from _text(state.text, state.middle, "middle")
 
 
-def _rounded(left: float, top: float, right: float, bottom: float) -> Iterator[Point]:
+def _rounded(rectangle: Rectangle) -> Iterator[Point]:
     """Outline of a rounded rectangle, clockwise from the upper left corner."""
-    centres = (
-        (left + CORNER, top + CORNER),
-        (right - CORNER, top + CORNER),
-        (right - CORNER, bottom - CORNER),
-        (left + CORNER, bottom - CORNER),
-    )
+    left, top, right, bottom = rectangle
+    centres = canvas.corners((left + CORNER, top + CORNER, right - CORNER, bottom - CORNER))
     for number, (x, y) in enumerate(centres):
         for piece in range(PIECES // 2 + 1):
             angle = pi + (number + piece / (PIECES // 2)) * pi / 2
@@ -157,10 +158,8 @@ def _text(
         yield LabelText(text, (x, y + LINE * (number - (len(lines) - 1) / 2)), anchor)
 
 
-def _legend(entries: Sequence[tuple[bool, str]], top: float) -> Iterator[Mark]:
-    for number, (accepted, text) in enumerate(entries):
+def _legend(entries: Sequence[tuple[str, str]], top: float) -> Iterator[Mark]:
+    for number, (style, text) in enumerate(entries):
         y = top + LINE * number
-        yield Polyline(
-            ((canvas.MARGIN, y), (canvas.MARGIN + 34, y)), "accepted" if accepted else "rejected"
-        )
+        yield Polyline(((canvas.MARGIN, y), (canvas.MARGIN + 34, y)), style)
         yield LabelText(text, (canvas.MARGIN + 42, y))

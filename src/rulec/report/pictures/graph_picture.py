@@ -87,10 +87,9 @@ def _edges(
 def _nodes(
     graph: NavigationGraph, columns: _Columns, edges: AcceptedEdges, maneuver: Maneuver | None
 ) -> Iterator[Mark]:
-    wide, high = columns.extent
     for p, layer in enumerate(graph.layers):
         for node, cell in enumerate(layer.cells):
-            x, y = columns.at(p, node)
+            middle = columns.at(p, node)
             style = (
                 "chosen"
                 if maneuver and maneuver.nodes[p] == node
@@ -101,10 +100,10 @@ def _nodes(
                 else "off"
             )
             tip = f"{layer.start_s:g} s, cell {node}: {in_full(cell)}"
-            yield canvas.filled((x - wide, y - high, x + wide, y + high), style, tip)
+            yield canvas.filled(canvas.centred(middle, *columns.extent), style, tip)
             if columns.legible:
                 ink = "faint" if style == "off" else "ink"
-                yield LabelText(columns.labels[p][node], (x, y), "middle", ink)
+                yield LabelText(columns.labels[p][node], middle, "middle", ink)
 
 
 def _times(graph: NavigationGraph, columns: _Columns) -> Iterator[LabelText]:

@@ -126,10 +126,9 @@ def beside(words: LabelText, body: Rectangle) -> Iterator[LabelText]:
 def ego_marks(graph: NavigationGraph, frame: Frame, placing: Placing) -> Iterator[Mark]:
     """Ego at the first layer's start, large enough to be seen."""
     ego = graph.scenario.ego
-    x, y = frame.at(ego.s, ego.d)
-    half_length = max(ego.length / 2 * frame.along, 4)
-    half_width = max(ego.width / 2 * frame.across, 4)
-    body = (x - half_length, y - half_width, x + half_length, y + half_width)
+    middle = frame.at(ego.s, ego.d)
+    half_length, half_width = ego.length / 2 * frame.along, ego.width / 2 * frame.across
+    body = canvas.centred(middle, max(half_length, 4), max(half_width, 4))
     yield canvas.filled(body, "ego", "ego at the start")
     placing.taken.append(body)
-    yield from placing.first_free(beside(LabelText("ego", (x, y), "middle", "name"), body))
+    yield from placing.first_free(beside(LabelText("ego", middle, "middle", "name"), body))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from textwrap import fill
 
@@ -72,41 +71,32 @@ class MatrixDocument(JsonDocument, frozen=True, kw_only=True):
     pairs: Sequence[BookPairData]
 
 
-def render(comparison_matrix: ComparisonMatrix, output_format: str) -> str:
+def render(matrix: ComparisonMatrix, output_format: str) -> str:
     """The matrix in one of the formats of differences."""
     match output_format:
         case "json":
-            return _as_json(comparison_matrix)
+            return _as_json(matrix)
         case "csv":
-            return _as_csv(comparison_matrix)
+            return _as_csv(matrix)
         case "markdown":
-            return _as_markdown(comparison_matrix)
+            return _as_markdown(matrix)
         case "html":
             # markdown-it and Pygments take 0.1 s.
             from rulec.report.text.html_page import as_html
 
-            return as_html(_as_markdown(comparison_matrix), TITLE, "")
-        case "text":
-            return _as_text(comparison_matrix)
-    raise ValueError(f"there is no format {output_format}")
+            return as_html(_as_markdown(matrix), TITLE, "")
+        case _:
+            return _as_text(matrix)
 
 
-def _as_text(comparison_matrix: ComparisonMatrix) -> str:
-    names = [book.name for book in comparison_matrix.books]
-    by_rule = [
-        ["", *names],
-        *([rule.name, *_letters(rule, names)] for rule in comparison_matrix.shared),
-    ]
-    by_pair = [
-        ["", *names],
-        *([name, *(_cell(comparison_matrix, name, other) for other in names)] for name in names),
-    ]
+def _as_text(matrix: ComparisonMatrix) -> str:
+    head = ["", *(book.name for book in matrix.books)]
     blocks = [
         fill(RULES, WIDTH),
-        _columns(by_rule),
+        _columns([head, *_by_rule(matrix)]),
         fill(PAIRS, WIDTH),
-        _columns(by_pair),
-        _summary(comparison_matrix),
+        _columns([head, *_by_pair(matrix)]),
+        _summary(matrix),
     ]
     return "\n\n".join(blocks)
 
@@ -116,8 +106,17 @@ def _columns(rows: Sequence[Sequence[str]]) -> str:
     return "\n".join([styled(head, "bold"), *lines])
 
 
-def _letters(rule: SharedRule, names: Sequence[str]) -> list[str]:
-    return [_letter(rule, name) for name in names]
+def _by_rule(matrix: ComparisonMatrix) -> list[list[str]]:
+    """Each shared rule with its law's letter in every rulebook."""
+    return [
+        [rule.name, *(_letter(rule, book.name) for book in matrix.books)] for rule in matrix.shared
+    ]
+
+
+def _by_pair(matrix: ComparisonMatrix) -> list[list[str]]:
+    """Each rulebook with its numbers of rules beside every other one's."""
+    names = [book.name for book in matrix.books]
+    return [[name, *(_cell(matrix, name, other) for other in names)] for name in names]
 
 
 def _letter(rule: SharedRule, book: str) -> str:
@@ -127,86 +126,75 @@ def _letter(rule: SharedRule, book: str) -> str:
     return letter if rule.rules[book].strength == "hard" else letter.lower()
 
 
-def _cell(comparison_matrix: ComparisonMatrix, left: str, right: str) -> str:
+def _cell(matrix: ComparisonMatrix, left: str, right: str) -> str:
     if left == right:
         return ""
-    counted = comparison_matrix.counts(left, right)
+    counted = matrix.counts(left, right)
     parts = [f"{counted[kind]}{sign}" for kind, sign in SIGNS.items() if counted[kind]]
     return " ".join(parts) or ABSENT
 
 
-def _summary(comparison_matrix: ComparisonMatrix) -> str:
-    counted = Counter(len(set(rule.laws.values())) == 1 for rule in comparison_matrix.shared)
+def _summary(matrix: ComparisonMatrix) -> str:
+    n_same = sum(len(set(rule.laws.values())) == 1 for rule in matrix.shared)
     return (
-        f"{len(comparison_matrix.books):,} rulebooks, "
-        f"{len(comparison_matrix.shared):,} rules that two or more of them have, "
-        f"{counted[True]:,} of them the same in all"
+        f"{len(matrix.books):,} rulebooks, "
+        f"{len(matrix.shared):,} rules that two or more of them have, "
+        f"{n_same:,} of them the same in all"
     )
 
 
-def _as_markdown(comparison_matrix: ComparisonMatrix) -> str:
-    names = [book.name for book in comparison_matrix.books]
-    head = ["", *map(code, names)]
+def _as_markdown(matrix: ComparisonMatrix) -> str:
+    head = ["", *(code(book.name) for book in matrix.books)]
+    by_rule, by_pair = (
+        markdown_table(head, [[code(name), *map(escaped, cells)] for name, *cells in rows])
+        for rows in (_by_rule(matrix), _by_pair(matrix))
+    )
     return "\n\n".join(
         [
             f"# {TITLE}",
-            f"{escaped(_summary(comparison_matrix))}.",
+            f"{escaped(_summary(matrix))}.",
             "## Rule by rule",
             f"{RULES.partition(': ')[2].capitalize()}.",
-            markdown_table(
-                head,
-                [
-                    [code(rule.name), *map(escaped, _letters(rule, names))]
-                    for rule in comparison_matrix.shared
-                ],
-            ),
+            by_rule,
             "## Pair by pair",
             f"{escaped(PAIRS.partition(': ')[2].capitalize())}.",
-            markdown_table(
-                head,
-                [
-                    [
-                        code(name),
-                        *(escaped(_cell(comparison_matrix, name, other)) for other in names),
-                    ]
-                    for name in names
-                ],
-            ),
+            by_pair,
         ]
     )
 
 
-def _as_csv(comparison_matrix: ComparisonMatrix) -> str:
+def _as_csv(matrix: ComparisonMatrix) -> str:
     rows = [
-        (rule.name, one, other, rule.relation(one, other) or "")
-        for rule in comparison_matrix.shared
-        for one, other in pairs(comparison_matrix.books)
-        if one in rule.laws and other in rule.laws
+        (rule.name, first, second, relation)
+        for rule in matrix.shared
+        for first, second in pairs(matrix.books)
+        if (relation := rule.relation(first, second)) is not None
     ]
     return as_csv([("rule", "first", "second", "relation"), *rows])
 
 
 def _as_json(matrix: ComparisonMatrix) -> str:
-    names = [book.name for book in matrix.books]
     return as_indented(
         MatrixDocument(
             books=[book_data(book) for book in matrix.books],
-            rules=[_shared_rule(rule, names) for rule in matrix.rules],
+            rules=[_shared_rule(rule, matrix) for rule in matrix.rules],
             pairs=[_book_pair(matrix, first, second) for first, second in pairs(matrix.books)],
         )
     )
 
 
-def _shared_rule(rule: SharedRule, names: Sequence[str]) -> SharedRuleData:
-    books = [
-        RuleInBook(
-            name=name,
-            law=rule.letter(name) or None,
-            strength=rule.rules[name].strength if name in rule.rules else None,
-            because=rule.remarks[name].because if name in rule.remarks else None,
+def _shared_rule(rule: SharedRule, matrix: ComparisonMatrix) -> SharedRuleData:
+    books = []
+    for name in (book.name for book in matrix.books):
+        own, remark = rule.rules.get(name), rule.remarks.get(name)
+        books.append(
+            RuleInBook(
+                name=name,
+                law=rule.letter(name) or None,
+                strength=own.strength if own else None,
+                because=remark.because if remark else None,
+            )
         )
-        for name in names
-    ]
     return SharedRuleData(rule=rule.name, books=books)
 
 

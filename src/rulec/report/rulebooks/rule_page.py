@@ -100,13 +100,12 @@ def restrictions_of(rule: Rule) -> list[Phrase]:
         for exemption_ in rule.exemptions
         if (formula := fold_constants(exemption_.formula)) != Constant(False)
     ]
-    applies = None if rule.condition is None else fold_constants(rule.condition)
-    if applies is None or applies == Constant(True):
+    applies = Constant(True) if rule.condition is None else fold_constants(rule.condition)
+    if applies == Constant(True):
         return phrases
     if applies == Constant(False):
-        return [
-            Phrase("it never counts, for its condition is false as options are set", Shape.CLAUSE)
-        ]
+        never = "it never counts, for its condition is false as options are set"
+        return [Phrase(never, Shape.CLAUSE)]
     guarding = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
     guards = isinstance(rule.required, Unary) and rule.required.operator in guarding
     return [condition(applies, guards=guards), *phrases]

@@ -107,6 +107,12 @@ def corners(rectangle: Rectangle) -> tuple[Point, ...]:
     return (left, top), (right, top), (right, bottom), (left, bottom)
 
 
+def centred(middle: Point, half_width: float, half_height: float) -> Rectangle:
+    """A rectangle around its middle."""
+    x, y = middle
+    return x - half_width, y - half_height, x + half_width, y + half_height
+
+
 def filled(rectangle: Rectangle, style: str, tip: str = "") -> Area:
     """A rectangle without holes."""
     return Area((corners(rectangle),), style, tip)
