@@ -55,8 +55,12 @@ class TransitionLine:
     transition: Transition
     points: tuple[Point, ...]
     label_at: Point
-    text: tuple[str, ...]
     leftward: bool = False
+
+    @property
+    def text(self) -> tuple[str, ...]:
+        """The lines of its condition."""
+        return _broken(self.transition.label)
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,8 +191,7 @@ class _AutomatonLayout:
                 (end, bottom - down * _state_height(self._texts[target]) / 2),
             ]
             x, y = places[way[1]]
-            text = _broken(transition.label)
-            yield TransitionLine(transition, tuple(points), (x + 7, y), text)
+            yield TransitionLine(transition, tuple(points), (x + 7, y))
 
     def _ports(self, places: Sequence[Point]) -> dict[tuple[int, int], float]:
         """Positions on states' sides where each line begins (0) and ends (1)."""
@@ -211,7 +214,7 @@ class _AutomatonLayout:
                 edge = x + side * state.width / 2
                 points = ((edge, y - 9), (edge + side * (LOOP - 8), y), (edge, y + 9))
                 label_at = (edge + side * (LOOP - 5), y)
-                yield TransitionLine(loop, points, label_at, _broken(loop.label), leftward=side < 0)
+                yield TransitionLine(loop, points, label_at, leftward=side < 0)
 
 
 def _state_height(text: Sequence[str]) -> float:

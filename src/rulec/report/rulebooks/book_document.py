@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import groupby
 
 from rulec.analysis.audit.rulebook_audit import articles_of
@@ -47,11 +47,14 @@ def as_markdown(loaded: Loaded, inherited: BookLineage) -> str:
     headings = [heading for heading in (*top, *body, index) if isinstance(heading, Heading)]
     names = anchors([heading.text for heading in headings])
     places = {id(heading): name for heading, name in zip(headings, names, strict=True)}
-    contents = _contents([heading for heading in headings if heading.level in (2, 3)], places)
-    rules = {heading.text: places[id(heading)] for heading in headings if heading.level == 3}
-    return written(
-        [*top, contents, *body, *_index(rulebook, inherited, index, rules), *_made_from(rulebook)]
+    contents = "\n".join(
+        f"{'  ' * (heading.level - 2)}- [{escaped(heading.text)}](#{places[id(heading)]})"
+        for heading in (*body, index)
+        if isinstance(heading, Heading) and heading.level in (2, 3)
     )
+    rules = {heading.text: places[id(heading)] for heading in headings if heading.level == 3}
+    end = (*_index(rulebook, inherited, index, rules), *_made_from(rulebook))
+    return written([*top, contents, *body, *end])
 
 
 def _top(rulebook: Rulebook) -> Iterator[Block]:
@@ -87,32 +90,23 @@ def _body(loaded: Loaded, inherited: BookLineage) -> Iterator[Block]:
     yield from words_section(loaded)
 
 
-def _contents(headings: Sequence[Heading], places: Mapping[int, str]) -> str:
-    return "\n".join(
-        f"{'  ' * (heading.level - 2)}- [{escaped(heading.text)}](#{places[id(heading)]})"
-        for heading in headings
-        if heading.text != CONTENTS or heading.level != 2
-    )
-
-
 def _index(
     rulebook: Rulebook, inherited: BookLineage, heading: Heading, places: Mapping[str, str]
 ) -> Iterator[Block]:
     yield heading
-    by_name = {rule.name: rule for rule in rulebook.rules}
     laws = {book.name: book.law or book.title or book.name for book in inherited.books}
     articles = articles_of(rulebook.rules, inherited)
     if not articles:
         yield "No provision is cited."
+    links = {
+        rule.name: f"[{code(rule.name)}](#{places[rule_heading(rule)]})" for rule in rulebook.rules
+    }
     for book, cited in groupby(articles, key=lambda article: article.book):
         yield f"{escaped(laws[book])}:"
-        rows = []
-        for cited_article in cited:
-            links = (
-                f"[{code(name)}](#{places[rule_heading(by_name[name])]})"
-                for name in cited_article.rules
-            )
-            rows.append([escaped(cited_article.cite), ", ".join(links)])
+        rows = [
+            [escaped(article.cite), ", ".join(links[name] for name in article.rules)]
+            for article in cited
+        ]
         yield table(["provision", "rules"], rows)
 
 

@@ -153,48 +153,36 @@ def _detail(step: LineageStep) -> str:
 
 
 def _provision(constant_history: ConstantHistory, book: str, provisions: Tree) -> None:
-    current = next((setting for setting in constant_history.settings if setting.current), None)
     label = Text(visible(constant_history.head))
-    if current is None:
-        label.append("  no value in force", "dim")
-    else:
-        label.append(visible(f" = {current.text}{_when(current)}  "))
-        label.append(visible(_origin(current, book)), "dim")
     here = provisions.add(label)
     for setting in constant_history.settings:
-        if not setting.current:
-            here.add(
-                Text(visible(f"{setting.text}{_when(setting)}  {_origin(setting, book)}"), "dim")
-            )
+        value, origin = _value_and_origin(setting, book)
+        if setting.current:
+            label.append(visible(f" = {value}  "))
+            label.append(visible(origin), "dim")
+        else:
+            here.add(Text(visible(f"{value}  {origin}"), "dim"))
+    if not any(setting.current for setting in constant_history.settings):
+        label.append("  no value in force", "dim")
 
 
-def _origin(setting: ConstantValue, book: str) -> str:
-    return "own" if setting.book == book else f"from {setting.book}"
-
-
-def _when(setting: ConstantValue) -> str:
-    if not setting.since and not setting.until:
-        return ""
-    return f" {print_in_force(tree.InForce(setting.since, setting.until))}"
+def _value_and_origin(setting: ConstantValue, book: str) -> tuple[str, str]:
+    dated = setting.since or setting.until
+    dates = f" {print_in_force(tree.InForce(setting.since, setting.until))}" if dated else ""
+    origin = "own" if setting.book == book else f"from {setting.book}"
+    return f"{setting.text}{dates}", origin
 
 
 def as_json(inherited: BookLineage) -> str:
     """Write the chain, the rules' histories and the provisions."""
-    rules = [
-        RuleLineageData(
-            name=history.name,
-            gone=history.rule is None,
-            steps=convert(history.steps, Sequence[LineageStepData], from_attributes=True),
-        )
-        for history in inherited.rules
-    ]
+    rules = []
+    for history in inherited.rules:
+        steps = convert(history.steps, Sequence[LineageStepData], from_attributes=True)
+        gone = history.rule is None
+        rules.append(RuleLineageData(name=history.name, gone=gone, steps=steps))
+    books, provisions = inherited.books, inherited.provisions
     return as_indented(
-        LineageDocument(
-            rulebook=inherited.book,
-            books=inherited.books,
-            rules=rules,
-            provisions=inherited.provisions,
-        )
+        LineageDocument(rulebook=inherited.book, books=books, rules=rules, provisions=provisions)
     )
 
 
