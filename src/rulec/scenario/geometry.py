@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 
@@ -29,14 +30,28 @@ class Box:
             and box.d_min < self.d_max
         )
 
+    def shift_to(self, box: Box) -> tuple[float, float]:
+        """The way from this middle to another's, along and across the road."""
+        return (
+            (box.s_min + box.s_max - self.s_min - self.s_max) / 2,
+            (box.d_min + box.d_max - self.d_min - self.d_max) / 2,
+        )
+
     def covers(self, s: float, d: float) -> bool:
         """True if the closed rectangle holds the point."""
         return self.s_min <= s <= self.s_max and self.d_min <= d <= self.d_max
 
 
 def centred(s: float, d: float, length: float, width: float) -> Box:
-    """The rectangle around a centre, with given length and width.
-
-    ``length`` is along the road and ``width`` across it.
-    """
+    """The rectangle around a centre, ``length`` along the road and ``width`` across it."""
     return Box(s - length / 2, s + length / 2, d - width / 2, d + width / 2)
+
+
+def enclosing(boxes: Sequence[Box]) -> Box:
+    """The smallest rectangle around some."""
+    return Box(
+        min(box.s_min for box in boxes),
+        max(box.s_max for box in boxes),
+        min(box.d_min for box in boxes),
+        max(box.d_max for box in boxes),
+    )

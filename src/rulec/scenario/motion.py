@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from itertools import pairwise
 from math import atan2, cos, degrees, inf, radians, sin
 from typing import Literal
 
-from rulec.scenario.footprints import bounds_within, displacement_within, displacements
-from rulec.scenario.geometry import Box
+from rulec.scenario.geometry import Box, centred, enclosing
 from rulec.scenario.scenario_model import (
     ConstantAcceleration,
     Footprints,
@@ -41,36 +40,28 @@ def position_at(motion: ConstantAcceleration | Trajectory, time: float) -> tuple
 
 
 def swept(obstacle: Obstacle, start: float, end: float) -> Box | None:
-    """The bounds of the space occupied from ``start`` to ``end`` (s).
-
-    Both times are included.
+    """The bounds of the space occupied from ``start`` to ``end`` (s), both included.
 
     Exact: between the times that it looks at, motion along and across the road is monotone. None if
     the obstacle is not there in that interval.
     """
-    if isinstance(obstacle.motion, Footprints):
-        return bounds_within(obstacle.motion, start, end)
-    first, last = span(obstacle.motion)
+    motion = obstacle.motion
+    if isinstance(motion, Footprints):
+        boxes = _footprints_within(motion, start, end)
+        return enclosing(boxes) if boxes else None
+    first, last = span(motion)
     start, end = max(start, first), min(end, last)
     if start > end:
         return None
     times = [start, end]
-    if isinstance(obstacle.motion, Trajectory):
-        times += [point[0] for point in obstacle.motion.points if start < point[0] < end]
-    centres = [position_at(obstacle.motion, time) for time in times]
-    half_length, half_width = obstacle.length / 2, obstacle.width / 2
-    return Box(
-        min(s for s, _ in centres) - half_length,
-        max(s for s, _ in centres) + half_length,
-        min(d for _, d in centres) - half_width,
-        max(d for _, d in centres) + half_width,
-    )
+    if isinstance(motion, Trajectory):
+        times += [point[0] for point in motion.points if start < point[0] < end]
+    length, width = obstacle.length, obstacle.width
+    return enclosing([centred(*position_at(motion, time), length, width) for time in times])
 
 
 def facing(obstacle: Obstacle, start: float, end: float) -> Facing:
-    """The walking direction from ``start`` to ``end`` (s), by right angles.
-
-    It is rounded to a right angle of the road.
+    """The walking direction from ``start`` to ``end`` (s), by right angles of the road.
 
     Who stands keeps the direction of the last steps before, failing that takes that of the next
     steps. A direction half-way between two right angles counts as across the road.
@@ -87,42 +78,33 @@ def stands_forever(motion: Motion) -> bool:
 
 
 def _heading(motion: Motion, start: float, end: float) -> tuple[float, float]:
+    """The displacement within an interval; at rest that of the last step before, else the next."""
     match motion:
         case ConstantAcceleration():
             speed = motion.speed or max(motion.acceleration, 0.0)
             return speed, motion.lateral_speed
         case Trajectory(points):
-            steps = [
-                (t0, t1, s1 - s0, d1 - d0)
-                for (t0, s0, d0), (t1, s1, d1) in pairwise(points)
-                if (s0, d0) != (s1, d1)
-            ]
-            return _nearest_step(tuple(steps), _step_within(motion, start, end), end)
+            first, last = span(motion)
+            (s0, d0), (s1, d1) = (
+                position_at(motion, min(max(time, first), last)) for time in (start, end)
+            )
+            meanwhile = s1 - s0, d1 - d0
+            steps = [(t1, (s1 - s0, d1 - d0)) for (_, s0, d0), (t1, s1, d1) in pairwise(points)]
         case Footprints():
-            meanwhile = displacement_within(motion, start, end)
-            return _nearest_step(displacements(motion), meanwhile, end)
-
-
-def _nearest_step(
-    steps: tuple[tuple[float, float, float, float], ...],
-    meanwhile: tuple[float, float],
-    end: float,
-) -> tuple[float, float]:
-    """The displacement within an interval, or at rest a neighbouring one.
-
-    At rest it is that of the last step before, else of the next.
-    """
+            boxes = _footprints_within(motion, start, end)
+            meanwhile = boxes[0].shift_to(boxes[-1]) if boxes else (0.0, 0.0)
+            steps = [
+                (time, before.shift_to(after))
+                for time, (before, after) in zip(
+                    motion.times[1:], pairwise(motion.boxes), strict=True
+                )
+                if before is not None and after is not None
+            ]
+    steps = [step for step in steps if step[1] != (0.0, 0.0)]
     if meanwhile != (0.0, 0.0) or not steps:
         return meanwhile
-    before = [step for step in steps if step[1] <= end]
-    return (before[-1] if before else steps[0])[2:]
-
-
-def _step_within(motion: Trajectory, start: float, end: float) -> tuple[float, float]:
-    first, last = span(motion)
-    start, end = (min(max(time, first), last) for time in (start, end))
-    (s0, d0), (s1, d1) = position_at(motion, start), position_at(motion, end)
-    return s1 - s0, d1 - d0
+    past = [way for time, way in steps if time <= end]
+    return past[-1] if past else steps[0][1]
 
 
 def _right_angle(ahead: float, left: float) -> Facing:
@@ -157,3 +139,29 @@ def _interpolated(
     (t0, s0, d0), (t1, s1, d1) = points[following - 1 : following + 1]
     part = (time - t0) / (t1 - t0)
     return s0 + part * (s1 - s0), d0 + part * (d1 - d0)
+
+
+def _footprints_within(motion: Footprints, start: float, end: float) -> list[Box]:
+    """The footprints at both times and at all known times between."""
+    first, last = bisect_left(motion.times, start), bisect_right(motion.times, end)
+    ends = (_footprint_at(motion, start), *motion.boxes[first:last], _footprint_at(motion, end))
+    return [box for box in ends if box is not None]
+
+
+def _footprint_at(motion: Footprints, time: float) -> Box | None:
+    times, boxes = motion.times, motion.boxes
+    after = bisect_left(times, time)
+    if after == len(times):
+        return None
+    if times[after] == time:
+        return boxes[after]
+    earlier, later = (boxes[after - 1], boxes[after]) if after else (None, None)
+    if earlier is None or later is None:
+        return None
+    part = (time - times[after - 1]) / (times[after] - times[after - 1])
+    return Box(
+        earlier.s_min + part * (later.s_min - earlier.s_min),
+        earlier.s_max + part * (later.s_max - earlier.s_max),
+        earlier.d_min + part * (later.d_min - earlier.d_min),
+        earlier.d_max + part * (later.d_max - earlier.d_max),
+    )

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
 
-from rulec.diagnostics import Diagnostic, RulecError
 from rulec.scenario.scenario_messages import UNFITTING_HORIZON
 
 MAX_LAYERS = 10_000
@@ -27,9 +26,7 @@ class Timing:
 
 
 def timing(horizon_s: float, step_s: float) -> Timing:
-    """The layers of a horizon (s) cut into steps (s).
-
-    There are ``horizon / step + 1`` of them.
+    """The ``horizon / step + 1`` layers of a horizon (s) cut into steps (s).
 
     Decimals count as typed, so that 4.0 s is forty steps of 0.1 s.
 
@@ -56,15 +53,12 @@ def timing(horizon_s: float, step_s: float) -> Timing:
             help="take a longer step or a shorter horizon",
         )
     if steps == 0 or abs(horizon - steps * step) > _ROUNDING * horizon:
-        raise RulecError(_no_multiple(horizon_s, step_s, max(steps, 1)))
+        steps = max(steps, 1)
+        raise UNFITTING_HORIZON.error(
+            None,
+            f"the horizon of {horizon_s:g} s is not a whole number of steps of {step_s:g} s",
+            expected="expected a horizon that is a multiple of the step",
+            help=f"a step of {horizon_s / steps:g} s would fit, or a horizon of "
+            f"{float(step * steps):g} s",
+        )
     return Timing(horizon / steps, steps + 1)
-
-
-def _no_multiple(horizon_s: float, step_s: float, steps: int) -> Diagnostic:
-    return UNFITTING_HORIZON.at(
-        None,
-        f"the horizon of {horizon_s:g} s is not a whole number of steps of {step_s:g} s",
-        expected="expected a horizon that is a multiple of the step",
-        help=f"a step of {horizon_s / steps:g} s would fit, or a horizon of "
-        f"{float(Fraction(str(step_s)) * steps):g} s",
-    )
