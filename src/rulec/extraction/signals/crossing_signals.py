@@ -52,16 +52,14 @@ def _crossing_uses(context: DriveContext) -> NDArray[intp]:
     approaches = walks & (towards > np.abs(others.along))
     soon = beside & approaches & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
-    uses: NDArray[intp] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
-    return uses
+    return np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
 
 
 def _towards(context: DriveContext) -> Floats:
     """The speed towards the middle of the road, across it (m/s)."""
     straight = context.road.lanes.straight
     left = context.extents.across
-    towards: Floats = np.where(context.extents.w < (straight[0] + straight[-1]) / 2, left, -left)
-    return towards
+    return np.where(context.extents.w < (straight[0] + straight[-1]) / 2, left, -left)
 
 
 def _stopped(context: DriveContext) -> Flags:

@@ -53,8 +53,7 @@ def _from_kerb(context: DriveContext) -> NDArray[intp]:
     right: NDArray[intp] = np.cumsum(existing, axis=1)[state, lane] - existing[state, lane]
     count = existing.sum(axis=1)
     rank = right if context.side == "right" else count - 1 - right
-    from_kerb: NDArray[intp] = np.where(rank <= 0, 0, np.where(rank >= count - 1, 2, 1))
-    return from_kerb
+    return np.where(rank <= 0, 0, np.where(rank >= count - 1, 2, 1))
 
 
 def _straddling(context: DriveContext) -> Flags:
@@ -76,5 +75,4 @@ def _place_in_lane(context: DriveContext) -> NDArray[intp]:
     # In a lane that is hardly wider than ego both edges are near, and neither is kept to
     edge = context.thresholds.at_edge_m
     kept = (np.minimum(near, far) < edge) & (np.abs(near - far) > edge)
-    places: NDArray[intp] = np.where(kept, np.where(near < far, 1, 2), 0)
-    return places
+    return np.where(kept, np.where(near < far, 1, 2), 0)

@@ -21,6 +21,7 @@ def flow_signals(context: DriveContext) -> SignalColumns:
     enough = counts >= limits.fewest
     congested = enough & (speeds < limits.congested_kmh)
     queues, queue_speeds = _queues(context)
+    overtakes, overtaken = _overtaking(context)
     existing = context.existing_lanes
     dense = np.all(np.logical_or(queues, ~existing), axis=1) & np.any(existing, axis=1)
     return SignalColumns(
@@ -30,9 +31,9 @@ def flow_signals(context: DriveContext) -> SignalColumns:
             "walking_pace_flow": enough & (speeds < limits.walking_pace_kmh),
             "dense_all_lanes": dense,
             "far_lane_queue": _beside(context, queues & (queue_speeds < limits.slow_queue_kmh)),
-            "overtaking": _overtaking(context),
+            "overtaking": overtakes,
             # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
-            "being_overtaken": ~dense & _being_overtaken(context),
+            "being_overtaken": ~dense & overtaken,
         }
     )
 
@@ -87,36 +88,25 @@ def _beside(context: DriveContext, lanes: Flags) -> Flags:
     return beside
 
 
-def _sides(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of ego being on each participant's far and near side."""
-    lateral = relations.lateral(context)
-    left, right = lateral == relations.LEFT_OF, lateral == relations.RIGHT_OF
-    return (left, right) if context.side == "right" else (right, left)
+def _overtaking(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of ego overtaking a slower vehicle, and of a faster one overtaking ego.
 
-
-def _overtaking(context: DriveContext) -> Flags:
-    """Flags of ego overtaking a slower vehicle on its far side, from shortly before to past it."""
+    Who overtakes is at the far side, from shortly before it is beside the other; ego overtakes
+    until it is just past.
+    """
     limits = context.thresholds
-    far, _ = _sides(context)
-    station = relations.station(context)
+    station, lateral = relations.station(context), relations.lateral(context)
     gap = relations.gap(context)
+    sides = (relations.LEFT_OF, relations.RIGHT_OF)
+    far, near = sides if context.side == "right" else sides[::-1]
     faster = context.ego_extents.along - context.extents.along
+    ahead, beside = station == relations.IN_FRONT_OF, station == relations.BESIDE
     soon = (station == relations.BEHIND) & (gap <= faster * limits.catching_up_s)
-    beside = station == relations.BESIDE
-    past = (station == relations.IN_FRONT_OF) & (gap <= context.ego_extents.along * limits.passed_s)
-    slower = context.going_along & (faster > 0)
-    overtaking: Flags = (slower & far & (soon | beside | past)).any(axis=0)
-    return overtaking
-
-
-def _being_overtaken(context: DriveContext) -> Flags:
-    """Flags of a faster vehicle that overtakes ego, or is about to, on ego's far side."""
-    limits = context.thresholds
-    _, near = _sides(context)
-    station = relations.station(context)
-    gap = relations.gap(context)
-    faster = context.extents.along - context.ego_extents.along
-    soon = (station == relations.IN_FRONT_OF) & (gap <= faster * limits.passed_s)
-    beside = station == relations.BESIDE
-    overtaken: Flags = (context.going_along & (faster > 0) & near & (soon | beside)).any(axis=0)
-    return overtaken
+    past = ahead & (gap <= context.ego_extents.along * limits.passed_s)
+    closing = ahead & (gap <= -faster * limits.passed_s)
+    overtakes = (faster > 0) & (lateral == far) & (soon | beside | past)
+    overtaken = (faster < 0) & (lateral == near) & (closing | beside)
+    return (
+        (context.going_along & overtakes).any(axis=0),
+        (context.going_along & overtaken).any(axis=0),
+    )

@@ -48,8 +48,7 @@ def _within_preparation(flags: Flags, context: DriveContext) -> Flags:
     states = round(context.thresholds.preparing_s / context.recording.step_s)
     ahead = np.append(np.cumsum(flags[::-1])[::-1], 0)
     until = np.minimum(np.arange(context.states) + states + 1, context.states)
-    soon: Flags = ahead[:-1] > ahead[until]
-    return soon
+    return ahead[:-1] > ahead[until]
 
 
 def _passes(front: Floats, line: float) -> Flags:

@@ -84,16 +84,15 @@ def _waits_oncoming(context: DriveContext) -> Flags:
 
 
 def _faces_ego(context: DriveContext) -> Flags:
-    faces: Flags = np.cos(context.extents.turned) < -0.5
-    return faces
+    return np.cos(context.extents.turned) < -0.5
 
 
 def _precedes(context: DriveContext, follows: Flags, gap: Floats) -> Flags:
     """Flags of participants that are next ahead of ego in its lane."""
     ahead = np.where(follows & context.relevant & ~is_oncoming(context), gap, np.inf)
     nearest = ahead.min(axis=0, initial=np.inf)
-    next_one: Flags = (ahead == nearest) & np.isfinite(ahead)
-    return next_one
+    precedes: Flags = (ahead == nearest) & np.isfinite(ahead)
+    return precedes
 
 
 def _constant(context: DriveContext, flags: list[bool]) -> Flags:
