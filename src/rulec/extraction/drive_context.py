@@ -61,7 +61,7 @@ class DriveContext:
     @cached_property
     def existing_lanes(self) -> Flags:
         """Flags of the lanes (second axis) that exist beside ego, by state."""
-        return self.road.lanes_at(self.ego_extents.s[0])
+        return self.road.lanes.existing_at(self.ego_extents.s[0])
 
     @cached_property
     def steady_lane(self) -> NDArray[intp]:
@@ -85,8 +85,7 @@ class DriveContext:
 
     def zero_if_standing(self, speed_kmh: Floats) -> Floats:
         """Speeds (km/h), exactly 0 below the threshold of standing."""
-        speeds: Floats = speed_kmh * (abs(speed_kmh) >= self.thresholds.standing_kmh)
-        return speeds
+        return speed_kmh * (abs(speed_kmh) >= self.thresholds.standing_kmh)
 
 
 def drive_context(

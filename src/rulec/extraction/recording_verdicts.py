@@ -75,10 +75,7 @@ class RecordingVerdicts(Rows):
             yield DriveVerdict(drive, next(answers)) if isinstance(drive, Drive) else drive
 
     def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
-        """The names beyond ``words`` that each rule reads, in vocabulary order.
-
-        They have their defaults in all states.
-        """
+        """Rule -> names beyond ``words`` that it reads, which have their defaults in all states."""
         declared = self.rules.vocabulary.declarations
         by_rule = {}
         for rule in self.rules.rules:

@@ -1,11 +1,11 @@
 """Scenarios: the road, ego, obstacles and their prediction; reading them from files."""
 
 from rulec.scenario.geometry import Box
-from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.scenario_files import available_scenarios, load_scenario
 from rulec.scenario.scenario_model import (
     Account,
     Alternative,
+    Choice,
     ConstantAcceleration,
     Ego,
     Footprints,

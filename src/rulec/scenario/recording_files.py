@@ -8,10 +8,9 @@ from pathlib import Path
 
 from rulec.diagnostics import SourceLocation
 from rulec.scenario.recorded.recording import Recording
-from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.safe_xml import is_xml, root_of
 from rulec.scenario.scenario_messages import OTHER_CHOICE
-from rulec.scenario.scenario_model import Scenario
+from rulec.scenario.scenario_model import Choice, Scenario
 from rulec.scenario.xml_element import XmlFormat, short
 
 RECORDING = XmlFormat(

@@ -8,10 +8,9 @@ from pathlib import Path
 from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
 from rulec.files import decoded, opened
 from rulec.resources import scenarios_folder
-from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.safe_xml import is_xml
 from rulec.scenario.scenario_messages import NOT_A_SCENARIO, OTHER_CHOICE, UNKNOWN_SCENARIO
-from rulec.scenario.scenario_model import Scenario
+from rulec.scenario.scenario_model import Choice, Scenario
 from rulec.scenario.toml.conversion import to_scenario
 from rulec.scenario.toml.toml_tables import TomlFile
 from rulec.toml import parsed_toml

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from pathlib import Path
 from typing import Literal, get_args
 
 from rulec.scenario.geometry import Box, centred
@@ -22,6 +23,12 @@ SignalValue = bool | float | str
 
 PEDESTRIAN = "pedestrian"
 
+Prediction = Literal["recorded", "constant"]
+PREDICTIONS: tuple[Prediction, ...] = get_args(Prediction)
+
+CONGESTED_BELOW_KMH = 30.0
+"""Traffic is taken to be congested where the middle one of its vehicles is slower than this."""
+
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
@@ -33,10 +40,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class MissingLane:
-    """An interval in which a lane does not exist.
-
-    Lanes are counted from the right from 1.
-    """
+    """An interval in which a lane, counted from the right from 1, does not exist."""
 
     lane: int
     s: Interval
@@ -69,9 +73,7 @@ class Road:
 
 @dataclass(frozen=True, slots=True)
 class ConstantAcceleration:
-    """Motion of a centre with constant acceleration along the road.
-
-    It begins at time 0.
+    """Motion of a centre with constant acceleration along the road, from time 0 on.
 
     A negative ``speed`` is oncoming traffic. Who brakes to standstill stays there and does not
     reverse; that ends the sideways motion too. From standstill only a positive acceleration sets
@@ -121,14 +123,10 @@ class Alternative:
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """Another traffic participant: a rectangle that moves by a prediction.
-
-    The rectangle lies along the road.
+    """Another traffic participant: a rectangle along the road that moves by a prediction.
 
     ``motion`` is the likeliest, of probability ``weight``, that of the ``alternatives`` being the
-    rest.
-
-    ``broader`` are more and more general words for its type, for rulebooks that lack the type's.
+    rest. ``broader`` are more and more general words for its type, for rulebooks that lack it.
     ``length`` and ``width`` count where the motion is that of a centre. ``walking_direction`` is in
     degrees from ego's direction, counter-clockwise: 90 is to the left.
     """
@@ -146,19 +144,13 @@ class Obstacle:
 
     @property
     def walks(self) -> bool:
-        """True if its regions are in its own frame, like pedestrians'.
-
-        Source: the paper, section II-B.
-        """
+        """True if its regions are in its own frame, like pedestrians' (the paper, II-B)."""
         return self.type == PEDESTRIAN or self.walking_direction is not None
 
 
 @dataclass(frozen=True, slots=True)
 class Ego:
-    """Ego's centre at time 0, with its size.
-
-    The size only tells if it stands in something.
-    """
+    """Ego's centre at time 0, with its size, which only tells if it stands in something."""
 
     s: float
     d: float
@@ -167,10 +159,7 @@ class Ego:
 
     @property
     def body(self) -> Box:
-        """The rectangle of ego at time 0.
-
-        It is a point if its size is not known.
-        """
+        """The rectangle of ego at time 0, a point if its size is not known."""
         return centred(self.s, self.d, self.length, self.width)
 
 
@@ -214,3 +203,26 @@ class Scenario:
     step_s: float = 1.0
     about: str = ""
     account: Account | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A choice of ego, time, road and prediction in a recorded scene.
+
+    ``ego``: a planning problem or a participant; None is the first planning problem. ``at_s``: the
+    time of the file that becomes time 0; None is the planning problem's, the participant's first.
+    ``reference``: the lanelet whose centre line is the reference line; None is the one ego is on.
+    ``prediction``: others move as recorded, or from time 0 on with constant acceleration; or each
+    of them does the one or the other, with these probabilities. Traffic is ``congested`` below a
+    median speed. ``ego_width_m``: None is what the participant has whose part ego takes, if it
+    takes one's; else ego is a point. ``net`` is the file with the roads, for formats that keep them
+    apart. Ids are those of the file; numbers will do.
+    """
+
+    ego: str | int | None = None
+    at_s: float | None = None
+    reference: str | int | None = None
+    prediction: Prediction | Mapping[Prediction, Fraction] = "recorded"
+    congested_below_kmh: float = CONGESTED_BELOW_KMH
+    net: Path | None = None
+    ego_width_m: float | None = None

@@ -44,7 +44,10 @@ def test_a_lane_that_ends_is_missing_from_then_on():
     assert found.rows[1][1] is None
     # Where the map has no lanelet ego's own stands in
     assert found.lanelet(1, 1).id == "3"
-    assert found.lanes_at(np.array([50.0, 150.0])).tolist() == [[True, True], [True, False]]
+    assert found.lanes.existing_at(np.array([50.0, 150.0])).tolist() == [
+        [True, True],
+        [True, False],
+    ]
 
 
 def test_crossings_and_junctions_lie_along_the_road():

@@ -9,8 +9,8 @@ from rulec.diagnostics import RulecError
 from rulec.planning.product.graph_product import count_paths
 from rulec.scenario import load_scenario
 from rulec.scenario.recorded.recorded_scene import to_scenario
-from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.recording_files import read_recording
+from rulec.scenario.scenario_model import Choice
 from support.builders.recordings import RECORDINGS
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")

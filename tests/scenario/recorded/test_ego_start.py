@@ -7,7 +7,7 @@ import pytest
 
 from rulec.diagnostics import RulecError
 from rulec.scenario.recorded.ego_start import ego_size, ego_start, reference_lanelet
-from rulec.scenario.recorded.scene_choice import Choice
+from rulec.scenario.scenario_model import Choice
 from support.builders.recordings import recording, straight, vehicle
 
 DRIVER = vehicle(7, {3: (30, 0), 4: (35, 1), 6: (45, 0)}, length=5.0, width=1.8)

@@ -29,7 +29,7 @@ def test_neighbours_that_lead_the_same_way_are_lanes():
     )
     assert lanes.straight.tolist() == pytest.approx([-7, -2, 2, 5])
     assert lanes.missing(0, 100, 0) == ()
-    assert lanes.count_at(50) == 3
+    assert lanes.existing_at(np.array(50.0)).sum() == 3
 
 
 def test_a_pavement_is_no_lane():
@@ -54,7 +54,7 @@ def test_a_lane_that_ends_is_missing_from_there_on():
     )
     assert lanes.straight.tolist() == pytest.approx([-2, 2, 6])
     assert lanes.missing(0, 100, 10) == (MissingLane(2, (30, 90)),)
-    assert (lanes.count_at(20), lanes.count_at(60)) == (2, 1)
+    assert lanes.existing_at(np.array([20.0, 60.0])).sum(axis=1).tolist() == [2, 1]
 
 
 def test_a_lane_begins_where_it_is_wide_enough():

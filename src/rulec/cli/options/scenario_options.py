@@ -23,7 +23,7 @@ def _prediction(
     """A kind of prediction, or several with their probabilities."""
     # Scenarios' formats, 30 ms: not for --help.
     from rulec.scenario.alternatives import is_distribution
-    from rulec.scenario.recorded.scene_choice import PREDICTIONS
+    from rulec.scenario.scenario_model import PREDICTIONS
 
     known = " or ".join(f"`{kind}`" for kind in PREDICTIONS)
     if value in PREDICTIONS:

@@ -12,19 +12,17 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.scenario.geometry import Box
-from rulec.scenario.recorded.crosswalks import road_crossings
+from rulec.extraction.tracks.tracks import Floats
 from rulec.scenario.recorded.lane_coordinates import Lanes, borders_along, lanes_along
+from rulec.scenario.recorded.outline_bounds import crossings_along
 from rulec.scenario.recorded.recording import Lanelet, Recording
-from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
+from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at, reference_line
 from rulec.scenario.recorded.route import (
     directions_beside,
     extended_route,
     is_lane,
     lanes_beside,
 )
-from rulec.scenario.recorded.traffic_obstacles import TrafficView
 
 _CROSSING_ANGLE = radians(30.0)
 """Ways that meet at a smaller angle run into each other, as where lanes join or part."""
@@ -56,19 +54,11 @@ class DrivenRoad:
 
     def piece(self, s: Floats) -> NDArray[intp]:
         """The numbers of the lanelets at places."""
-        pieces = np.searchsorted(self.borders, np.nan_to_num(s), "right") - 1
-        return np.clip(pieces, 0, len(self.rows) - 1)
-
-    def lanes_at(self, s: Floats) -> Flags:
-        """Flags of lanes (last axis, from the right) that exist at places."""
-        at = np.searchsorted(self.lanes.s, np.nan_to_num(s), "right") - 1
-        return self.lanes.there[np.clip(at, 0, len(self.lanes.there) - 1)]
+        return pieces_at(self.borders, s)
 
     def lane_of(self, d: Floats) -> NDArray[intp]:
         """The lanes at straightened offsets, the nearest beside the road."""
-        straight = self.lanes.straight
-        lanes = np.searchsorted(straight, np.nan_to_num(d), "right") - 1
-        return np.clip(lanes, 0, len(straight) - 2)
+        return pieces_at(self.lanes.straight, d)
 
 
 def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
@@ -86,10 +76,6 @@ def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -
     first = whole.index(way[0])
     middle = float(borders[first] + borders[first + len(way)]) / 2
     lanes = lanes_along(recording, whole, line, middle)
-    outline = Box(0.0, line.length, float(lanes.straight[0]), float(lanes.straight[-1]))
-    view = TrafficView(
-        recording=recording, line=line, lanes=lanes, ego_s=0.0, at_s=0.0, road=outline
-    )
     ((_, own_d),) = lanes.straightened(np.array([[middle, 0.0]])).tolist()
     own = int(np.clip(np.searchsorted(lanes.straight, own_d) - 1, 0, len(lanes.straight) - 2))
     return DrivenRoad(
@@ -98,7 +84,7 @@ def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -
         borders=borders,
         line=line,
         lanes=lanes,
-        crossings=tuple(part.s for part in road_crossings(view)),
+        crossings=tuple(crossings_along(recording, line, lanes, 0.0, line.length)),
         junctions=tuple(_runs(borders, [number in junctions for number in whole])),
     )
 

@@ -21,6 +21,7 @@ import shapely
 
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import (
     directions_beside,
     is_lane,
@@ -58,7 +59,7 @@ def match_to_map(recording: Recording, tracks: Tracks) -> dict[int, MatchedLanel
         chosen = near[near_lanes == lane]
         directions = directions_beside(lanes[lane], points[chosen])
         headings = tracks.heading[rows[chosen], columns[chosen]]
-        angle = np.abs((headings - directions + pi) % (2 * pi) - pi)
+        angle = np.abs(turn(directions, headings))
         outside = shapely.distance(areas[lane], points[chosen]) / NEAR_M
         costs = angle / _LARGEST_ANGLE + np.where(outside > 0, _BESIDE_COST + outside, 0.0)
         along = angle < _LARGEST_ANGLE

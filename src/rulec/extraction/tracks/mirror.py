@@ -8,7 +8,6 @@ from rulec.scenario.recorded.recording import (
     Lamp,
     Lanelet,
     Participant,
-    PlanningProblem,
     Points,
     Recording,
     Side,
@@ -23,15 +22,15 @@ _OTHER: dict[Side | None, Side | None] = {"left": "right", "right": "left", None
 
 
 def mirrored_recording(recording: Recording) -> Recording:
-    """Mirror a recording: negate ``y``, exchange left and right.
-
-    It is its own inverse.
-    """
+    """Mirror a recording: negate ``y``, exchange left and right."""
     return replace(
         recording,
         lanelets={number: _lanelet(item) for number, item in recording.lanelets.items()},
         participants=tuple(_participant(item) for item in recording.participants),
-        problems=tuple(_problem(item) for item in recording.problems),
+        problems=tuple(
+            replace(problem, start=_state(problem.start), goals=_points(problem.goals))
+            for problem in recording.problems
+        ),
         side=_OTHER[recording.side],
     )
 
@@ -63,10 +62,6 @@ def _participant(participant: Participant) -> Participant:
             for step, lit in participant.lamps.items()
         },
     )
-
-
-def _problem(problem: PlanningProblem) -> PlanningProblem:
-    return replace(problem, start=_state(problem.start), goals=_points(problem.goals))
 
 
 def _state(state: TrackState) -> TrackState:

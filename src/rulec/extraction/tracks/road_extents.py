@@ -18,6 +18,9 @@ from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.outline_bounds import outline_bounds
+from rulec.scenario.recorded.reference_line import turn
+
+_BOUNDS = ("s_min", "s_max", "d_min", "d_max", "w_min", "w_max")
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -61,40 +64,25 @@ class RoadExtents:
 
 def road_extents(tracks: Tracks, road: DrivenRoad) -> RoadExtents:
     """The extents of all participants in the coordinates of a road."""
-    bounds = [np.full(tracks.present.shape, np.nan) for _ in range(6)]
+    bounds = {name: np.full(tracks.present.shape, np.nan) for name in _BOUNDS}
     located = list(tracks.outlines())
     if located:
         low, high = outline_bounds([outline for _, _, outline in located], road.line, road.lanes)
         rows, columns = np.array([(row, column) for row, column, _ in located]).T
-        for axis in range(3):
-            bounds[2 * axis][rows, columns] = low[:, axis]
-            bounds[2 * axis + 1][rows, columns] = high[:, axis]
         standing = [row for row, body in enumerate(tracks.participants) if body.standing]
-        for bound in bounds:
+        by_bound = np.stack((low, high), axis=2).reshape(-1, len(_BOUNDS)).T
+        for bound, values in zip(bounds.values(), by_bound, strict=True):
+            bound[rows, columns] = values
             bound[standing] = bound[standing][:, :1]
-    s_min, s_max, d_min, d_max, w_min, w_max = bounds
-    directions = _directions(road, (s_min + s_max) / 2)
+    middle = (bounds["s_min"] + bounds["s_max"]) / 2
+    directions = road.line.headings_at(np.nan_to_num(middle))
     cos, sin = np.cos(directions), np.sin(directions)
     return RoadExtents(
-        s_min=s_min,
-        s_max=s_max,
-        d_min=d_min,
-        d_max=d_max,
-        w_min=w_min,
-        w_max=w_max,
-        turned=(tracks.heading - directions + np.pi) % (2 * np.pi) - np.pi,
+        **bounds,
+        turned=turn(directions, tracks.heading),
         along=tracks.vx * cos + tracks.vy * sin,
         across=tracks.vy * cos - tracks.vx * sin,
     )
-
-
-def _directions(road: DrivenRoad, s: Floats) -> Floats:
-    """The direction of the reference line at places (rad)."""
-    line = road.line
-    piece = np.searchsorted(line.arc, np.nan_to_num(s), "right") - 1
-    ahead = line.ahead[np.clip(piece, 0, len(line.arc) - 1)]
-    directions: Floats = np.arctan2(ahead[..., 1], ahead[..., 0])
-    return directions
 
 
 def lanes_touched(extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds) -> Flags:
@@ -104,5 +92,4 @@ def lanes_touched(extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds
     inside = np.minimum(high, left) - np.maximum(low, right)
     # A narrow body, such as a pedestrian's, is in a lane with most of it
     enough = np.minimum(thresholds.touching_m, (high - low) / 2)
-    touched: Flags = (inside > enough) & road.lanes_at(extents.s)
-    return touched
+    return (inside > enough) & road.lanes.existing_at(extents.s)

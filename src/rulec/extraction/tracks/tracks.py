@@ -6,7 +6,7 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -20,11 +20,6 @@ from rulec.scenario.recorded.route import is_lane, lanelet_area
 
 Floats: TypeAlias = NDArray[float64]
 Flags: TypeAlias = NDArray[bool_]
-
-_ARRAYS = (
-    *("present", "x", "y", "heading", "vx", "vy", "speed", "acceleration"),
-    *("on_lane", "on_crosswalk"),
-)
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -65,7 +60,11 @@ class Tracks:
             self,
             participants=tuple(self.participants[row] for row in rows),
             first=self.first + columns.start,
-            **{name: getattr(self, name)[rows][:, columns] for name in _ARRAYS},
+            **{
+                field.name: getattr(self, field.name)[rows][:, columns]
+                for field in fields(self)
+                if field.name not in ("participants", "first")
+            },
         )
 
     def of_type(self, name: str) -> Flags:

@@ -23,7 +23,6 @@ from rulec.scenario.commonroad.commonroad_participants import (
     commonroad_participants,
     planning_problem,
 )
-from rulec.scenario.commonroad.country_side import side_in
 from rulec.scenario.commonroad.required_elements import COMMONROAD, check_form
 from rulec.scenario.recorded.recording import (
     LONGEST_M,
@@ -32,6 +31,7 @@ from rulec.scenario.recorded.recording import (
     Light,
     Points,
     Recording,
+    Side,
 )
 from rulec.scenario.scenario_messages import COMMONROAD_MISSING
 from rulec.scenario.xml_element import LARGEST
@@ -48,6 +48,18 @@ _MARKS: Mapping[str, LaneMark] = MappingProxyType(
     }
 )
 """CommonRoad's words for marks; those of two kinds say no more than nothing, for want of a side."""
+
+_LEFT_HAND = """
+AUS BGD BHS BMU BRN BTN BWA CYP FJI GBR GUY HKG IDN IND IRL JAM JPN KEN LKA LSO
+MAC MDV MLT MOZ MUS MWI MYS NAM NPL NZL PAK PNG SGP SUR SWZ THA TTO TZA UGA ZAF
+ZWE
+"""
+_RIGHT_HAND = """
+ALB ARG ARM AUT AZE BEL BGR BIH BLR BRA CAN CHE CHL CHN COL CZE DEU DNK EGY ESP
+EST FIN FRA GEO GRC HRV HUN ISL ISR ITA KAZ KOR LTU LUX LVA MAR MDA MEX MNE NLD
+NOR PER PHL POL PRT ROU RUS SAU SRB SVK SVN SWE TUN TUR TWN UKR URY USA VNM
+"""
+"""The codes of countries (ISO 3166) by the side of traffic; names of scenarios begin with them."""
 
 
 def read_commonroad(path: Path) -> Recording:
@@ -181,3 +193,14 @@ def _points(vertices: Any) -> Points:
     if np.ptp(points, axis=0).max() > LONGEST_M:
         raise ValueError(f"a lanelet's bound is longer than {LONGEST_M / 1000:g} km")
     return points
+
+
+def side_in(name: str) -> Side | None:
+    """The side of ``DEU_Ulm-1_1_T-1``; None for other names, and for made-up countries.
+
+    CommonRoad's own ``ZAM`` is the made-up country Zamunda, not Zambia.
+    """
+    country = name.removeprefix("C-").partition("_")[0].upper()
+    if country in _LEFT_HAND.split():
+        return "left"
+    return "right" if country in _RIGHT_HAND.split() else None

@@ -69,10 +69,7 @@ def _predicted(obstacle: Any) -> Iterator[tuple[int, Points]]:
 
 
 def _rectangle(shape: Any, state: Any) -> Points | None:
-    """The outline of a rectangle in an exact place, the usual case.
-
-    None in any other case.
-    """
+    """The outline of a rectangle in an exact place, the usual case; else None."""
     length, width = getattr(shape, "length", None), getattr(shape, "width", None)
     position, heading = state.position, state.orientation
     if not isinstance(length, (int, float)) or not isinstance(width, (int, float)):

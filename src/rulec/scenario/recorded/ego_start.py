@@ -17,17 +17,15 @@ from rulec.scenario.recorded.recording import (
     TrackState,
 )
 from rulec.scenario.recorded.route import lanelet_of
-from rulec.scenario.recorded.scene_choice import Choice
 from rulec.scenario.scenario_messages import NOT_IN_RECORDING
+from rulec.scenario.scenario_model import Choice
 
 _SAME_PLACE_M = 0.1
 
 
 @dataclass(frozen=True, slots=True)
 class EgoStart:
-    """Ego's state at time 0, its step, and its goals.
-
-    Time 0 is a step of the file.
+    """Ego's state at time 0, which is a step of the file, and its goals.
 
     ``participant`` is the one whose part it takes over, if any.
     """
@@ -39,10 +37,7 @@ class EgoStart:
 
 
 def ego_start(recording: Recording, choice: Choice, file: str) -> EgoStart:
-    """The start of the chosen ego.
-
-    Raises RulecError R0612 if it is not there.
-    """
+    """The start of the chosen ego. Raises RulecError R0612 if it is not there."""
     problems = {problem.id: problem for problem in recording.problems}
     moving = {
         participant.id: participant.states
@@ -91,20 +86,14 @@ def _of_problem(
 
 
 def _is_ego(participant: Participant, problem: PlanningProblem) -> bool:
-    """True if a participant is ego's own recorded drive.
-
-    Some files have it among the obstacles, starting in ego's place.
-    """
+    """True if a participant is ego's own recorded drive, starting in ego's place."""
     state = participant.states.get(problem.step)
     place = problem.start
     return state is not None and hypot(state.x - place.x, state.y - place.y) < _SAME_PLACE_M
 
 
 def ego_size(recording: Recording, start: EgoStart, choice: Choice) -> tuple[float, float]:
-    """Ego's length and width (m), as chosen or else as recorded.
-
-    They are 0 where they are not known.
-    """
+    """Ego's length and width (m), as chosen or else as recorded; 0 if not known."""
     length, width = 0.0, 0.0
     for participant in recording.participants:
         if participant.id == start.participant:

@@ -10,14 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
+from operator import itemgetter
 
 import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.scenario.recorded.recording import Lanelet, Points, Recording
-from rulec.scenario.recorded.reference_line import ReferenceLine, densified
+from rulec.scenario.recorded.reference_line import ReferenceLine, densified, pieces_at
 from rulec.scenario.recorded.route import lanes_beside
 from rulec.scenario.scenario_model import MissingLane
 
@@ -35,7 +36,6 @@ class Lanes:
     """Bounds of lanes from right to left along the road.
 
     ``bounds[i]`` are at ``s[i]``, and ``straight`` are those in the scenario.
-
     ``there[i][k]``: does lane k (from 0) exist between ``s[i]`` and ``s[i + 1]``?
     """
 
@@ -47,7 +47,7 @@ class Lanes:
     def straightened(self, places: Points) -> Points:
         """Places (rows ``s``, ``d``) relative to the lanes' straight bounds."""
         at = np.nan_to_num(places[:, 0])
-        before = np.clip(np.searchsorted(self.s, at, "right") - 1, 0, len(self.s) - 2)
+        before = pieces_at(self.s, at)
         part = (at - self.s[before]) / (self.s[before + 1] - self.s[before])
         part = np.clip(part, 0.0, 1.0)[:, None]
         bounds = self.bounds[before] * (1 - part) + self.bounds[before + 1] * part
@@ -62,32 +62,21 @@ class Lanes:
         beyond = np.where(offset < 0, low + offset, high + d[:, 0] - left)
         return np.stack((places[:, 0], np.where(inside, stretched, beyond)), axis=1)
 
-    def count_at(self, s: float) -> int:
-        """The number of lanes at a place."""
-        piece = int(np.clip(np.searchsorted(self.s, s, "right") - 1, 0, len(self.there) - 1))
-        return int(self.there[piece].sum())
+    def existing_at(self, s: _Values) -> NDArray[np.bool_]:
+        """Flags of the lanes (last axis, from the right) that exist at places."""
+        return self.there[pieces_at(self.s, s)]
 
     def missing(self, start: float, end: float, shift: float) -> tuple[MissingLane, ...]:
         """The gaps of lanes between two places, ``shift`` subtracted from each ``s``."""
-        return tuple(
-            MissingLane(lane + 1, (low - shift, high - shift))
-            for lane in range(self.there.shape[1])
-            for low, high in self._gaps(lane, start, end)
-        )
-
-    def _gaps(self, lane: int, start: float, end: float) -> Iterator[tuple[float, float]]:
-        gap: tuple[float, float] | None = None
-        for there, (low, high) in zip(self.there[:, lane], pairwise(self.s), strict=True):
-            low, high = max(float(low), start), min(float(high), end)
-            if low >= high:
-                continue
-            if not there:
-                gap = (gap[0] if gap else low, high)
-            elif gap:
-                yield gap
-                gap = None
-        if gap and gap[1] - gap[0] > _HAIR_M:
-            yield gap
+        missing = []
+        for lane, column in enumerate(self.there.T, 1):
+            pieces = zip(column.tolist(), pairwise(self.s.tolist()), strict=True)
+            for there, group in groupby(pieces, key=itemgetter(0)):
+                run = [piece for _, piece in group]
+                low, high = max(run[0][0], start), min(run[-1][1], end)
+                if not there and high - low > _HAIR_M:
+                    missing.append(MissingLane(lane, (low - shift, high - shift)))
+        return tuple(missing)
 
 
 def lanes_along(
@@ -108,7 +97,7 @@ def lanes_along(
     on_the_left = _side(strip, left, left=True)
     own = np.maximum(left - right, _HAIR_M), np.ones(len(lanelets), dtype=bool)
     columns = [*reversed(on_the_right), own, *on_the_left]
-    middles = strip.pieces((grid[:-1] + grid[1:]) / 2)
+    middles = pieces_at(borders, (grid[:-1] + grid[1:]) / 2)
     there = np.stack(
         [
             present[middles] & (np.minimum(width[:-1], width[1:]) >= NARROWEST_LANE_M)
@@ -140,10 +129,6 @@ class _Strip:
     borders: _Values
     grid: _Values
 
-    def pieces(self, s: _Values) -> NDArray[np.intp]:
-        """The numbers of the way's lanelets at places."""
-        return np.clip(np.searchsorted(self.borders, s, "right") - 1, 0, len(self.way) - 1)
-
 
 def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
     """The places at which lanelets begin, and the last one ends."""
@@ -157,11 +142,8 @@ def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
 def _usual_widths(
     grid: _Values, widths: _Values, there: NDArray[np.bool_], ego_s: float
 ) -> Iterator[float]:
-    """The width of each lane at ego's place, or its median.
-
-    The median is for lanes that do not exist at ego's place.
-    """
-    at = int(np.clip(np.searchsorted(grid, ego_s, "right") - 1, 0, len(there) - 1))
+    """The width of each lane at ego's place, or its median if it does not exist there."""
+    at = pieces_at(grid, np.array(ego_s))
     for width, own in zip(widths.T, there.T, strict=True):
         if own[at]:
             yield float(np.interp(ego_s, grid, width))
@@ -177,7 +159,7 @@ def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, N
         present = np.array([len(row) > k for row in rows])
         own = [strip.recording.lanelets[row[k]] if len(row) > k else None for row in rows]
         outer = _bound(strip, own, left=left)
-        known = present[strip.pieces(strip.grid)]
+        known = present[pieces_at(strip.borders, strip.grid)]
         width = np.maximum(outer - inner if left else inner - outer, _HAIR_M)
         if known.any():
             width = np.interp(strip.grid, strip.grid[known], width[known])

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-
 import numpy as np
 
-from rulec.scenario.recorded.congestion import congested
-from rulec.scenario.recorded.crosswalks import road_crossings
 from rulec.scenario.recorded.ego_start import choice_error, ego_size, ego_start, reference_lanelet
 from rulec.scenario.recorded.lane_coordinates import lanes_along
+from rulec.scenario.recorded.outline_bounds import crossings_along
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.reference_line import reference_line
 from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
-from rulec.scenario.recorded.scene_choice import Choice
-from rulec.scenario.recorded.scene_signals import map_signals
+from rulec.scenario.recorded.scene_signals import congested, map_signals
 from rulec.scenario.recorded.traffic_obstacles import TrafficView, traffic_obstacles
-from rulec.scenario.scenario_model import Account, Ego, Obstacle, Road, Scenario, SignalValue
+from rulec.scenario.scenario_model import Account, Choice, Ego, Road, Scenario, Stretch
 
 STEP_S = 0.5
 
@@ -48,20 +43,27 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
         )
     low, high = max(0.0, ego_s - REACH_M), min(line.length, ego_s + REACH_M)
     bounds = tuple(lanes.straight.tolist())
-    road = Road((low - ego_s, high - ego_s), bounds, (), lanes.missing(low, high, ego_s))
+    crossings = crossings_along(recording, line, lanes, low, high)
+    stretches = tuple(Stretch("crossing", (s0 - ego_s, s1 - ego_s)) for s0, s1 in crossings)
+    road = Road((low - ego_s, high - ego_s), bounds, stretches, lanes.missing(low, high, ego_s))
     at_s = start.step * recording.step_s
     view = TrafficView(
         recording=recording, line=line, lanes=lanes, ego_s=ego_s, at_s=at_s, road=road.outline
     )
     on_road = tuple(traffic_obstacles(view, start.participant, choice.prediction))
+    congestion = congested(on_road, road.outline, choice.congested_below_kmh)
+    count = int(lanes.existing_at(np.array(ego_s)).sum())
+    ahead = [recording.lanelets[number] for number in way[way.index(own) :]]
     derived = {
-        **_traffic_signals(view, on_road, choice),
-        **_map_signals(view, way, own, start.step),
+        # The paper's word and that of the vocabulary `road`
+        "CONGESTED": congestion,
+        "congested": congestion,
+        **map_signals(ahead, count, recording.step_s, start.step),
     }
     others = sum(participant.id != start.participant for participant in recording.participants)
     return Scenario(
         recording.name,
-        replace(road, surfaces=road_crossings(view)),
+        road,
         Ego(0.0, d, *ego_size(recording, start, choice)),
         on_road,
         {name: value for name, (value, _) in derived.items()},
@@ -76,18 +78,3 @@ def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
             remarks=recording.remarks,
         ),
     )
-
-
-def _traffic_signals(
-    view: TrafficView, on_road: Sequence[Obstacle], choice: Choice
-) -> dict[str, tuple[SignalValue, str]]:
-    # The paper's word and that of the vocabulary `road`
-    derived = congested(on_road, view.road, choice.congested_below_kmh)
-    return {"CONGESTED": derived, "congested": derived}
-
-
-def _map_signals(
-    view: TrafficView, way: Sequence[str], own: str, step: int
-) -> dict[str, tuple[SignalValue, str]]:
-    ahead = [view.recording.lanelets[number] for number in way[way.index(own) :]]
-    return map_signals(ahead, view.lanes.count_at(view.ego_s), view.recording.step_s, step)

@@ -36,8 +36,7 @@ _VEHICLE = ("vehicle", "road_user", "obstacle")
 _RIDER = ("light_rider", "vulnerable_user", "road_user", "obstacle")
 OBSTACLE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "car": ("car", *_VEHICLE),
-        "taxi": ("car", *_VEHICLE),
+        **dict.fromkeys(("car", "taxi"), ("car", *_VEHICLE)),
         "truck": ("truck", *_VEHICLE),
         "bus": ("bus", *_VEHICLE),
         "motorcycle": ("motorcycle", *_VEHICLE),
@@ -47,11 +46,8 @@ OBSTACLE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "pedestrian": ("pedestrian", "vulnerable_user", "road_user", "obstacle"),
         "train": ("train", "rail_vehicle", "rail_borne", "road_user", "obstacle"),
         "unknown": ("road_user", "obstacle"),
-        "constructionZone": ("obstacle",),
-        "roadBoundary": ("obstacle",),
-        "building": ("obstacle",),
-        "pillar": ("obstacle",),
-        "median_strip": ("obstacle",),
+        **dict.fromkeys(("constructionZone", "roadBoundary", "building"), ("obstacle",)),
+        **dict.fromkeys(("pillar", "median_strip"), ("obstacle",)),
     }
 )
 """CommonRoad's obstacle types -> object types of vocabularies, the most specific word first.

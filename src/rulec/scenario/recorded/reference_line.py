@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 from numpy import float64, intp
@@ -27,6 +28,7 @@ _PIECE_M = 5.0
 _AT_ONCE = 1 << 18
 _HAIR = 1e-9
 _Values = NDArray[float64]
+Angle = TypeVar("Angle", float, _Values)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,10 +51,14 @@ class ReferenceLine:
         """From the first corner to the last, without what lies beyond."""
         return float(self.arc[-1])
 
+    def headings_at(self, s: _Values) -> _Values:
+        """The directions of the pieces at places, in radians."""
+        ahead = self.ahead[self._piece(s)]
+        return np.arctan2(ahead[..., 1], ahead[..., 0])
+
     def heading_at(self, s: float) -> float:
         """The direction of the piece at ``s``, in radians."""
-        dx, dy = self.ahead[self._piece(np.array([s]))[0]]
-        return float(np.arctan2(dy, dx))
+        return float(self.headings_at(np.array([s]))[0])
 
     def coordinates(self, places: Points) -> Points:
         """Frenet coordinates ``s`` and ``d`` of places, a row each; NaN without a foot."""
@@ -120,7 +126,7 @@ def reference_line(corners: Points) -> ReferenceLine:
     steps = np.diff(extended, axis=0)
     lengths = np.hypot(steps[:, 0], steps[:, 1])
     angles = np.arctan2(steps[:, 1], steps[:, 0])
-    halves = _turn(angles[:-1], angles[1:]) / 2
+    halves = turn(angles[:-1], angles[1:]) / 2
     first, last = np.tan(np.append(0.0, -halves)), np.tan(np.append(halves, 0.0))
     arc = np.concatenate(([0.0], np.cumsum(lengths)[:-1])) - BEYOND_M
     return ReferenceLine(
@@ -151,7 +157,11 @@ def densified(points: Points, every_m: float) -> Points:
     return np.concatenate(parts)
 
 
-def _turn(before: _Values, after: _Values) -> _Values:
-    """From one angle to another, the short way."""
-    turned: _Values = (after - before + np.pi) % (2 * np.pi) - np.pi
-    return turned
+def turn(before: Angle, after: Angle) -> Angle:
+    """The way from one angle (rad) to another, the short way round."""
+    return (after - before + np.pi) % (2 * np.pi) - np.pi
+
+
+def pieces_at(borders: _Values, s: _Values) -> NDArray[intp]:
+    """The numbers of the pieces between ascending borders at places, the nearest beyond them."""
+    return np.clip(np.searchsorted(borders, np.nan_to_num(s), "right") - 1, 0, len(borders) - 2)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from math import atan2, pi, radians
+from collections.abc import Iterable, Mapping, Sequence
+from math import atan2, radians
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from rulec.scenario.recorded.recording import Lanelet, Points, Recording, TrackState, id_order
+from rulec.scenario.recorded.reference_line import pieces_at, turn
 
 REACH_M = 300.0
 """The road is followed this far ahead of ego and behind it, where the file has so much of it."""
@@ -21,7 +22,6 @@ NO_LANES = frozenset({"sidewalk", "crosswalk", "border", "parking", "restricted_
 _NEAR_M = 3.0
 _LOOK_M = 30.0
 _TURNS_BACK = radians(135)
-_Next = Callable[[Lanelet], Iterable[str]]
 
 
 def is_lane(lanelet: Lanelet) -> bool:
@@ -39,16 +39,13 @@ def directions_beside(lanelet: Lanelet, points: NDArray[np.object_]) -> NDArray[
     steps = np.diff(lanelet.centre, axis=0)
     reached = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
     along = shapely.line_locate_point(shapely.LineString(lanelet.centre), points)
-    piece = np.clip(np.searchsorted(reached, along, "right") - 1, 0, len(steps) - 1)
+    piece = pieces_at(reached, along)
     directions: NDArray[np.float64] = np.arctan2(steps[piece, 1], steps[piece, 0])
     return directions
 
 
 def lanelet_of(recording: Recording, state: TrackState) -> str | None:
-    """The lanelet under a vehicle, best aligned with its heading.
-
-    The nearest one if it is beside all of them by no more than 3 m.
-    """
+    """The lanelet under a vehicle, best aligned with it; else the nearest within 3 m."""
     place = shapely.Point(state.x, state.y)
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
     far = {lanelet.id: float(shapely.distance(lanelet_area(lanelet), place)) for lanelet in lanes}
@@ -56,17 +53,14 @@ def lanelet_of(recording: Recording, state: TrackState) -> str | None:
     inside = [lanelet for lanelet in near if far[lanelet.id] == 0.0]
 
     def rank(lanelet: Lanelet) -> tuple[float, float, tuple[int, str]]:
-        error = abs(_turn(float(directions_beside(lanelet, np.array([place]))[0]), state.heading))
+        error = abs(turn(float(directions_beside(lanelet, np.array([place]))[0]), state.heading))
         return (0.0 if inside else far[lanelet.id], round(error, 6), id_order(lanelet.id))
 
     return min(inside or near, key=rank).id if near else None
 
 
 def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
-    """The lanes at one of the places, and parallel ones beside them.
-
-    Those beside lead the same way.
-    """
+    """The lanes at one of the places, and those beside them that lead the same way."""
     points = shapely.points(places)
     holding = {
         lanelet.id
@@ -85,10 +79,7 @@ def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
 
 
 def lanes_beside(recording: Recording, start: str, *, left: bool) -> tuple[str, ...]:
-    """The parallel lanes left or right of a lanelet, nearest first.
-
-    They lead the same way.
-    """
+    """The lanes left or right of a lanelet that lead the same way, nearest first."""
     lanes: list[str] = []
     lanelet = recording.lanelets[start]
     while True:
@@ -107,41 +98,21 @@ def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[st
     Where the road branches: towards a target if one can be reached, else as straight as possible.
     """
     lanelets = recording.lanelets
-    ahead = _way_to(lanelets, start, targets)
-    ahead = _straight_on(lanelets, ahead, lambda lanelet: lanelet.successors, backwards=False)
-    behind = _straight_on(
-        lanelets, [start], lambda lanelet: lanelet.predecessors, backwards=True, taken=ahead
-    )
+    ahead = _straight_on(lanelets, _way_to(lanelets, start, targets))
+    behind = _straight_on(lanelets, [start], backwards=True, taken=ahead)
     return (*behind[:0:-1], *ahead)
 
 
 def extended_route(recording: Recording, way: Sequence[str]) -> tuple[str, ...]:
-    """A route with the road before and after it.
-
-    Where the road branches, it is as straight as possible.
-    """
-    ahead = _straight_on(
-        recording.lanelets,
-        [way[-1]],
-        lambda lanelet: lanelet.successors,
-        backwards=False,
-        taken=way,
-    )
-    behind = _straight_on(
-        recording.lanelets,
-        [way[0]],
-        lambda lanelet: lanelet.predecessors,
-        backwards=True,
-        taken=(*way, *ahead),
-    )
+    """A route with the road before and after it, as straight as possible where it branches."""
+    lanelets = recording.lanelets
+    ahead = _straight_on(lanelets, [way[-1]], taken=way)
+    behind = _straight_on(lanelets, [way[0]], backwards=True, taken=(*way, *ahead))
     return (*behind[:0:-1], *way, *ahead[1:])
 
 
 def _way_to(lanelets: Mapping[str, Lanelet], start: str, targets: frozenset[str]) -> list[str]:
-    """The route through the fewest lanelets.
-
-    It is only the start if there is none.
-    """
+    """The route through the fewest lanelets, only the start if there is none."""
     came_from: dict[str, str | None] = {start: None}
     waiting = deque([start])
     while waiting:
@@ -160,37 +131,31 @@ def _way_to(lanelets: Mapping[str, Lanelet], start: str, targets: frozenset[str]
 
 def _straight_on(
     lanelets: Mapping[str, Lanelet],
-    way: list[str],
-    following: _Next,
+    start: Sequence[str],
     *,
-    backwards: bool,
+    backwards: bool = False,
     taken: Iterable[str] = (),
 ) -> list[str]:
-    way = list(way)
+    """A way with what follows it, as straight as possible, without the lanelets ``taken``."""
+    way = list(start)
     seen = {*way, *taken}
     reach = sum(_length(lanelets[number]) for number in way[1:])
     while reach < REACH_M:
         here = lanelets[way[-1]]
-        options = [lanelets[n] for n in following(here) if n in lanelets and n not in seen]
-        options = [option for option in options if is_lane(option)]
-        if not options:
-            break
         leaving = _end_heading(here, backwards)
-        # A road does not turn back by itself, though one may turn around at its end
         options = [
-            option
-            for option in options
-            if abs(_turn(leaving, _end_heading(option, backwards))) < _TURNS_BACK
+            lanelets[number]
+            for number in (here.predecessors if backwards else here.successors)
+            if number in lanelets
+            and number not in seen
+            and is_lane(lanelets[number])
+            # A road does not turn back by itself, though one may turn around at its end
+            and abs(turn(leaving, _end_heading(lanelets[number], backwards))) < _TURNS_BACK
         ]
         if not options:
             break
-        chosen = min(
-            options,
-            key=lambda option: (
-                abs(_turn(leaving, _heading_ahead(option, backwards))),
-                id_order(option.id),
-            ),
-        )
+        turns = {x.id: abs(turn(leaving, _heading_ahead(x, backwards))) for x in options}
+        chosen = min(options, key=lambda option: (turns[option.id], id_order(option.id)))
         way.append(chosen.id)
         seen.add(chosen.id)
         reach += _length(chosen)
@@ -219,7 +184,3 @@ def _heading_ahead(lanelet: Lanelet, backwards: bool) -> float:
 def _direction(start: Iterable[float], end: Iterable[float]) -> float:
     (x0, y0), (x1, y1) = start, end
     return atan2(y1 - y0, x1 - x0)
-
-
-def _turn(before: float, after: float) -> float:
-    return (after - before + pi) % (2 * pi) - pi

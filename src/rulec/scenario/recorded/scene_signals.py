@@ -1,15 +1,26 @@
-"""Signals that the map supplies: signs, traffic lights, the number of lanes.
+"""Signals of a scene: signs, traffic lights and lanes of the map, and congestion.
 
 The words are those of the vocabulary ``road``. What the file does not say is not made up: such a
-signal is missing, and the rulebook's own default holds.
+signal is missing, and the rulebook's own default holds. No file states congestion, though: traffic
+is congested where the median speed of the vehicles on ego's road that go ego's way is below a
+threshold. Speeds are those at which they cover the road from time 0 on, for a second if the
+recording goes on so long: in some recordings the speed that is written down is another one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from statistics import median
 
+from rulec.scenario.geometry import Box
+from rulec.scenario.motion import swept
 from rulec.scenario.recorded.recording import Lanelet
-from rulec.scenario.scenario_model import SignalValue
+from rulec.scenario.scenario_model import Obstacle, SignalValue
+
+FEWEST = 3
+"""So many vehicles it takes for traffic to be congested."""
+
+_FOR_S = 1.0
 
 LIGHT_FOR_S = 10.0
 """A light counts if all of ego's show one colour for so long from time 0 on."""
@@ -55,3 +66,31 @@ def map_signals(
         if len(shown) == 1 and (colour := shown.pop()) in _COLOURS:
             signals["light"] = _COLOURS[colour], f"the traffic lights of lanelet {lit.id}"
     return signals
+
+
+def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tuple[bool, str]:
+    """The decision if traffic is congested, and its reason."""
+    speeds = [
+        speed * _KMH
+        for obstacle in obstacles
+        if "vehicle" in (obstacle.type, *obstacle.broader)
+        and (speed := _speed(obstacle, road)) is not None
+    ]
+    if len(speeds) < FEWEST:
+        few = f"it takes {FEWEST} vehicles that go ego's way on its road, here {len(speeds)}"
+        return False, few
+    middle = median(speeds)
+    relation = "below" if middle < below_kmh else "not below"
+    compared = f"{middle:.1f} km/h, {relation} {below_kmh:g} km/h"
+    return middle < below_kmh, f"the median speed of {len(speeds)} vehicles is {compared}"
+
+
+def _speed(obstacle: Obstacle, road: Box) -> float | None:
+    """The speed along the road (m/s); None off the road, or for oncoming traffic."""
+    now = swept(obstacle, 0.0, 0.0)
+    then = swept(obstacle, _FOR_S, _FOR_S)
+    if now is None or then is None or not now.overlaps(road):
+        return None
+    speed = now.shift_to(then)[0] / _FOR_S
+    # Who stands may drift backwards by what the recording is inexact
+    return max(speed, 0.0) if speed > -1.0 else None

@@ -22,9 +22,7 @@ _CORNERS = np.array([[1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1
 def rectangles(
     centres: Points, headings: NDArray[float64], length: float, width: float, shift: float = 0.0
 ) -> NDArray[float64]:
-    """Corners and side middles of a rectangle in several places.
-
-    The axes are place, point, and x and y.
+    """Corners and side middles of a rectangle; the axes are place, point, and x and y.
 
     ``shift``: how far the centre lies ahead of the rectangle's middle.
     """
@@ -33,8 +31,7 @@ def rectangles(
     turned = np.stack(
         (body[:, 0] * cos - body[:, 1] * sin, body[:, 0] * sin + body[:, 1] * cos), axis=-1
     )
-    corners: NDArray[float64] = turned + centres[:, None, :]
-    return corners
+    return turned + centres[:, None, :]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,10 +72,7 @@ class TrackStates(Mapping[int, TrackState]):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TrackOutlines(Mapping[int, Points]):
-    """The rectangle on a track by time step, computed on demand.
-
-    All are computed when the first is asked for.
-    """
+    """The rectangle on a track by time step, all computed when the first is asked for."""
 
     track: Track
     _laid_out: list[NDArray[float64]] = field(default_factory=list, repr=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import cos, degrees, pi
 
@@ -15,7 +15,6 @@ from rulec.scenario.recorded.lane_coordinates import Lanes
 from rulec.scenario.recorded.outline_bounds import outline_bounds
 from rulec.scenario.recorded.recording import Participant, Points, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine
-from rulec.scenario.recorded.scene_choice import Prediction
 from rulec.scenario.scenario_model import (
     PEDESTRIAN,
     Alternative,
@@ -23,6 +22,7 @@ from rulec.scenario.scenario_model import (
     Footprints,
     Motion,
     Obstacle,
+    Prediction,
     SignalValue,
 )
 
@@ -46,10 +46,7 @@ class TrafficView:
     road: Box
 
     def time(self, step: int) -> float:
-        """The scenario's time (s) of a time step.
-
-        Decimals count as typed, so that 3 x 0.1 s is 0.3 s.
-        """
+        """The scenario's time (s) of a time step; 3 x 0.1 s is 0.3 s, as typed."""
         return round(step * self.recording.step_s - self.at_s, 9)
 
     @property
@@ -82,10 +79,7 @@ class TrafficView:
 def traffic_obstacles(
     view: TrafficView, ego: str | None, prediction: Prediction | Mapping[Prediction, Fraction]
 ) -> Iterator[Obstacle]:
-    """The obstacles on the road after time 0, in the file's order.
-
-    Time 0 is included.
-    """
+    """The obstacles on the road from time 0 on, in the file's order."""
     predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
     others = [participant for participant in view.recording.participants if participant.id != ego]
     for participant, steps, own in _laid_out(view, others):
@@ -105,9 +99,7 @@ def traffic_obstacles(
             length=first.s_max - first.s_min,
             width=first.d_max - first.d_min,
             motion=likeliest.motion,
-            walking_direction=_walking_direction(view, participant)
-            if words[0] == PEDESTRIAN
-            else None,
+            walking_direction=_walking_direction(view, participant),
             signals=_signals(participant),
             broader=words[1:],
             weight=likeliest.weight,
@@ -141,27 +133,23 @@ def _motion(
     boxes: Sequence[Box | None],
     prediction: Prediction,
 ) -> Motion | None:
-    """The motion of a participant, or None off the road.
-
-    It is also None if a constant motion is not there at time 0.
-    """
+    """The motion of a participant; None off the road, or if a constant one has no time 0."""
     now = boxes[0] if steps and (participant.standing or view.time(steps[0]) == 0) else None
     if participant.standing or prediction == "constant" or (now and len(participant.outlines) == 1):
         if now is None:
             return None
-        motion = _constant(view, participant, steps[0], now)
-        return (
-            motion
-            if (participant.standing and now.overlaps(view.road)) or not participant.standing
-            else None
-        )
+        if participant.standing and not now.overlaps(view.road):
+            return None
+        return _constant(view, participant, steps[0], now)
     if not any(box is not None and box.overlaps(view.road) for box in boxes):
         return None
     times = [view.time(step) for step in steps]
     known = list(boxes)
-    if times[-1] == view.until_s and known[-1] is not None:
+    last = known[-1]
+    if times[-1] == view.until_s and last is not None:
+        along = _speed(times, known) * GOES_ON_S
         times.append(times[-1] + GOES_ON_S)
-        known.append(_moved(known[-1], _speed(times[:-1], known) * GOES_ON_S))
+        known.append(replace(last, s_min=last.s_min + along, s_max=last.s_max + along))
     return Footprints(tuple(times), tuple(known))
 
 
@@ -186,20 +174,15 @@ def _speed(times: Sequence[float], boxes: Sequence[Box | None]) -> float:
         first, since = box, time
     if last is None or first is None or since == times[-1]:
         return 0.0
-    return (last.s_min + last.s_max - first.s_min - first.s_max) / 2 / (times[-1] - since)
-
-
-def _moved(box: Box, along: float) -> Box:
-    return Box(box.s_min + along, box.s_max + along, box.d_min, box.d_max)
+    return first.shift_to(last)[0] / (times[-1] - since)
 
 
 def _walking_direction(view: TrafficView, participant: Participant) -> float | None:
-    """The direction (degrees) of a pedestrian that never moves.
-
-    None if motion tells.
-    """
+    """The direction (degrees) of a pedestrian that never moves; None if motion tells."""
     state = next(iter(participant.states.values()), None)
-    if state is None or len({(own.x, own.y) for own in participant.states.values()}) > 1:
+    if participant.object_types[0] != PEDESTRIAN or state is None:
+        return None
+    if len({(own.x, own.y) for own in participant.states.values()}) > 1:
         return None
     place = view.line.coordinates(np.array([[state.x, state.y]]))
     turn = state.heading - view.line.heading_at(float(np.nan_to_num(place[0, 0])))
@@ -207,10 +190,7 @@ def _walking_direction(view: TrafficView, participant: Participant) -> float | N
 
 
 def _signals(participant: Participant) -> dict[str, SignalValue]:
-    """The constant signals of a participant.
-
-    Changing ones are left to the rulebook.
-    """
+    """The constant signals of a participant; changing ones are left to the rulebook."""
     signals: dict[str, SignalValue] = {"two_wheeled": participant.type in ("motorcycle", "bicycle")}
     if participant.type == "parkedVehicle":
         signals["parked"] = True

@@ -32,14 +32,8 @@ _RAIL = VehicleType("train", 135.0, 2.84)
 
 CLASSES: Mapping[str, VehicleType] = MappingProxyType(
     {
-        "passenger": _CAR,
-        "private": _CAR,
-        "hov": _CAR,
-        "vip": _CAR,
-        "army": _CAR,
-        "evehicle": _CAR,
-        "custom1": _CAR,
-        "custom2": _CAR,
+        **dict.fromkeys(("passenger", "private", "hov", "vip", "army", "evehicle"), _CAR),
+        **dict.fromkeys(("custom1", "custom2"), _CAR),
         "taxi": VehicleType("taxi", 5.0, 1.8),
         "authority": VehicleType("priorityVehicle", 5.0, 1.8),
         "emergency": VehicleType("priorityVehicle", 6.5, 2.16),
