@@ -8,7 +8,7 @@ from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
-from rulec.automata.thresholds import ThresholdScale, scale
+from rulec.automata.thresholds import scale
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.kleene import Unknown, weighted_sum
 from rulec.monitoring.axiom_violations import StatePlace, impossible_state
@@ -90,29 +90,27 @@ class LetterReader:
         rule: str,
     ) -> Digits:
         # Rules tell different values apart, so a column is known by the whole read, bar variables.
-        about: Read | ThresholdScale
-        kind: object
-        if isinstance(read, Read):
-            about, kind = read, (read.name, read.values)
-        else:
-            about = kind = scale(read)
+        about = read if isinstance(read, Read) else scale(read)
         items = tuple([objects[variable] for variable in about.variables])
+        kind = (about.name, about.values) if isinstance(about, Read) else about
         key = (kind, items, first, last)
-        if key not in self._digits_of_reads:
+        digits = self._digits_of_reads.get(key)
+        if digits is None:
             if isinstance(about, Read):
                 values = self._values_of(about.name, items, first, last, rule)
                 digit_of = {value: about.digit(value) for value in set(values)}
-                digits = [digit_of[value] for value in values]
+                column = [digit_of[value] for value in values]
             elif about.quantity is None:
                 bound = dict(zip(about.variables, items, strict=True))
                 numbers = self._numbers_of(about.names, first, last)
-                digits = [self._digit(about.read, bound, number, rule) for number in numbers]
+                column = [self._digit(about.read, bound, number, rule) for number in numbers]
             else:
                 arguments = tuple([objects[variable] for variable in about.quantity.arguments])
                 values = self._values_of(about.quantity.name, arguments, first, last, rule)
-                digits = [about.digit(value) for value in values]
-            self._digits_of_reads[key] = digits[0] if len(set(digits)) == 1 else digits
-        return self._digits_of_reads[key]
+                column = [about.digit(value) for value in values]
+            digits = column[0] if len(set(column)) == 1 else column
+            self._digits_of_reads[key] = digits
+        return digits
 
     def _values_of(
         self, name: str, items: tuple[str, ...], first: int, last: int, rule: str
