@@ -16,15 +16,6 @@ from rulec.report.automata.automaton_layout import (
 )
 from rulec.report.automata.automaton_model import Automaton, Fate, Transition
 from rulec.report.pictures.drawing import canvas
-from rulec.report.pictures.drawing.canvas import (
-    Area,
-    LabelText,
-    Mark,
-    Picture,
-    Point,
-    Polyline,
-    Rectangle,
-)
 
 HEAD = 8.0
 """The length of an arrow's head in px."""
@@ -44,7 +35,7 @@ _LEGEND = {
 }
 
 
-def as_picture(automaton: Automaton, title: str) -> Picture:
+def as_picture(automaton: Automaton, title: str) -> canvas.Picture:
     """Draw an automaton below its title and above what the lines mean."""
     drawing = draw(automaton)
     used = {_line_style(transition) for transition in automaton.transitions}
@@ -54,22 +45,22 @@ def as_picture(automaton: Automaton, title: str) -> Picture:
     height = drawing.height + 3 * canvas.MARGIN + LINE * (1 + len(legend))
     right = (width - drawing.width) / 2
     marks = [
-        LabelText(title, (canvas.MARGIN, canvas.MARGIN + 6), style="strong"),
+        canvas.LabelText(title, (canvas.MARGIN, canvas.MARGIN + 6), style="strong"),
         *(canvas.moved(mark, right, canvas.MARGIN + LINE) for mark in _marks(drawing, automaton)),
         *_legend(legend, height - canvas.MARGIN - LINE * len(legend)),
     ]
-    return Picture(title, width, height, tuple(marks))
+    return canvas.Picture(title, width, height, tuple(marks))
 
 
 def _line_style(transition: Transition) -> str:
     return "accepted" if transition.accepted else "rejected"
 
 
-def _marks(drawing: AutomatonDrawing, automaton: Automaton) -> Iterator[Mark]:
+def _marks(drawing: AutomatonDrawing, automaton: Automaton) -> Iterator[canvas.Mark]:
     first = drawing.states[0]
     x, y = first.middle
     top = y - first.height / 2
-    yield Polyline(((x, top - 28), (x, top - HEAD + 1)), "accepted")
+    yield canvas.Polyline(((x, top - 28), (x, top - HEAD + 1)), "accepted")
     yield _head((x, top), (0, 1), accepted=True)
     for line in drawing.lines:
         yield from _transition(line)
@@ -77,16 +68,16 @@ def _marks(drawing: AutomatonDrawing, automaton: Automaton) -> Iterator[Mark]:
         yield from _state(state, automaton.fates[state.number])
 
 
-def _transition(line: TransitionLine) -> Iterator[Mark]:
+def _transition(line: TransitionLine) -> Iterator[canvas.Mark]:
     transition = line.transition
     is_loop = transition.source == transition.target
     points, direction = _loop(line.points) if is_loop else _path(line.points)
-    yield Polyline(tuple(points), _line_style(transition), transition.condition)
+    yield canvas.Polyline(tuple(points), _line_style(transition), transition.condition)
     yield _head(line.points[-1], direction, accepted=transition.accepted)
     yield from _text(line.text, line.label_at, "end" if line.leftward else "start")
 
 
-def _loop(corners: Sequence[Point]) -> tuple[list[Point], tuple[int, int]]:
+def _loop(corners: Sequence[canvas.Point]) -> tuple[list[canvas.Point], tuple[int, int]]:
     """A loop beside its state, and the direction of its return."""
     start, (out, _), (x, y) = corners
     side = 1 if out > start[0] else -1
@@ -94,7 +85,7 @@ def _loop(corners: Sequence[Point]) -> tuple[list[Point], tuple[int, int]]:
     return [start, *_curve(start, (reach, start[1] - 6), (reach, y + 6), end)], (-side, 0)
 
 
-def _path(corners: Sequence[Point]) -> tuple[list[Point], tuple[int, int]]:
+def _path(corners: Sequence[canvas.Point]) -> tuple[list[canvas.Point], tuple[int, int]]:
     """A line down or up through corners, upright where it passes them."""
     down = 1 if corners[-1][1] > corners[0][1] else -1
     end = (corners[-1][0], corners[-1][1] - 6 * down)
@@ -108,19 +99,18 @@ def _path(corners: Sequence[Point]) -> tuple[list[Point], tuple[int, int]]:
     return points, (0, down)
 
 
-def _curve(start: Point, first: Point, second: Point, stop: Point) -> Iterator[Point]:
-    """Points on a cubic Bézier curve behind its start."""
+def _curve(*corners: canvas.Point) -> Iterator[canvas.Point]:
+    """Points on a cubic Bézier curve of four corners, behind its start."""
     for piece in range(1, PIECES + 1):
         t = piece / PIECES
         weights = ((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3)
-        corners = (start, first, second, stop)
         yield (
             sum(weight * x for weight, (x, _) in zip(weights, corners, strict=True)),
             sum(weight * y for weight, (_, y) in zip(weights, corners, strict=True)),
         )
 
 
-def _head(tip: Point, direction: tuple[int, int], *, accepted: bool) -> Area:
+def _head(tip: canvas.Point, direction: tuple[int, int], *, accepted: bool) -> canvas.Area:
     """An arrow's head that points along x or y."""
     (x, y), (along_x, along_y) = tip, direction
     back_x, back_y = x - HEAD * along_x, y - HEAD * along_y
@@ -130,17 +120,17 @@ def _head(tip: Point, direction: tuple[int, int], *, accepted: bool) -> Area:
         (back_x + half * along_y, back_y + half * along_x),
         (back_x - half * along_y, back_y - half * along_x),
     )
-    return Area((corners,), "ink" if accepted else "violated")
+    return canvas.Area((corners,), "ink" if accepted else "violated")
 
 
-def _state(state: AutomatonState, fate: Fate) -> Iterator[Mark]:
+def _state(state: AutomatonState, fate: Fate) -> Iterator[canvas.Mark]:
     box = canvas.centred(state.middle, state.width / 2, state.height / 2)
     outline = canvas.corners(box) if fate == "violated" else tuple(_rounded(box))
-    yield Area((outline,), _STYLES[fate])
+    yield canvas.Area((outline,), _STYLES[fate])
     yield from _text(state.text, state.middle, "middle")
 
 
-def _rounded(rectangle: Rectangle) -> Iterator[Point]:
+def _rounded(rectangle: canvas.Rectangle) -> Iterator[canvas.Point]:
     """Outline of a rounded rectangle, clockwise from the upper left corner."""
     left, top, right, bottom = rectangle
     centres = canvas.corners((left + CORNER, top + CORNER, right - CORNER, bottom - CORNER))
@@ -151,15 +141,15 @@ def _rounded(rectangle: Rectangle) -> Iterator[Point]:
 
 
 def _text(
-    lines: Sequence[str], middle: Point, anchor: Literal["start", "middle", "end"]
-) -> Iterator[LabelText]:
+    lines: Sequence[str], middle: canvas.Point, anchor: Literal["start", "middle", "end"]
+) -> Iterator[canvas.LabelText]:
     x, y = middle
     for number, text in enumerate(lines):
-        yield LabelText(text, (x, y + LINE * (number - (len(lines) - 1) / 2)), anchor)
+        yield canvas.LabelText(text, (x, y + LINE * (number - (len(lines) - 1) / 2)), anchor)
 
 
-def _legend(entries: Sequence[tuple[str, str]], top: float) -> Iterator[Mark]:
+def _legend(entries: Sequence[tuple[str, str]], top: float) -> Iterator[canvas.Mark]:
     for number, (style, text) in enumerate(entries):
         y = top + LINE * number
-        yield Polyline(((canvas.MARGIN, y), (canvas.MARGIN + 34, y)), style)
-        yield LabelText(text, (canvas.MARGIN + 42, y))
+        yield canvas.Polyline(((canvas.MARGIN, y), (canvas.MARGIN + 34, y)), style)
+        yield canvas.LabelText(text, (canvas.MARGIN + 42, y))

@@ -7,13 +7,8 @@ from itertools import groupby
 
 from rulec.analysis.audit.rulebook_audit import articles_of
 from rulec.analysis.lineage.rule_lineage import BookLineage
+from rulec.report.rulebooks import book_sections
 from rulec.report.rulebooks.book_rule import rule_heading, rule_section
-from rulec.report.rulebooks.book_sections import (
-    definitions_section,
-    left_out_section,
-    values_section,
-    words_section,
-)
 from rulec.report.text.heading_anchors import anchors
 from rulec.report.text.markdown import Block, Heading, code, escaped, table, written
 from rulec.rulebook.loader import Loaded
@@ -84,10 +79,10 @@ def _body(loaded: Loaded, inherited: BookLineage) -> Iterator[Block]:
     )
     for rule in rulebook.rules:
         yield from rule_section(rule, inherited, rulebook.vocabulary)
-    yield from values_section(inherited, rulebook.at)
-    yield from definitions_section(inherited)
-    yield from left_out_section(inherited, rulebook.at)
-    yield from words_section(loaded)
+    yield from book_sections.values_section(inherited, rulebook.at)
+    yield from book_sections.definitions_section(inherited)
+    yield from book_sections.left_out_section(inherited, rulebook.at)
+    yield from book_sections.words_section(loaded)
 
 
 def _index(

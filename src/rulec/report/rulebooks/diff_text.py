@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from textwrap import wrap
+from textwrap import fill, wrap
 
 from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
-from rulec.analysis.trace_display import TraceTable
 from rulec.report.text.terminal_text import styled, visible
 from rulec.report.verdicts.trace_table_text import as_lines
 
@@ -36,7 +35,8 @@ def as_text(rulebook_diff: RulebookDiff) -> str:
     blocks += [_only(rulebook_diff.only_second, other, one)] if rulebook_diff.only_second else []
     blocks += [_settings(rulebook_diff)] if rulebook_diff.settings else []
     same = [pair.name for pair in rulebook_diff.pairs if not is_worth_a_block(pair)]
-    blocks += ["\n".join(_listed("the same in both: ", same))] if same else []
+    agreeing = f"the same in both: {', '.join(same)}"
+    blocks += [fill(agreeing, WIDTH, subsequent_indent="  ")] if same else []
     blocks.append(summary(rulebook_diff))
     return "\n\n".join(blocks)
 
@@ -100,26 +100,18 @@ def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
     types = about_types(pair, rulebook_diff)
     if types:
         yield f"  {visible(types)}"
+    one, other = rulebook_diff.first.name, rulebook_diff.second.name
     for what, ours, theirs in pair.notes:
-        for number, line in enumerate(
-            wrap(
-                visible(
-                    f"{what}: {ours} in {rulebook_diff.first.name}, "
-                    f"{theirs} in {rulebook_diff.second.name}"
-                )
-            )
-        ):
-            yield f"  {'  ' * (number > 0)}{line}"
+        first, *rest = wrap(visible(f"{what}: {ours} in {one}, {theirs} in {other}"))
+        yield f"  {first}"
+        yield from (f"    {line}" for line in rest)
     for forbids, allows, table in rulebook_diff.tables(pair):
         yield f"  {forbids} forbids, {allows} allows"
-        yield from _table(table)
-
-
-def _table(table: TraceTable) -> list[str]:
-    if not table.rows:
-        (first, last), *_ = table.columns
-        return [f"    any trace of {last - first + 1} states"]
-    return as_lines(table, "    ")
+        if table.rows:
+            yield from as_lines(table, "    ")
+        else:
+            start, end = table.columns[0]
+            yield f"    any trace of {end - start + 1} states"
 
 
 def _only(rules: Sequence[OneSided], has: str, lacks: str) -> str:
@@ -149,14 +141,10 @@ def only_why(one_sided: OneSided, lacks: str) -> str:
     return f"; {lacks} {verb}{because}"
 
 
-def _listed(title: str, names: Sequence[str]) -> list[str]:
-    return wrap(f"{title}{', '.join(names)}", WIDTH, subsequent_indent="  ")
-
-
 def summary(rulebook_diff: RulebookDiff) -> str:
     """The line that ends it."""
     counted = Counter(pair.relation for pair in rulebook_diff.pairs)
-    parts = [f"{counted[one]:,} {one}" for one in COLOURS if counted[one]]
+    parts = [f"{counted[relation]:,} {relation}" for relation in COLOURS if counted[relation]]
     parts += [
         f"{len(rules):,} only in {book.name}"
         for rules, book in (
@@ -166,5 +154,5 @@ def summary(rulebook_diff: RulebookDiff) -> str:
         if rules
     ]
     number = len(rulebook_diff.pairs)
-    rules = "rule" if number == 1 else "rules"
-    return f"{number:,} shared {rules}: {', '.join(parts) or 'nothing to compare'}"
+    noun = "rule" if number == 1 else "rules"
+    return f"{number:,} shared {noun}: {', '.join(parts) or 'nothing to compare'}"

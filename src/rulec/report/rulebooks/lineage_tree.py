@@ -11,16 +11,7 @@ from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
-from rulec.analysis.lineage.rule_lineage import (
-    BookHeader,
-    BookLineage,
-    ConstantHistory,
-    ConstantValue,
-    ExtensionTree,
-    LineageAction,
-    LineageStep,
-    RuleHistory,
-)
+from rulec.analysis.lineage import rule_lineage
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.report.text.terminal_text import visible
@@ -40,7 +31,7 @@ class LineageStepData(JsonPart, frozen=True, kw_only=True):
     """A rulebook's change to a rule in the chain."""
 
     book: str
-    deed: LineageAction
+    deed: rule_lineage.LineageAction
     clauses: Sequence[str]
     because: str
 
@@ -57,26 +48,26 @@ class LineageDocument(JsonDocument, frozen=True, kw_only=True):
     """A rulebook's chain, the most general rulebook first, its rules and provisions."""
 
     rulebook: str
-    books: Sequence[BookHeader]
+    books: Sequence[rule_lineage.BookHeader]
     rules: Sequence[RuleLineageData]
-    provisions: Sequence[ConstantHistory]
+    provisions: Sequence[rule_lineage.ConstantHistory]
 
 
 class ForestDocument(JsonDocument, frozen=True, kw_only=True):
     """Every rulebook, each behind the one that it extends."""
 
-    books: Sequence[BookHeader]
+    books: Sequence[rule_lineage.BookHeader]
 
 
-def chosen(inherited: BookLineage, pattern: str | None) -> BookLineage:
+def chosen(inherited: rule_lineage.BookLineage, pattern: str | None) -> rule_lineage.BookLineage:
     """Lineage of rules that match a pattern; everything without a pattern."""
     if pattern is None:
         return inherited
     rules = tuple(rule for rule in inherited.rules if fnmatchcase(rule.name, pattern))
-    return BookLineage(inherited.books, rules, ())
+    return rule_lineage.BookLineage(inherited.books, rules, ())
 
 
-def as_text(inherited: BookLineage, width: int, *, color: bool) -> str:
+def as_text(inherited: rule_lineage.BookLineage, width: int, *, color: bool) -> str:
     """The chain, the most general rulebook first, then its rules and provisions."""
     first, *others = inherited.books
     chain = below = Tree(_book(first))
@@ -97,12 +88,14 @@ def as_text(inherited: BookLineage, width: int, *, color: bool) -> str:
     return "\n\n".join(_drawn(tree_, width, color=color) for tree_ in trees)
 
 
-def forest_as_text(branches: Sequence[ExtensionTree], width: int, *, color: bool) -> str:
+def forest_as_text(
+    branches: Sequence[rule_lineage.ExtensionTree], width: int, *, color: bool
+) -> str:
     """A tree for each rulebook that extends none."""
     return "\n".join(_drawn(_grown(branch), width, color=color) for branch in branches)
 
 
-def _grown(branch: ExtensionTree, above: Tree | None = None) -> Tree:
+def _grown(branch: rule_lineage.ExtensionTree, above: Tree | None = None) -> Tree:
     label = _book(branch.book, missing=above is None)
     here = Tree(label) if above is None else above.add(label)
     for child in branch.children:
@@ -119,7 +112,7 @@ def _drawn(shown: Tree, width: int, *, color: bool) -> str:
     return "\n".join(line.rstrip() for line in stream.getvalue().splitlines())
 
 
-def _book(book: BookHeader, *, missing: bool = False) -> Text:
+def _book(book: rule_lineage.BookHeader, *, missing: bool = False) -> Text:
     label = Text(visible(book.name), "bold")
     if book.title:
         label.append(f"  {visible(book.title)}", "not bold")
@@ -132,7 +125,7 @@ def _book(book: BookHeader, *, missing: bool = False) -> Text:
     return label
 
 
-def _rule(rule_history: RuleHistory, book: str, rules: Tree) -> None:
+def _rule(rule_history: rule_lineage.RuleHistory, book: str, rules: Tree) -> None:
     gone = rule_history.rule is None
     label = Text(visible(rule_history.name), "dim" if gone else "")
     label.append(
@@ -147,12 +140,12 @@ def _rule(rule_history: RuleHistory, book: str, rules: Tree) -> None:
         here.add(Text(f"{_DEEDS[step.deed]} {visible(step.book)}{_detail(step)}", "dim"))
 
 
-def _detail(step: LineageStep) -> str:
+def _detail(step: rule_lineage.LineageStep) -> str:
     changed = f": {', '.join(step.clauses)}" if step.clauses else ""
     return visible(f"{changed}{f', because {step.because}' if step.because else ''}")
 
 
-def _provision(constant_history: ConstantHistory, book: str, provisions: Tree) -> None:
+def _provision(constant_history: rule_lineage.ConstantHistory, book: str, provisions: Tree) -> None:
     label = Text(visible(constant_history.head))
     here = provisions.add(label)
     for setting in constant_history.settings:
@@ -166,14 +159,14 @@ def _provision(constant_history: ConstantHistory, book: str, provisions: Tree) -
         label.append("  no value in force", "dim")
 
 
-def _value_and_origin(setting: ConstantValue, book: str) -> tuple[str, str]:
+def _value_and_origin(setting: rule_lineage.ConstantValue, book: str) -> tuple[str, str]:
     dated = setting.since or setting.until
     dates = f" {print_in_force(tree.InForce(setting.since, setting.until))}" if dated else ""
     origin = "own" if setting.book == book else f"from {setting.book}"
     return f"{setting.text}{dates}", origin
 
 
-def as_json(inherited: BookLineage) -> str:
+def as_json(inherited: rule_lineage.BookLineage) -> str:
     """Write the chain, the rules' histories and the provisions."""
     rules = []
     for history in inherited.rules:
@@ -186,12 +179,12 @@ def as_json(inherited: BookLineage) -> str:
     )
 
 
-def forest_as_json(branches: Sequence[ExtensionTree]) -> str:
+def forest_as_json(branches: Sequence[rule_lineage.ExtensionTree]) -> str:
     """Write every rulebook, each behind the one that it extends."""
     return as_indented(ForestDocument(books=list(_members(branches))))
 
 
-def _members(branches: Sequence[ExtensionTree]) -> Iterator[BookHeader]:
+def _members(branches: Sequence[rule_lineage.ExtensionTree]) -> Iterator[rule_lineage.BookHeader]:
     for branch in branches:
         yield branch.book
         yield from _members(branch.children)
