@@ -3,7 +3,7 @@
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.rulebook.files.extends import MOST_BASES
+from rulec.rulebook.files.referenced_files import MOST_BASES
 from rulec.rulebook.loader import diagnose, load_rulebook
 
 START = """rulebook r

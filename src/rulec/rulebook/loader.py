@@ -7,36 +7,14 @@ from dataclasses import dataclass, field
 from datetime import date
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, RulecError, Source, Span
-from rulec.rulebook.files.extends import Book, read_bases, source_file
+from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
+from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import vocabulary_for_rulebook
-from rulec.rulebook.files.search_path import (
-    Dependency,
-    available_rulebooks,
-    find_rulebook,
-    read_bytes,
-)
-from rulec.rulebook.files.vocabulary_files import Vocabularies
+from rulec.rulebook.files.referenced_files import Book, ReferencedFiles, source_file
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
 from rulec.rulebook.rulebook_model import Rulebook, SourceFile, Traffic
 from rulec.syntax import decode, parse, tree
 from rulec.vocabulary import Vocabulary
-
-__all__ = [
-    "Diagnosis",
-    "Loaded",
-    "RulebookFile",
-    "Trees",
-    "available_rulebooks",
-    "diagnose",
-    "find",
-    "load_rulebook",
-    "load_vocabulary",
-    "parse_all",
-    "parse_rulebook",
-    "read_rulebook",
-    "resolve_trees",
-]
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +37,11 @@ class Trees:
     """
 
     name: str
-    file: tree.File
-    books: tuple[Book, ...]
+    books: tuple[tree.File, ...]
     vocabularies: tuple[tree.File, ...]
     sources: tuple[SourceFile, ...]
     mistakes: tuple[Diagnostic, ...]
-    dependencies: tuple[Dependency, ...] | None
+    dependencies: tuple[search.Dependency, ...] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,25 +67,13 @@ class Diagnosis:
     """
 
     findings: tuple[Diagnostic, ...]
-    dependencies: tuple[Dependency, ...] | None = ()
+    dependencies: tuple[search.Dependency, ...] | None = ()
 
 
 def load_rulebook(
     reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
 ) -> Rulebook:
-    """A rulebook as meant.
-
-    Args:
-        reference: a name, looked for as NAME.rules and NAME/NAME.rules in the folders of
-            ``search_path`` and then among the rulebooks that ship with rulec; or a path, which
-            contains a ``/`` or ends in ``.rules``.
-        search_path: folders of rulebooks and vocabularies.
-        at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
-
-    Raises:
-        RulecError: with every mistake in the rulebook, in those that it extends, and in the
-            vocabularies that they use.
-    """
+    """A rulebook as meant: ``read_rulebook`` without its warnings."""
     return read_rulebook(reference, search_path, at).rulebook
 
 
@@ -120,19 +85,26 @@ def read_rulebook(
 ) -> Loaded:
     """Load a rulebook, with its warnings.
 
-    ``traffic``: read it as one for this side, whatever it says itself.
+    Args:
+        reference: a name, looked for as NAME.rules and NAME/NAME.rules in the folders of
+            ``search_path`` and then among the rulebooks that ship with rulec; or a path, which
+            contains a ``/`` or ends in ``.rules``.
+        search_path: folders of rulebooks and vocabularies.
+        at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
+        traffic: read it as one for this side, whatever it says itself.
+
+    Raises:
+        RulecError: with every mistake in the rulebook, in those that it extends, and in the
+            vocabularies that they use.
     """
     return resolve_trees(parse_all(find(reference, search_path)), at, traffic)
 
 
 def find(reference: str | Path, search_path: Sequence[str | Path] = ()) -> RulebookFile:
-    """Find a rulebook by name or path, and read it.
-
-    Raises RulecError.
-    """
+    """Find a rulebook by name or path, and read it. Raises RulecError."""
     folders = tuple(Path(folder) for folder in search_path)
-    path = find_rulebook(reference, folders)
-    data = read_bytes(path)
+    path = search.find_rulebook(reference, folders)
+    data = search.read_bytes(path)
     return RulebookFile(decode(str(path), data), data, path, folders)
 
 
@@ -149,10 +121,7 @@ def parse_all(file: RulebookFile) -> Trees:
 
 
 def resolve_trees(trees: Trees, at: str = "", traffic: Traffic = "") -> Loaded:
-    """Resolve syntax trees to a rulebook.
-
-    Raises RulecError with every mistake in them.
-    """
+    """Resolve syntax trees to a rulebook. Raises RulecError with every mistake in them."""
     loaded, diagnosis = _resolved(trees, at, traffic)
     if loaded is None:
         raise RulecError(diagnosis.findings)
@@ -162,28 +131,19 @@ def resolve_trees(trees: Trees, at: str = "", traffic: Traffic = "") -> Loaded:
 def parse_rulebook(
     text: str, name: str = "<text>", search_path: Sequence[Path] = (), at: str = ""
 ) -> Rulebook:
-    """A rulebook whose text is at hand; messages call it ``name``.
-
-    Raises:
-        RulecError: with every mistake in it and in the vocabularies that it uses.
-    """
+    """A rulebook whose text is at hand; messages call it ``name``. Raises RulecError."""
     data = text.encode("utf-8", "surrogatepass")
     file = RulebookFile(Source(name, text), data, None, tuple(search_path))
     return resolve_trees(parse_all(file), at).rulebook
 
 
 def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
-    """A vocabulary by its name.
-
-    Raises:
-        RulecError: it is not found, or with every mistake in it.
-    """
-    asked = Source("<vocabulary>", name)
-    vocabularies = Vocabularies(tuple(search_path))
-    use = tree.UseLine(tree.Name(name, span=Span(asked, 0, len(name))))
-    file = vocabularies.read(use, None)
-    if file is None or vocabularies.mistakes:
-        raise RulecError(vocabularies.mistakes)
+    """A vocabulary by its name. Raises RulecError if it is not found or has mistakes."""
+    span = Span(Source("<vocabulary>", name), 0, len(name))
+    files = ReferencedFiles(search_path)
+    file = files.vocabulary(tree.UseLine(tree.Name(name, span=span)), None)
+    if file is None or files.mistakes:
+        raise RulecError(files.mistakes)
     vocabulary, mistakes = resolve_vocabulary(file)
     if vocabulary is None:
         raise RulecError(mistakes)
@@ -219,39 +179,36 @@ def diagnose(
 
 
 def _with_bases(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagnostic]) -> Trees:
-    based = read_bases(parsed, file.path, file.search_path)
-    vocabularies = Vocabularies(file.search_path)
-    books = (*based.books, Book(parsed, file.path))
-    read = [vocabularies.read(use, book.path) for book in books for use in _once(book.file.uses)]
-    opaque = vocabularies.failed or based.failed
+    files = ReferencedFiles(file.search_path)
+    itself = Book(parsed, file.path)
+    books = (*files.bases(itself), itself)
+    read = [files.vocabulary(use, book.path) for book in books for use in _once(book.file.uses)]
     return Trees(
         name=file.source.name,
-        file=parsed,
-        books=books,
+        books=tuple(book.file for book in books),
         vocabularies=tuple(vocabulary for vocabulary in read if vocabulary is not None),
-        sources=(source_file(file.source.name, file.data), *based.sources, *vocabularies.sources),
-        mistakes=(*mistakes, *based.mistakes, *vocabularies.mistakes),
-        dependencies=None if opaque else (*based.dependencies, *vocabularies.dependencies),
+        sources=(source_file(file.source.name, file.data), *files.sources),
+        mistakes=(*mistakes, *files.mistakes),
+        dependencies=None if files.failed else tuple(files.dependencies),
     )
 
 
 def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | None, Diagnosis]:
     """The rulebook, None if it has errors, and its diagnosis."""
-    file, books = trees.file, tuple(book.file for book in trees.books)
+    law = trees.books[-1].law
     rulebook, meanings = resolve(
-        file,
+        trees.books,
         trees.vocabularies,
-        bases=books[:-1],
         sources=trees.sources,
         opaque=trees.dependencies is None,
-        at=at or (file.law.as_of if file.law else "") or date.today().isoformat(),  # noqa: DTZ011
+        at=at or (law.as_of if law else "") or date.today().isoformat(),  # noqa: DTZ011
         traffic=traffic,
     )
-    everything = _in_order(trees.name, [*trees.mistakes, *meanings])
-    diagnosis = Diagnosis(everything, trees.dependencies)
-    if rulebook is None or any(problem.severity == "error" for problem in everything):
+    findings = _in_order(trees.name, [*trees.mistakes, *meanings])
+    diagnosis = Diagnosis(findings, trees.dependencies)
+    if rulebook is None or any(finding.severity == "error" for finding in findings):
         return None, diagnosis
-    return Loaded(rulebook, everything, books, trees.vocabularies), diagnosis
+    return Loaded(rulebook, findings, trees.books, trees.vocabularies), diagnosis
 
 
 def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
@@ -265,9 +222,7 @@ def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ..
     """The rulebook's own first, each file's from top to bottom."""
 
     def rank(diagnostic: Diagnostic) -> tuple[bool, str, tuple[int, int]]:
-        place = diagnostic.place
-        if place is None:
-            return True, "", (0, 0)
+        place = diagnostic.place or SourceLocation("")
         return place.file != main, place.file, place.start
 
     return tuple(sorted(mistakes, key=rank))

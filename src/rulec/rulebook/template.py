@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rulec.rulebook.loader import Loaded, parse_rulebook, read_rulebook
 from rulec.rulebook.names.doc_comments import description
-from rulec.rulebook.overlay.constants_and_macros import in_force
+from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.rulebook.rulebook_model import Rule
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula

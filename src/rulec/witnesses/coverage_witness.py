@@ -14,7 +14,7 @@ from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import holds
 from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import ExampleState
-from rulec.rulebook.rules.axiom_checks import ExampleValues
+from rulec.rulebook.rules.axioms import ExampleValues
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_functions import all_digits, counts_read, digits_of
 from rulec.witnesses.state_synthesis import numbers_near_thresholds, values_of

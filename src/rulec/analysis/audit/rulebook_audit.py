@@ -15,7 +15,7 @@ from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.lineage.book_lineage import HARDNESS
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
 from rulec.logic.free_names import names_in
-from rulec.rulebook.overlay.constants_and_macros import in_force
+from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_in_force

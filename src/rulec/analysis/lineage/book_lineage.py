@@ -21,8 +21,7 @@ from rulec.analysis.lineage.rule_lineage import (
 from rulec.rulebook.loader import Loaded, read_rulebook
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.names.referenced_names import names_used
-from rulec.rulebook.overlay.constants_and_macros import in_force
-from rulec.rulebook.overlay.rulebook_overlay import merged
+from rulec.rulebook.overlay.rulebook_overlay import in_force, merged
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula, print_parameters
 

@@ -13,7 +13,7 @@ from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, table
 from rulec.rulebook.loader import Loaded
 from rulec.rulebook.names.doc_comments import description
-from rulec.rulebook.overlay.constants_and_macros import in_force
+from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_in_force
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal

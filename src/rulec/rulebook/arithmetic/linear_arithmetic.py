@@ -6,7 +6,7 @@ which exactly one holds at any time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice, product
@@ -66,13 +66,17 @@ class NumberByCases:
     @property
     def dimension(self) -> Dimension | None:
         """The dimension of all cases; None if all are a bare 0."""
-        generator = (linear.dimension for _, linear in self.cases)
-        return next((dimension for dimension in generator if dimension is not None), None)
+        return next((linear.dimension for _, linear in self.cases if linear.dimension), None)
 
     @property
     def is_constant(self) -> bool:
         """Tell whether the number is the same for all states."""
         return len(self.cases) == 1 and not self.cases[0][1].coefficients
+
+    @property
+    def varies(self) -> bool:
+        """Tell whether the number depends on quantities or counts, not on conditions alone."""
+        return any(linear.coefficients for _, linear in self.cases)
 
     @property
     def text(self) -> str:
@@ -100,19 +104,17 @@ def combined(
     left: NumberByCases, right: NumberByCases, combine: Callable[[Linear, Linear], Linear]
 ) -> NumberByCases:
     """An operation case by case. Raises TooManyCasesError."""
-    return _in_cases(
-        (both, combine(one, other)) for both, one, other in _pairs(left.cases, right.cases)
-    )
+    return _in_cases((both, combine(*pair)) for both, *pair in _pairs(left, right))
 
 
 def _pairs(
-    left: Sequence[Case], right: Sequence[Case]
+    left: NumberByCases, right: NumberByCases
 ) -> Iterator[tuple[Conditions, Linear, Linear]]:
     """Pairs of two numbers' cases, without those that exclude each other."""
-    for (first, one), (second, other) in product(left, right):
+    for (first, linear), (second, other) in product(left.cases, right.cases):
         both = (*first, *(condition for condition in second if condition not in first))
         if not any(negated(condition) in first for condition in second):
-            yield both, one, other
+            yield both, linear, other
 
 
 def _in_cases(cases: Iterable[Case]) -> NumberByCases:
@@ -128,7 +130,7 @@ def either(condition: ltl.Formula, value: NumberByCases, otherwise: NumberByCase
         return value if condition.value else otherwise
     sides = ((condition, value), (negated(condition), otherwise))
     return _in_cases(
-        ((test, *(one for one in when if one != test)), linear)
+        ((test, *(condition for condition in when if condition != test)), linear)
         for test, number in sides
         for when, linear in number.cases
         if negated(test) not in when
@@ -158,21 +160,17 @@ def added(left: Linear, right: Linear, sign: int = 1) -> Linear:
     )
 
 
-def scaled(linear: Linear, factor: Linear, *, first: bool) -> Linear:
-    """The product with a constant; ``first``: the constant is written first."""
-    one, other = (factor, linear) if first else (linear, factor)
-    return _times(linear, factor, f"{one.within(PRODUCT)} * {other.within(SIGN)}")
+def multiplied(left: Linear, right: Linear) -> Linear:
+    """The product of two numbers, at most one of which varies."""
+    text = f"{left.within(PRODUCT)} * {right.within(SIGN)}"
+    return _times(right, left, text) if right.coefficients else _times(left, right, text)
 
 
 def divided(linear: Linear, divisor: Linear) -> Linear:
     """The quotient by a constant other than 0."""
     text = f"{linear.within(PRODUCT)} / {divisor.within(SIGN)}"
-    inverse = Linear({}, 1 / divisor.constant, _inverse(divisor.dimension), "")
-    return _times(linear, inverse, text)
-
-
-def _inverse(dimension: Dimension | None) -> Dimension | None:
-    return None if dimension is None else dimension**-1
+    dimension = None if divisor.dimension is None else divisor.dimension**-1
+    return _times(linear, Linear({}, 1 / divisor.constant, dimension, ""), text)
 
 
 def _times(linear: Linear, factor: Linear, text: str) -> Linear:
@@ -185,22 +183,22 @@ def _times(linear: Linear, factor: Linear, text: str) -> Linear:
     return Linear(terms, linear.constant * by, dimension, text, PRODUCT)
 
 
-def opposite(linear: Linear) -> Linear:
+def opposite(number: NumberByCases) -> NumberByCases:
     """The number with the other sign."""
-    return Linear(
-        {term: -coefficient for term, coefficient in linear.coefficients.items()},
-        -linear.constant,
-        linear.dimension,
-        f"-{linear.within(SIGN)}",
-        SIGN,
-    )
+    return NumberByCases(tuple((when, _opposite(linear)) for when, linear in number.cases))
+
+
+def _opposite(linear: Linear) -> Linear:
+    terms = {term: -coefficient for term, coefficient in linear.coefficients.items()}
+    text = f"-{linear.within(SIGN)}"
+    return Linear(terms, -linear.constant, linear.dimension, text, SIGN)
 
 
 def compared(left: NumberByCases, relation: ltl.Relation, right: NumberByCases) -> ltl.Formula:
     """``left relation right`` as a formula. Raises TooManyCasesError."""
     cases = [
-        (both, added(one, other, -1), f"{one.text} {relation} {other.text}")
-        for both, one, other in _pairs(left.cases, right.cases)
+        (both, added(first, second, -1), f"{first.text} {relation} {second.text}")
+        for both, first, second in _pairs(left, right)
     ]
     if len(cases) > MOST_CASES:
         raise TooManyCasesError
@@ -210,18 +208,18 @@ def compared(left: NumberByCases, relation: ltl.Relation, right: NumberByCases) 
     )
 
 
-def all_of(formulas: Sequence[ltl.Formula]) -> ltl.Formula:
+def all_of(formulas: Iterable[ltl.Formula]) -> ltl.Formula:
     """The conjunction of formulas; true if there are none."""
-    return _joined(ltl.BinaryOperator.AND, True, iter(formulas))
+    return _joined(ltl.BinaryOperator.AND, True, formulas)
 
 
-def any_of(formulas: Iterator[ltl.Formula]) -> ltl.Formula:
+def any_of(formulas: Iterable[ltl.Formula]) -> ltl.Formula:
     """The disjunction of formulas; false if there are none."""
     return _joined(ltl.BinaryOperator.OR, False, formulas)
 
 
 def _joined(
-    operator: ltl.BinaryOperator, neutral: bool, formulas: Iterator[ltl.Formula]
+    operator: ltl.BinaryOperator, neutral: bool, formulas: Iterable[ltl.Formula]
 ) -> ltl.Formula:
     whole: ltl.Formula | None = None
     for formula in formulas:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from rulec.logic.formula import Atom, Binary, Comparison, Constant, Count, Formula, Same, Unary
+from rulec.logic import formula as ltl
 
 MOST_PARTS = 20_000
 """Operators, atoms and comparisons of a rule's formula, those inside of counts included."""
@@ -12,37 +12,39 @@ MOST_PARTS = 20_000
 DEEPEST = 240
 """Operators inside one another, those of definitions that have been put in included."""
 
-
-class TooDeepError(Exception):
-    """An expression has more than ``DEEPEST`` operators and definitions inside one another."""
+Limit = Literal["deep", "large"]
 
 
-class TooLargeError(Exception):
-    """An expression has more than ``MOST_PARTS`` parts, those of its definitions included."""
+class OverLimitError(Exception):
+    """Error: an expression, definitions put in, exceeds ``DEEPEST`` or ``MOST_PARTS``."""
+
+    def __init__(self, limit: Limit) -> None:
+        super().__init__(limit)
+        self.limit = limit
 
 
-def exceeded_limit(formula: Formula) -> Literal["", "deep", "large"]:
+def exceeded_limit(formula: ltl.Formula) -> Limit | None:
     """The limit that a formula exceeds, if any; repeated parts count again."""
     rest = [(formula, 1)]
     parts = 0
     while rest:
-        one, depth = rest.pop()
+        part, depth = rest.pop()
         parts += 1
         if depth > DEEPEST:
             return "deep"
         if parts > MOST_PARTS:
             return "large"
-        rest += ((part, depth + 1) for part in _parts(one))
-    return ""
+        rest += ((inner, depth + 1) for inner in _parts(part))
+    return None
 
 
-def _parts(formula: Formula) -> tuple[Formula, ...]:
+def _parts(formula: ltl.Formula) -> tuple[ltl.Formula, ...]:
     match formula:
-        case Unary(_, operand):
+        case ltl.Unary(_, operand):
             return (operand,)
-        case Binary(_, left, right):
+        case ltl.Binary(_, left, right):
             return left, right
-        case Comparison(terms):
-            return tuple(term.body for _, term in terms if isinstance(term, Count))
-        case Atom() | Constant() | Same():
+        case ltl.Comparison(terms):
+            return tuple(term.body for _, term in terms if isinstance(term, ltl.Count))
+        case _:
             return ()

@@ -62,14 +62,14 @@ def half_a_step(side: tree.NumberLiteral) -> Diagnostic:
     )
 
 
-def no_time(side: tree.Amount, number_by_cases: NumberByCases) -> Diagnostic:
+def no_time(side: tree.Amount, number: NumberByCases) -> Diagnostic:
     """A bound that is no fixed time from 0 on."""
-    if not number_by_cases.is_constant:
+    if not number.is_constant:
         why = "changes from state to state"
-    elif number_by_cases.dimension is None or number_by_cases.cases[0][1].constant < 0:
+    elif number.dimension is None or number.cases[0][1].constant < 0:
         why = "is below 0"
     else:
-        why = f"is {kind_of(number_by_cases.dimension)}"
+        why = f"is {kind_of(number.dimension)}"
     return SENSELESS_BOUND.at(
         side.span,
         f"`{short(side)}` {why}; a bound is a fixed time",

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rulec.diagnostics import Diagnostic
-from rulec.rulebook.arithmetic.size_limits import TooDeepError, TooLargeError
-from rulec.rulebook.elaborate import rule_messages
 from rulec.rulebook.elaborate.elaboration import elaborate, number
-from rulec.rulebook.elaborate.parameter_values import parameter
-from rulec.rulebook.elaborate.rule_variables import variables_of
-from rulec.rulebook.elaborate.scope import AnyArgument, Call, Scope
+from rulec.rulebook.elaborate.macro_expansion import parameter_value
+from rulec.rulebook.elaborate.scope import AnyArgument, Call, Scope, bound_variables
 from rulec.rulebook.names.declaration_messages import twice, unknown_dimension
 from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.names.symbol_table import SymbolTable
-from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros, in_force
+from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
+from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
 
@@ -28,11 +26,10 @@ def check_constants_and_macros(
     """
     mistakes: list[Diagnostic] = []
     for name in _in_order_of_use(constants):
-        constants.begin()
         if name in constants.overlay.parameters:
             mistakes += _check_parameter(name, symbols, constants)
         elif name not in constants.broken:
-            mistakes += _check_definition(constants.definitions[name], symbols, constants)
+            mistakes += _check_definition(constants.overlay.definitions[name], symbols, constants)
     return mistakes
 
 
@@ -40,24 +37,20 @@ def _in_order_of_use(constants: ConstantsAndMacros) -> list[str]:
     """Parameters and definitions, each after those it uses, circles aside."""
     uses: dict[str, list[str]] = {}
     for name, values in constants.overlay.parameters.items():
-        uses[name] = [one for value in values for one in names_used(value.item)]
-    for name, definition in constants.definitions.items():
+        uses[name] = [used for value in values for used in names_used(value.item)]
+    for name, definition in constants.overlay.definitions.items():
         uses[name] = [*names_used(definition)]
-    ordered: list[str] = []
+    ordered: dict[str, None] = {}
     seen: set[str] = set()
-    for name in uses:
-        way = [(name, iter(uses[name]))] if name not in seen else []
+    pending = [*reversed(uses)]
+    while pending:
+        name = pending[-1]
+        further = [] if name in seen else [used for used in uses[name] if used in uses]
         seen.add(name)
-        while way:
-            here, rest = way[-1]
-            further = next((one for one in rest if one in uses and one not in seen), None)
-            if further is None:
-                ordered.append(here)
-                way.pop()
-            else:
-                seen.add(further)
-                way.append((further, iter(uses[further])))
-    return ordered
+        pending += (used for used in reversed(further) if used not in seen)
+        if pending[-1] == name:
+            ordered.setdefault(pending.pop())
+    return [*ordered]
 
 
 def _check_parameter(
@@ -71,12 +64,8 @@ def _check_parameter(
     if any(in_force(value.item.in_force, constants.at) for value in values):
         first = values[0].item.name
         scope = Scope(symbols, constants, {}, [])
-        try:
-            parameter(tree.AtomUse(first, span=first.span), scope, number)
-        except TooDeepError:
-            scope.report(rule_messages.too_deep("parameter", first))
-        except TooLargeError:
-            scope.report(rule_messages.too_large("parameter", first))
+        with scope.within_limits("parameter", first):
+            parameter_value(tree.AtomUse(first, span=first.span), scope, number)
         yield from scope.mistakes
         if scope.mistakes:
             constants.numbers[name] = None
@@ -86,42 +75,32 @@ def _check_definition(
     item: tree.DefineItem, symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> list[Diagnostic]:
     mistakes: list[Diagnostic] = []
-    typed = tuple(parameter_ for parameter_ in item.parameters if parameter_.type is not None)
-    variables = variables_of(typed, symbols, mistakes)
-    seen: dict[str, tree.Parameter] = {}
-    for parameter_ in item.parameters:
-        first = seen.setdefault(parameter_.name.text, parameter_)
+    typed = [parameter for parameter in item.parameters if parameter.type is not None]
+    variables = bound_variables(typed, symbols, mistakes.append)
+    first: dict[str, tree.Parameter] = {}
+    for parameter in item.parameters:
+        name = parameter.name
+        known = first.setdefault(name.text, parameter)
         # Two with types have been found already.
-        if first is not parameter_ and (first.type is None or parameter_.type is None):
-            mistakes.append(twice("parameter", parameter_.name, first.span))
+        if known is not parameter and (known.type is None or parameter.type is None):
+            mistakes.append(twice("parameter", name, known.span))
+    untyped = [parameter.name.text for parameter in item.parameters if parameter.type is None]
     scope = Scope(
         symbols,
         constants,
         variables,
         mistakes,
-        relations={
-            parameter_.name.text: AnyArgument()
-            for parameter_ in item.parameters
-            if parameter_.type is None
-        },
+        relations=dict.fromkeys(untyped, AnyArgument()),
         calls=(Call(item.name.text, None),),
-        taken=frozenset(parameter_.name.text for parameter_ in item.parameters),
+        taken=frozenset(first),
         of_definition=True,
     )
-    result = None
-    try:
-        result = elaborate(item.body, scope)
-    except TooDeepError:
-        scope.report(rule_messages.too_deep("definition", item.name))
-    except TooLargeError:
-        scope.report(rule_messages.too_large("definition", item.name))
+    meaning = None
+    with scope.within_limits("definition", item.name):
+        meaning = elaborate(item.body, scope)
     wrong = any(mistake.severity == "error" for mistake in mistakes)
     if wrong or not constants.broken.isdisjoint(names_used(item)):
         constants.broken.add(item.name.text)
-    elif result is not None:
-        mistakes += (
-            rule_messages.unused_parameter(item, parameter_)
-            for parameter_ in item.parameters
-            if parameter_.name.text not in scope.used
-        )
+    elif meaning is not None:
+        mistakes += scope.unused(item.parameters, item)
     return mistakes

@@ -21,8 +21,7 @@ CIRCULAR_DEFINITION = Code(
     "R0316",
     title="a definition or a parameter is made of itself",
     why="A definition is put in the place of its name, so it cannot contain itself, not even by "
-    "way "
-    "of another.",
+    "way of another.",
     bad="rulebook example\nsignal wet\ndefine slippery = wet or slippery\n"
     "hard rule r { require not slippery }\n",
     good="rulebook example\nsignal wet\ndefine slippery = wet\nhard rule r { require not slippery "
@@ -59,12 +58,12 @@ def object_as_relation(use: tree.AtomUse, scope: Scope) -> Diagnostic:
     """``v(w)`` where v is an object."""
     name = use.name.text
     variable = scope.variables[name]
-    said = (
+    what = (
         "is an object" if variable.actual == name else f"stands for the object `{variable.actual}`"
     )
     return NOT_BOOLEAN.at(
         use.span,
-        f"`{name}` {said} and cannot be said of another one",
+        f"`{name}` {what} and cannot be said of another one",
         expected="expected a signal, a value or a definition before `(`",
         help=f"write such as `near({name})`, or give the definition a relation for it",
         labels=(Label(variable.span.place, f"`{variable.actual}` comes from here"),),
@@ -74,14 +73,13 @@ def object_as_relation(use: tree.AtomUse, scope: Scope) -> Diagnostic:
 def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagnostic:
     """A definition used with too few or too many objects."""
     names = ", ".join(parameter.name.text for parameter in item.parameters)
-    shape = f"{item.name.text}({names})" if names else item.name.text
     needed, given = len(item.parameters), len(use.arguments)
     things = {0: "nothing", 1: "one thing"}.get(needed, f"{needed} things")
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
     return WRONG_ARITY.at(
         use.span,
         f"`{item.name.text}` takes {things}, and {has} given",
-        expected=f"expected `{shape}`",
+        expected=f"expected `{item.name.text}{f'({names})' if names else ''}`",
         help="give it as many as its definition has",
         labels=(Label(item.name.span.place, f"`{item.name.text}` is defined here"),),
     )
@@ -90,11 +88,11 @@ def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagn
 def circle(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
     """A definition or parameter that comes back to itself."""
     name = use.name.text
-    first = next(at for at, call in enumerate(scope.calls) if call.name == name)
-    chain = [f"`{call.name}`" for call in scope.calls[first:]]
+    names = [*(call.name for call in scope.calls), name]
+    chain = " uses ".join(f"`{used}`" for used in names[names.index(name) :])
     return CIRCULAR_DEFINITION.at(
         use.span,
-        f"the {kind} `{name}` is made of itself: {' uses '.join([*chain, f'`{name}`'])}",
+        f"the {kind} `{name}` is made of itself: {chain}",
         expected="this closes the circle",
         help="say it without itself",
     )
@@ -115,13 +113,12 @@ def no_value_in_force(use: tree.AtomUse, values: Sequence[Value], day: str) -> D
 
 def two_values_in_force(values: Sequence[Value], name: str, day: str) -> Diagnostic:
     """A parameter with two values on one day."""
-    first, second, *_ = values
     return NO_SINGLE_VALUE.at(
-        second.item.span,
+        values[1].item.span,
         f"the parameter `{name}` has two values that are in force on {day}",
         expected="the second one",
         help="end the first one by `in force until` the day before",
-        labels=(Label(first.item.span.place, "the first one"),),
+        labels=(Label(values[0].item.span.place, "the first one"),),
     )
 
 

@@ -2,44 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
-from rulec.diagnostics import Diagnostic
 from rulec.logic import formula as ltl
 from rulec.logic.printing import term_text
-from rulec.rulebook.arithmetic.linear_arithmetic import (
-    Linear,
-    NumberByCases,
-    TooManyCasesError,
-    added,
-    combined,
-    compared,
-    divided,
-    either,
-    measured,
-    negated,
-    opposite,
-    scaled,
-)
+from rulec.rulebook.arithmetic import linear_arithmetic as numbers
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, TooManyCasesError, negated
 from rulec.rulebook.arithmetic.size_limits import exceeded_limit
 from rulec.rulebook.elaborate import constant_messages
 from rulec.rulebook.elaborate import elaboration_messages as say
-from rulec.rulebook.elaborate.bound_elaboration import bound_of
-from rulec.rulebook.elaborate.macro_expansion import expand_macro
-from rulec.rulebook.elaborate.number_literals import literal
-from rulec.rulebook.elaborate.parameter_values import parameter
+from rulec.rulebook.elaborate.amounts import bound_of, literal
+from rulec.rulebook.elaborate.macro_expansion import expand_macro, parameter_value
 from rulec.rulebook.elaborate.quantifiers import aggregate
 from rulec.rulebook.elaborate.scope import AnyArgument, Scope
 from rulec.syntax import tree
 
-_TEMPORAL = frozenset(
-    (
-        *("always", "never", "eventually", "next", "weak next"),
-        *("once", "historically", "previously", "weak previously"),
-        *("then", "until", "release", "weak until", "strong release", "since"),
-    )
-)
+_OF_ONE_STATE = frozenset(("not", "and", "or", "implies", "iff", "xor"))
+"""The operators that are not temporal."""
+
+_ENDLESS = ("always", "never", "eventually")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,40 +36,40 @@ Meaning = ltl.Formula | NumberByCases | Object | AnyArgument
 
 def truth(node: tree.Formula, scope: Scope) -> ltl.Formula | None:
     """The formula; None if it has a mistake, which is then reported."""
-    result = elaborate(node, scope)
-    match result:
-        case None:
-            return None
+    meaning = elaborate(node, scope)
+    match meaning:
         case AnyArgument():
             return ltl.Constant(True)
         case NumberByCases():
-            scope.report(say.number_for_truth(node, result, scope))
+            scope.report(say.number_for_truth(node, meaning, scope))
             return None
         case Object():
             scope.report(say.object_for_truth(node, scope))
             return None
         case _:
-            return result
+            return meaning
 
 
 def number(node: tree.Formula, scope: Scope) -> NumberByCases | None:
     """The number; None if it has a mistake, which is then reported."""
-    result = elaborate(node, scope)
-    match result:
-        case None | AnyArgument():
-            return None
-        case NumberByCases():
-            return result
-        case _:
-            scope.report(say.no_number(node, result, scope))
-            return None
+    return _as_number(node, elaborate(node, scope), scope)
+
+
+def _as_number(
+    node: tree.Formula, meaning: Meaning | None, scope: Scope, around: tree.Compare | None = None
+) -> NumberByCases | None:
+    if meaning is None or isinstance(meaning, NumberByCases):
+        return meaning
+    if not isinstance(meaning, AnyArgument):
+        scope.report(say.no_number(node, meaning, scope, around))
+    return None
 
 
 def elaborate(node: tree.Formula, scope: Scope) -> Meaning | None:
     """Elaborate an expression; None if it has a reported mistake.
 
     Raises:
-        TooDeepError, TooLargeError: with its definitions put in it is too deep or too large.
+        OverLimitError: with its definitions put in it is too deep or too large.
     """
     with scope.constants.one_deeper():
         try:
@@ -108,11 +90,7 @@ def elaborate(node: tree.Formula, scope: Scope) -> Meaning | None:
                     return _arithmetic(node, scope)
                 case tree.Minus(operand):
                     inside = number(operand, scope)
-                    if inside is None:
-                        return None
-                    return NumberByCases(
-                        tuple((when, opposite(linear)) for when, linear in inside.cases)
-                    )
+                    return None if inside is None else numbers.opposite(inside)
                 case tree.Conditional(value, condition, otherwise):
                     first, test = elaborate(value, scope), truth(condition, scope)
                     return _either(node, first, test, elaborate(otherwise, scope), scope)
@@ -126,43 +104,42 @@ def elaborate(node: tree.Formula, scope: Scope) -> Meaning | None:
 def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
     name = node.name.text
     relation = scope.relations.get(name)
-    if relation is None and name in scope.variables:
+    if relation is not None or name in scope.variables:
         scope.used.add(name)
-        if node.arguments:
-            scope.report(constant_messages.object_as_relation(node, scope))
-            return None
-        return Object(scope.variables[name].actual)
     if isinstance(relation, AnyArgument):
-        scope.used.add(name)
         scope.used |= {argument.text for argument in node.arguments}
         return relation
     if relation is not None:
-        scope.used.add(name)
         node = replace(node, name=replace(node.name, text=relation))
         name = relation
+    elif name in scope.variables:
+        if not node.arguments:
+            return Object(scope.variables[name].actual)
+        scope.report(constant_messages.object_as_relation(node, scope))
+        return None
     kind = scope.constants.overlay.kind_of(name)
     if kind and node.arguments and kind != "definition":
         scope.report(constant_messages.takes_no_object(node, kind, scope))
         return None
     if kind == "option":
-        return ltl.Constant(scope.constants.options[name])
+        return ltl.Constant(scope.constants.overlay.options[name])
     if kind == "parameter":
-        return parameter(node, scope, number)
+        return parameter_value(node, scope, number)
     if kind == "definition":
         return expand_macro(node, scope, elaborate)
     result = scope.reference(node)
-    if isinstance(result, ltl.QuantityTerm):
-        unit = scope.symbols.unit_of(result.name)
-        if unit is None:
-            return None
-        return measured(result, unit.factor, unit.dimension, term_text(result))
-    return result
+    if not isinstance(result, ltl.QuantityTerm):
+        return result
+    unit = scope.symbols.unit_of(result.name)
+    if unit is None:
+        return None
+    return numbers.measured(result, unit.factor, unit.dimension, term_text(result))
 
 
 def _prefix(node: tree.Prefix, scope: Scope) -> ltl.Formula | None:
     operand = truth(node.operand, scope)
-    bound = bound_of(node, node.bound, scope, number)
-    if _out_of_place(node, node.operator, scope) or operand is None or bound is False:
+    bound = bound_of(node, scope, number)
+    if _out_of_place(node, scope) or operand is None or bound is False:
         return None
     written = isinstance(node.operand, tree.TruthLiteral)
     if node.operator == "not" and isinstance(operand, ltl.Constant) and not written:
@@ -172,30 +149,22 @@ def _prefix(node: tree.Prefix, scope: Scope) -> ltl.Formula | None:
 
 def _infix(node: tree.Infix, scope: Scope) -> ltl.Formula | None:
     left, right = truth(node.left, scope), truth(node.right, scope)
-    bound = bound_of(node, node.bound, scope, number)
-    if node.operator == "then" and isinstance(node.left, tree.Prefix):
-        for warning in _endless_phase(node.left):
-            scope.report(warning)
-    misplaced = _out_of_place(node, node.operator, scope)
-    if misplaced or left is None or right is None or bound is False:
+    bound = bound_of(node, scope, number)
+    phase = node.left if node.operator == "then" else None
+    if isinstance(phase, tree.Prefix) and phase.operator in _ENDLESS and not phase.grouped:
+        # `never p then q` means `never (p then q)`, and `never p` has no end.
+        scope.report(say.endless_phase(phase))
+    if _out_of_place(node, scope) or left is None or right is None or bound is False:
         return None
     return ltl.Binary(ltl.BinaryOperator(node.operator), left, right, bound)
 
 
-def _out_of_place(node: tree.Prefix | tree.Infix, operator: str, scope: Scope) -> bool:
-    if operator in _TEMPORAL and scope.in_moment:
+def _out_of_place(node: tree.Prefix | tree.Infix, scope: Scope) -> bool:
+    """Tell, and report, whether a temporal operator stands where one state is spoken of."""
+    misplaced = scope.in_moment and node.operator not in _OF_ONE_STATE
+    if misplaced:
         scope.report(say.temporal_in_count(node))
-        return True
-    return False
-
-
-def _endless_phase(phase: tree.Prefix) -> Iterator[Diagnostic]:
-    """Report a phase without end before ``then``.
-
-    ``never p then q`` means ``never (p then q)``, and ``never p`` has no end.
-    """
-    if phase.operator in ("always", "never", "eventually") and not phase.grouped:
-        yield say.endless_phase(phase)
+    return misplaced
 
 
 def _compare(node: tree.Compare, scope: Scope) -> ltl.Formula | AnyArgument | None:
@@ -212,13 +181,11 @@ def _compare(node: tree.Compare, scope: Scope) -> ltl.Formula | AnyArgument | No
     if isinstance(left, ltl.Formula) and isinstance(right, ltl.Formula):
         scope.report(say.truths_compared(node, scope))
         return None
-    first = _as_number(node.left, left, node, scope)
-    second = _as_number(node.right, right, node, scope)
-    if first is None or second is None:
+    first = _as_number(node.left, left, scope, node)
+    second = _as_number(node.right, right, scope, node)
+    if first is None or second is None or not _fit(node, first, second, scope):
         return None
-    if not _fit(node, first, second, scope):
-        return None
-    return _checked(compared(first, node.relation, second))
+    return _checked(numbers.compared(first, node.relation, second))
 
 
 def _checked(formula: ltl.Formula) -> ltl.Formula:
@@ -226,15 +193,6 @@ def _checked(formula: ltl.Formula) -> ltl.Formula:
     if exceeded_limit(formula):
         raise TooManyCasesError
     return formula
-
-
-def _as_number(
-    node: tree.Formula, meaning: Meaning | None, around: tree.Compare, scope: Scope
-) -> NumberByCases | None:
-    if meaning is None or isinstance(meaning, NumberByCases):
-        return meaning
-    scope.report(say.not_comparable(node, meaning, around, scope))
-    return None
 
 
 def _same(node: tree.Compare, left: Object, right: Object, scope: Scope) -> ltl.Formula | None:
@@ -251,11 +209,15 @@ def _same(node: tree.Compare, left: Object, right: Object, scope: Scope) -> ltl.
     return same if node.relation == "=" else negated(same)
 
 
-def _fit(node: tree.Formula, left: NumberByCases, right: NumberByCases, scope: Scope) -> bool:
-    one, other = left.dimension, right.dimension
-    if one is None or other is None or one == other:
+def _fit(
+    node: tree.Compare | tree.Arithmetic | tree.Conditional,
+    left: NumberByCases,
+    right: NumberByCases,
+    scope: Scope,
+) -> bool:
+    """Tell whether two numbers have one dimension; else report."""
+    if left.dimension is None or right.dimension in (None, left.dimension):
         return True
-    assert isinstance(node, tree.Compare | tree.Arithmetic | tree.Conditional), "these have sides"
     scope.report(say.two_dimensions(node, left, right, scope))
     return False
 
@@ -264,35 +226,20 @@ def _arithmetic(node: tree.Arithmetic, scope: Scope) -> NumberByCases | None:
     left, right = number(node.left, scope), number(node.right, scope)
     if left is None or right is None:
         return None
-    match node.operator:
-        case "+" | "-":
-            if not _fit(node, left, right, scope):
-                return None
-            sign = 1 if node.operator == "+" else -1
-            return combined(left, right, lambda one, other: added(one, other, sign))
-        case "*":
-            if _varies(left) and _varies(right):
-                scope.report(say.not_linear(node))
-                return None
-            return combined(left, right, _product)
-        case _:
-            if _varies(right):
-                scope.report(say.not_linear(node))
-                return None
-            if any(linear.constant == 0 for _, linear in right.cases):
-                scope.report(say.divided_by_zero(node))
-                return None
-            return combined(left, right, divided)
-
-
-def _varies(value: NumberByCases) -> bool:
-    return any(linear.coefficients for _, linear in value.cases)
-
-
-def _product(left: Linear, right: Linear) -> Linear:
-    if right.coefficients:
-        return scaled(right, left, first=True)
-    return scaled(left, right, first=False)
+    if node.operator in ("+", "-"):
+        if not _fit(node, left, right, scope):
+            return None
+        sign = 1 if node.operator == "+" else -1
+        return numbers.combined(left, right, partial(numbers.added, sign=sign))
+    if right.varies and (node.operator == "/" or left.varies):
+        scope.report(say.not_linear(node))
+        return None
+    if node.operator == "*":
+        return numbers.combined(left, right, numbers.multiplied)
+    if any(linear.constant == 0 for _, linear in right.cases):
+        scope.report(say.divided_by_zero(node))
+        return None
+    return numbers.combined(left, right, numbers.divided)
 
 
 def _either(
@@ -307,10 +254,11 @@ def _either(
     if isinstance(value, AnyArgument) or isinstance(otherwise, AnyArgument):
         return AnyArgument()
     if isinstance(value, NumberByCases) and isinstance(otherwise, NumberByCases):
-        return either(condition, value, otherwise) if _fit(node, value, otherwise, scope) else None
+        fit = _fit(node, value, otherwise, scope)
+        return numbers.either(condition, value, otherwise) if fit else None
     if isinstance(value, Object | NumberByCases) or isinstance(otherwise, Object | NumberByCases):
         scope.report(say.two_kinds(node, value, otherwise, scope))
         return None
-    chosen = ltl.Binary(ltl.BinaryOperator.AND, condition, value)
-    other = ltl.Binary(ltl.BinaryOperator.AND, negated(condition), otherwise)
-    return _checked(ltl.Binary(ltl.BinaryOperator.OR, chosen, other))
+    sides = ((condition, value), (negated(condition), otherwise))
+    first, second = (ltl.Binary(ltl.BinaryOperator.AND, test, side) for test, side in sides)
+    return _checked(ltl.Binary(ltl.BinaryOperator.OR, first, second))

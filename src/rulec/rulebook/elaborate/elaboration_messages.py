@@ -9,7 +9,6 @@ from rulec.diagnostics.code import Code
 from rulec.logic.formula import Formula
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
-from rulec.rulebook.elaborate.rule_messages import UNUSED_VARIABLE
 from rulec.rulebook.elaborate.scope import SIDES, Scope
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
 from rulec.syntax import tree
@@ -41,9 +40,9 @@ NOT_LINEAR = Code(
 MISPLACED_TEMPORAL_OPERATOR = Code(
     "R0319",
     title="a temporal operator stands in a count, a parameter or a fact",
-    why="The words `some`, `every` and `count` go over the objects of one moment, and a "
-    "parameter is a number "
-    "of one moment. What happens to one object over time is said by a variable of the rule.",
+    why="The words `some`, `every` and `count` go over the objects of one moment, and a parameter "
+    "is a number of one moment. What happens to one object over time is said by a variable of the "
+    "rule.",
     bad="rulebook example\ntype car\nsignal near(c: car) default false\n"
     "hard rule r { require every c: car (always not near(c)) }\n",
     good="rulebook example\ntype car\nsignal near(c: car) default false\n"
@@ -91,9 +90,7 @@ def _origins(node: tree.Formula, scope: Scope) -> Iterator[Label]:
 
 def number_for_truth(node: tree.Formula, number: NumberByCases, scope: Scope) -> Diagnostic:
     """A number where a formula needs something true or false."""
-    unit = ""
-    if isinstance(node, tree.AtomUse):
-        unit = scope.symbols.unit_text(node.name.text)
+    unit = scope.symbols.unit_text(node.name.text) if isinstance(node, tree.AtomUse) else ""
     inside = f" (in {unit})" if unit else ""
     test = f"< 5 {unit}" if unit else ">= 1" if isinstance(node, tree.Aggregate) else "< …"
     return NUMBER_OR_FORMULA.at(
@@ -116,37 +113,39 @@ def object_for_truth(node: tree.Formula, scope: Scope) -> Diagnostic:
     )
 
 
-def no_number(node: tree.Formula, operand: object, scope: Scope) -> Diagnostic:
-    """Something true or false, or an object, where a number is needed."""
+def no_number(
+    node: tree.Formula, operand: object, scope: Scope, around: tree.Compare | None
+) -> Diagnostic:
+    """Something true or false, or an object, where a number is needed or is compared."""
+    if around is None:
+        expected = "expected a number"
+        way_out = "a number is a quantity, a parameter, a count, or such as `1.5 m`"
+    else:
+        expected = f"expected a number beside `{around.relation}`"
+        way_out = "numbers are compared, and objects by `=` and `!=`"
     return NUMBER_OR_FORMULA.at(
         node.span,
         f"`{short(node)}` is {what_of(operand)}, not a number",
-        expected="expected a number",
-        help="a number is a quantity, a parameter, a count, or such as `1.5 m`",
+        expected=expected,
+        help=way_out,
         labels=origins(scope, node),
     )
 
 
 def values_compared(
-    node: tree.Compare,
-    side: tree.AtomUse,
-    item: Enumeration,
-    compared: tree.Formula,
-    scope: Scope,
+    node: tree.Compare, side: tree.AtomUse, item: Enumeration, compared: tree.Formula, scope: Scope
 ) -> Diagnostic:
     """``surface = crossing``: an enumeration's value is an atom by itself."""
     name = side.name.text
     value = compared.name.text if isinstance(compared, tree.AtomUse) else ""
     relative = value in SIDES and set(SIDES[value].values()) <= set(item.values)
-    arguments = (
-        f"({', '.join(argument.text for argument in side.arguments)})" if side.arguments else ""
-    )
-    if value not in item.values and not relative:
-        way_out = did_you_mean(value, item.values) or (
-            f"write {any_of([f'`{known}{arguments}`' for known in item.values])}"
-        )
-    else:
+    objects = ", ".join(argument.text for argument in side.arguments)
+    arguments = f"({objects})" if objects else ""
+    if value in item.values or relative:
         way_out = f"write `{'not ' if node.relation == '!=' else ''}{value}{arguments}`"
+    else:
+        ways = any_of([f"`{known}{arguments}`" for known in item.values])
+        way_out = did_you_mean(value, item.values) or f"write {ways}"
     return NOT_BOOLEAN.at(
         node.span,
         f"`{name}` is not compared: each of its values is true or false by itself",
@@ -158,32 +157,19 @@ def values_compared(
 
 def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
     """Both sides of a comparison are true or false."""
-    way_out = {
-        "=": "formulas are compared by `iff`",
-        "!=": "formulas are compared by `xor`",
-    }.get(node.relation, "numbers are compared, and objects by `=` and `!=`")
     if isinstance(node.right, tree.TruthLiteral) and isinstance(node.left, tree.AtomUse):
         holds = node.right.value == (node.relation == "=")
         way_out = f"write `{'' if holds else 'not '}{short(node.left)}`"
+    elif node.relation in ("=", "!="):
+        way_out = f"formulas are compared by `{'iff' if node.relation == '=' else 'xor'}`"
+    else:
+        way_out = "numbers are compared, and objects by `=` and `!=`"
     return NUMBER_OR_FORMULA.at(
         node.span,
         f"both sides of `{node.relation}` are true or false, not numbers",
         expected="expected two numbers",
         help=way_out,
         labels=origins(scope, node.left, node.right),
-    )
-
-
-def not_comparable(
-    node: tree.Formula, operand: object, around: tree.Compare, scope: Scope
-) -> Diagnostic:
-    """A side of a comparison that is no number."""
-    return NUMBER_OR_FORMULA.at(
-        node.span,
-        f"`{short(node)}` is {what_of(operand)}, not a number",
-        expected=f"expected a number beside `{around.relation}`",
-        help="numbers are compared, and objects by `=` and `!=`",
-        labels=origins(scope, node),
     )
 
 
@@ -201,27 +187,23 @@ def two_dimensions(
         sign = node.relation if isinstance(node, tree.Compare) else node.operator
     first_kind, second_kind = kind_of(left.dimension), kind_of(right.dimension)
     verb = {"+": "added", "-": "subtracted", "or": "one number"}.get(sign, "compared")
-    message = f"`{short(first)}` is {first_kind} and `{short(second)}` {second_kind}"
     return MIXED_DIMENSIONS.at(
         second.span,
-        f"{message}: they cannot be {verb}",
+        f"`{short(first)}` is {first_kind} and `{short(second)}` {second_kind}: "
+        f"they cannot be {verb}",
         expected=f"this is {second_kind}",
         help=_unit_help(second, first, scope)
         or _unit_help(first, second, scope)
         or _kind_help(first, left, second, right),
-        labels=(
-            Label(first.span.place, f"this is {first_kind}"),
-            *origins(scope, first, second),
-        ),
+        labels=(Label(first.span.place, f"this is {first_kind}"), *origins(scope, first, second)),
     )
 
 
 def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
     """A number without its unit."""
-    if isinstance(node, tree.NumberLiteral) and not node.unit and isinstance(beside, tree.AtomUse):
-        unit = scope.symbols.unit_text(beside.name.text)
-        return f"write the unit, such as `{node.text} {unit}`" if unit else ""
-    return ""
+    unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
+    bare = isinstance(node, tree.NumberLiteral) and not node.unit
+    return f"write the unit, such as `{short(node)} {unit}`" if bare and unit else ""
 
 
 def _kind_help(
@@ -229,18 +211,13 @@ def _kind_help(
 ) -> str:
     """The factor that makes the two comparable."""
     if left.dimension is not None and right.dimension is not None:
-        for node, ratio in (
-            (second, left.dimension / right.dimension),
-            (first, right.dimension / left.dimension),
-        ):
-            if ratio == DIMENSIONS["time"]:
-                return f"a time makes them alike, such as `2 s * {_factor(node)}`"
+        ratio = left.dimension / right.dimension
+        if DIMENSIONS["time"] in (ratio, ratio**-1):
+            node = second if ratio == DIMENSIONS["time"] else first
+            text = short(node)
+            factor = f"({text})" if isinstance(node, tree.Arithmetic | tree.Minus) else text
+            return f"a time makes them alike, such as `2 s * {factor}`"
     return "check the names and the units"
-
-
-def _factor(node: tree.Formula) -> str:
-    text = short(node)
-    return f"({text})" if isinstance(node, tree.Arithmetic | tree.Minus) else text
 
 
 def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: Scope) -> Diagnostic:
@@ -268,14 +245,14 @@ def not_linear(node: tree.Arithmetic) -> Diagnostic:
     """A product of two numbers that vary, or a quotient by one."""
     if node.operator == "*":
         why = "two numbers that change from state to state cannot be multiplied"
-        wanted = "on one side"
+        where = "on one side"
     else:
         why = "a number that changes from state to state cannot be divided by"
-        wanted = "behind `/`"
+        where = "behind `/`"
     return NOT_LINEAR.at(
         node.span,
         f"`{short(node)}`: {why}",
-        expected=f"expected a fixed number {wanted}",
+        expected=f"expected a fixed number {where}",
         help="multiply and divide by fixed numbers and parameters only",
     )
 
@@ -316,18 +293,6 @@ def temporal_in_count(node: tree.Prefix | tree.Infix) -> Diagnostic:
         f"`{node.operator}` cannot stand here: a count, a parameter and a fact speak of one state",
         expected="expected a formula about one state",
         help="put the operator around it, or give the rule a variable",
-    )
-
-
-def unused_variable(node: tree.Aggregate) -> Diagnostic:
-    """A count's variable that its body says nothing about."""
-    name = node.variable.name.text
-    return UNUSED_VARIABLE.at(
-        node.variable.span,
-        f"the formula says nothing about `{name}`",
-        expected="not used behind it",
-        help="speak of it, or leave the variable out",
-        severity="warning",
     )
 
 

@@ -9,7 +9,7 @@ from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
 from rulec.diagnostics.code import Code
 from rulec.logic.bounds import NotAMultipleError
 from rulec.logic.printing import time_in_words
-from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS
+from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, Limit
 from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.rulebook_model import Rule
 from rulec.syntax import tree
@@ -63,8 +63,7 @@ NOT_ABOVE_ZERO = Code(
     "R0322",
     title="a weight or a step is not above 0",
     why="A weight says how much a rule counts beside others of its level, a step how far the "
-    "states "
-    "of examples are apart in time.",
+    "states of examples are apart in time.",
     bad="rulebook example\nsignal wet\nsoft rule r weight 0 { require not wet }\n",
     good="rulebook example\nsignal wet\nsoft rule r weight 1 { require not wet }\n",
 )
@@ -83,28 +82,20 @@ NOT_A_MULTIPLE = Code(
 )
 
 
-def too_deep(what: str, name: tree.Name) -> Diagnostic:
-    """Mistake: an expanded formula, definition or parameter is too deep."""
-    return FORMULA_TOO_DEEP.at(
-        name.span,
-        f"the {what}{_of(what)} `{name.text}` is nested more than {DEEPEST} levels deep, with "
-        "definitions put in",
-        help="say its parts in rules of their own",
-    )
-
-
-def too_large(what: str, name: tree.Name) -> Diagnostic:
-    """One that is too large once definitions are put in."""
+def over_limit(limit: Limit, what: str, name: tree.Name) -> Diagnostic:
+    """A formula, definition or parameter that is too deep or too large when expanded."""
+    subject = f"the {what}{' of' if what == 'formula' else ''} `{name.text}`"
+    if limit == "deep":
+        return FORMULA_TOO_DEEP.at(
+            name.span,
+            f"{subject} is nested more than {DEEPEST} levels deep, with definitions put in",
+            help="say its parts in rules of their own",
+        )
     return FORMULA_TOO_LARGE.at(
         name.span,
-        f"the {what}{_of(what)} `{name.text}` has more than {MOST_PARTS:,} parts, with definitions "
-        "put in",
+        f"{subject} has more than {MOST_PARTS:,} parts, with definitions put in",
         help="definitions that use another one twice double it each time: make them simpler",
     )
-
-
-def _of(what: str) -> str:
-    return " of" if what == "formula" else ""
 
 
 def no_level(level: tree.Name, known: Sequence[str]) -> Diagnostic:
@@ -155,13 +146,25 @@ def no_step(line: tree.StepLine) -> Diagnostic:
     )
 
 
-def unused_parameter(item: tree.DefineItem, parameter: tree.Parameter) -> Diagnostic:
-    """A definition's parameter that its body says nothing about."""
+def unused_variable(
+    variable: tree.Parameter, owner: tree.RuleItem | tree.DefineItem | tree.Aggregate
+) -> Diagnostic:
+    """A variable of a rule, definition or count that its formula says nothing about."""
+    match owner:
+        case tree.RuleItem(name=name):
+            what, where = f"formula of `{name.text}`", "in `require`"
+            way_out = "leave the variable out, or speak of it"
+        case tree.DefineItem(name=name):
+            what, where = f"definition of `{name.text}`", "behind `=`"
+            way_out = "leave it out, or speak of it"
+        case _:
+            what, where = "formula", "behind it"
+            way_out = "speak of it, or leave the variable out"
     return UNUSED_VARIABLE.at(
-        parameter.span,
-        f"the definition of `{item.name.text}` says nothing about `{parameter.name.text}`",
-        expected="not used behind `=`",
-        help="leave it out, or speak of it",
+        variable.span,
+        f"the {what} says nothing about `{variable.name.text}`",
+        expected=f"not used {where}",
+        help=way_out,
         severity="warning",
     )
 
@@ -215,23 +218,11 @@ def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
     """R0407: a bound of the rule falls between two states."""
     below = error.offending // error.step_s * error.step_s
     nearest = [time_in_words(time, "s") for time in (below, below + error.step_s) if time]
+    are = "multiples are" if len(nearest) > 1 else "multiple is"
     return NOT_A_MULTIPLE.at(
         error.span or rule.span,
         f"`{time_in_words(error.offending, 's')}` is not a multiple of the step, "
         f"{time_in_words(error.step_s, 's')}",
-        help=f"the nearest multiples are {' and '.join(nearest)}"
-        if len(nearest) > 1
-        else f"the nearest multiple is {nearest[0]}",
+        help=f"the nearest {are} {' and '.join(nearest)}",
         notes=(f"rule `{rule.name}` would have to know what happens between two states",),
-    )
-
-
-def unused_in_rule(item: tree.RuleItem, parameter: tree.Parameter) -> Diagnostic:
-    """A rule's variable that its formula says nothing about."""
-    return UNUSED_VARIABLE.at(
-        parameter.span,
-        f"the formula of `{item.name.text}` says nothing about `{parameter.name.text}`",
-        expected="not used in `require`",
-        help="leave the variable out, or speak of it",
-        severity="warning",
     )

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.logic.formula import Atom, QuantityTerm
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
+from rulec.rulebook.arithmetic.size_limits import OverLimitError
+from rulec.rulebook.elaborate.rule_messages import over_limit, unused_variable
 from rulec.rulebook.names import atom_messages
+from rulec.rulebook.names.declaration_messages import twice
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.syntax import tree
-from rulec.vocabulary import Enumeration, Signal
-from rulec.vocabulary import Quantity as QuantityDeclaration
+from rulec.vocabulary import Enumeration, Quantity, Signal
 
 SIDES = {"near_side_of": {"right": "right_of", "left": "left_of"}}
 SIDES["far_side_of"] = {"right": "left_of", "left": "right_of"}
@@ -45,9 +49,6 @@ class Call:
 
     name: str
     span: Span | None
-
-
-Declared_ = Signal | Enumeration | QuantityDeclaration
 
 
 @dataclass(slots=True)
@@ -95,13 +96,30 @@ class Scope:
         if mistake not in self.mistakes:
             self.mistakes.append(mistake)
 
-    def behind(self, name: str) -> Declared_ | None:
+    @contextmanager
+    def within_limits(self, what: str, name: tree.Name) -> Iterator[None]:
+        """Elaborate a whole expression; report it if it is too deep or too large."""
+        self.constants.begin()
+        try:
+            yield
+        except OverLimitError as error:
+            self.report(over_limit(error.limit, what, name))
+
+    def unused(
+        self, variables: Iterable[tree.Parameter], owner: tree.RuleItem | tree.DefineItem
+    ) -> Iterator[Diagnostic]:
+        """Warnings for the variables of ``owner`` that its formula says nothing about."""
+        for variable in variables:
+            if variable.name.text not in self.used:
+                yield unused_variable(variable, owner)
+
+    def behind(self, name: str) -> Signal | Enumeration | Quantity | None:
         """The signal, quantity or enumeration that a name refers to.
 
         An enumeration is found by the names of its values.
         """
         quantity = self.symbols.items.get(name)
-        if isinstance(quantity, QuantityDeclaration):
+        if isinstance(quantity, Quantity):
             return quantity
         return self.symbols.behind_atom(name)
 
@@ -154,13 +172,13 @@ class Scope:
 
     def _readings(self, name: str) -> list[tuple[str, str]]:
         """The ways to read ``b_v`` as ``b(v)``."""
-        result: list[tuple[str, str]] = []
-        for position in (at for at, letter in enumerate(name) if letter == "_"):
-            head, variable = name[:position], name[position + 1 :]
-            item = self.behind(head)
-            if item is not None and len(item.parameters) == 1 and variable in self.variables:
-                result.append((head, variable))
-        return result
+        cuts = (at for at, letter in enumerate(name) if letter == "_")
+        pairs = ((name[:at], name[at + 1 :], self.behind(name[:at])) for at in cuts)
+        return [
+            (head, variable)
+            for head, variable, item in pairs
+            if item is not None and len(item.parameters) == 1 and variable in self.variables
+        ]
 
     def _checked(
         self, use: tree.AtomUse, name: str, arguments: tuple[tree.Name, ...]
@@ -169,18 +187,17 @@ class Scope:
         assert item is not None, "only called for known names"
         if len(arguments) != len(item.parameters):
             self.used |= {argument.text for argument in arguments}
-            self.report(
-                atom_messages.wrong_number(use, item, self.symbols, self.variables, name=name)
-            )
+            variables = list(self.variables)
+            self.report(atom_messages.wrong_number(use, name, item, self.symbols, variables))
             return None
         actual = [
-            self.object(one, wanted, (item.name, position))
-            for position, (one, wanted) in enumerate(zip(arguments, item.parameters, strict=True))
+            self.object(argument, type_, (item.name, index))
+            for index, (argument, type_) in enumerate(zip(arguments, item.parameters, strict=True))
         ]
-        names = tuple(one for one in actual if one is not None)
+        names = tuple(name for name in actual if name is not None)
         if len(names) < len(actual):
             return None
-        if isinstance(item, QuantityDeclaration):
+        if isinstance(item, Quantity):
             return QuantityTerm(item.name, names)
         return Atom(item.name, names, name if isinstance(item, Enumeration) else None)
 
@@ -193,8 +210,7 @@ class Scope:
     ) -> str | None:
         """The actual name of an argument; None after a reported mistake.
 
-        ``parameter``: which parameter of which declaration asks for it. ``relations``: what could
-        be meant besides an object.
+        ``parameter`` of a declaration asks for it; one of ``relations`` could be meant instead.
         """
         self.used.add(argument.text)
         if isinstance(self.relations.get(argument.text), AnyArgument):
@@ -202,13 +218,10 @@ class Scope:
         variable = self.variables.get(argument.text)
         if variable is None:
             variables = list(self.variables)
+            owner = "definition" if self.of_definition else "rule"
             self.report(
                 atom_messages.unknown_variable(
-                    argument,
-                    self.symbols,
-                    variables,
-                    known=[*variables, *relations],
-                    owner="definition" if self.of_definition else "rule",
+                    argument, self.symbols, variables, relations, owner=owner
                 )
             )
             return None
@@ -221,3 +234,25 @@ class Scope:
             labels.append(Label(where.place, about))
         self.report(atom_messages.wrong_type(argument, variable.type, wanted, labels))
         return None
+
+
+Evaluate = Callable[[tree.Formula, Scope], NumberByCases | None]
+"""What elaborates a number."""
+
+
+def bound_variables(
+    parameters: Iterable[tree.Parameter],
+    symbols: SymbolTable,
+    report: Callable[[Diagnostic], object],
+) -> dict[str, BoundVariable]:
+    """The variables of a rule or a definition, with their types."""
+    variables: dict[str, BoundVariable] = {}
+    for parameter in parameters:
+        name = parameter.name
+        assert parameter.type is not None, "the grammar asks for a variable's type"
+        kind = symbols.known_type(parameter.type, report)
+        if name.text in variables:
+            report(twice("variable", name, variables[name.text].span))
+        else:
+            variables[name.text] = BoundVariable(kind, parameter.span, name.text)
+    return variables

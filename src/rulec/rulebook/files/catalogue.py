@@ -8,12 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rulec.diagnostics import RulecError
-from rulec.rulebook.files.search_path import (
-    available_rulebooks,
-    available_vocabularies,
-    find_rulebook,
-    read_bytes,
-)
+from rulec.rulebook.files import search_path as search
 from rulec.syntax import decode, parse, tree
 
 
@@ -28,36 +23,40 @@ class Entry:
 
 def list_rulebooks(search_path: Sequence[Path] = ()) -> list[Entry]:
     """The rulebooks with their titles; one that cannot be read has none."""
-    paths = {name: find_rulebook(name, search_path) for name in available_rulebooks(search_path)}
-    return [Entry(name, _title(_tree(path)), path) for name, path in paths.items()]
+    return [
+        Entry(path.stem, file.title.text.value if file and file.title else "", path)
+        for path in _rulebooks(search_path)
+        for file in [_tree(path)]
+    ]
 
 
 def rulebook_trees(search_path: Sequence[Path] = ()) -> list[tree.File]:
     """Syntax trees of all readable rulebooks, by name, in alphabetical order."""
-    paths = (find_rulebook(name, search_path) for name in available_rulebooks(search_path))
-    return [file for path in paths if (file := _tree(path)) is not None and file.name is not None]
+    files = map(_tree, _rulebooks(search_path))
+    return [file for file in files if file is not None and file.name is not None]
 
 
 def list_vocabularies(search_path: Sequence[Path] = ()) -> list[Entry]:
     """The vocabularies with what they declare."""
     return [
         Entry(path.stem, _declares(_tree(path)), path)
-        for path in available_vocabularies(search_path)
+        for path in search.available_vocabularies(search_path)
     ]
+
+
+def _rulebooks(search_path: Sequence[Path]) -> list[Path]:
+    names = search.available_rulebooks(search_path)
+    return [search.find_rulebook(name, search_path) for name in names]
 
 
 def _tree(path: Path) -> tree.File | None:
     try:
-        return parse(decode(str(path), read_bytes(path)))[0]
+        return parse(decode(str(path), search.read_bytes(path)))[0]
     except RulecError:
         return None
 
 
-def _title(file: tree.File | None) -> str:
-    return file.title.text.value if file is not None and file.title is not None else ""
-
-
-_PLURALS = {
+_WORDS = {
     tree.TypeItem: ("type", "types"),
     tree.EnumerationItem: ("enumeration", "enumerations"),
     tree.SignalItem: ("signal", "signals"),
@@ -70,5 +69,5 @@ def _declares(file: tree.File | None) -> str:
     counts: Counter[type] = Counter()
     for item in () if file is None else file.items:
         counts[type(item)] += len(item.signals) if isinstance(item, tree.SignalItem) else 1
-    parts = [f"{counts[kind]} {words[counts[kind] != 1]}" for kind, words in _PLURALS.items()]
+    parts = [f"{counts[kind]} {words[counts[kind] != 1]}" for kind, words in _WORDS.items()]
     return ", ".join(part for part in parts if not part.startswith("0 "))

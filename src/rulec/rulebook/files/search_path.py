@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from rulec.diagnostics import Diagnostic, Label, RulecError, Span, did_you_mean, named
+from rulec.diagnostics import Label, Span, did_you_mean, named
 from rulec.files import MAX_SOURCE_BYTES, opened
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
@@ -47,16 +49,17 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
         path = Path(text)
         inside = path / f"{path.name}{_SUFFIX}"
         return inside if _is_file(inside) else path
-    result = _by_name(text, search_path)
-    if result is not None:
-        return result
-    known = available_rulebooks(search_path)
-    missing = _no_rulebook(text, known)
-    raise RulecError(replace(missing, help=suggest(text, known), notes=(BY_PATH,)))
+    found = _by_name(text, search_path)
+    if found is not None:
+        return found
+    way_out = suggest(text, available_rulebooks(search_path))
+    raise NAME_NOT_FOUND.error(
+        None, f"there is no rulebook `{text}`", help=way_out, notes=(BY_PATH,)
+    )
 
 
 def _by_name(name: str, search_path: Sequence[Path]) -> Path | None:
-    for folder in _folders(search_path):
+    for folder in (*search_path, rulebooks_folder()):
         for candidate in (folder / f"{name}{_SUFFIX}", folder / name / f"{name}{_SUFFIX}"):
             if name and _is_file(candidate):
                 return candidate
@@ -65,18 +68,29 @@ def _by_name(name: str, search_path: Sequence[Path]) -> Path | None:
 
 def available_rulebooks(search_path: Sequence[Path] = ()) -> tuple[str, ...]:
     """The names that ``find_rulebook`` knows, in alphabetical order."""
-    names: set[str] = set()
-    for folder in _folders(search_path):
-        for path in _rules_files(folder):
-            named_like_folder = path.parent != folder and path.stem == path.parent.name
-            if (path.parent == folder or named_like_folder) and _lead(path) == "rulebook":
-                names.add(path.stem)
+    names = {
+        path.stem
+        for folder in (*search_path, rulebooks_folder())
+        for path in _rules_files(folder)
+        if path.parent == folder or path.stem == path.parent.name
+        if _lead(path) == "rulebook"
+    }
     return tuple(sorted(names))
 
 
-def available_vocabularies(search_path: Sequence[Path] = ()) -> tuple[Path, ...]:
-    """Files of the generally available vocabularies, in order of their names."""
-    return tuple(_vocabularies_in(_vocabulary_folders(None, search_path)))
+def available_vocabularies(
+    search_path: Sequence[Path] = (), user: Path | None = None
+) -> tuple[Path, ...]:
+    """Files of vocabularies, in order of their names.
+
+    Those that any rulebook can use, or with those that the rulebook ``user`` has beside it.
+    """
+    first: dict[str, Path] = {}
+    for folder in _vocabulary_folders(user, search_path):
+        for path in _rules_files(folder):
+            if path.parent == folder and _lead(path) == "vocabulary":
+                first.setdefault(path.stem, path)
+    return tuple(first[name] for name in sorted(first))
 
 
 def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequence[Path]) -> Path:
@@ -87,12 +101,12 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
     Raises:
         RulecError: R0703 at the ``use`` line.
     """
-    result = locate_vocabulary(name, user, search_path)
-    if result is not None:
-        return result
-    known = [path.stem for path in _vocabularies_in(_vocabulary_folders(user, search_path))]
+    found = locate_vocabulary(name, user, search_path)
+    if found is not None:
+        return found
+    known = [path.stem for path in available_vocabularies(search_path, user)]
     raise NAME_NOT_FOUND.error(
-        use.place,
+        use,
         f"there is no vocabulary `{name}`",
         expected="expected the name of a vocabulary",
         help=_suggest(name, known),
@@ -116,13 +130,17 @@ def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Pa
     Raises:
         RulecError: R0703 at the ``extends`` line.
     """
-    path = locate_base(name, user, search_path)
-    if path is not None:
-        return path
-    missing = _no_rulebook(name, available_rulebooks([*_around(user), *search_path]))
-    expected = "expected the name of a rulebook"
+    found = locate_base(name, user, search_path)
+    if found is not None:
+        return found
     looked = f"`{name}{_SUFFIX}` is looked for beside this file, on the search path, and in rulec"
-    raise RulecError(replace(missing, place=line.place, expected=expected, notes=(looked,)))
+    raise NAME_NOT_FOUND.error(
+        line,
+        f"there is no rulebook `{name}`",
+        expected="expected the name of a rulebook",
+        help=_suggest(name, available_rulebooks([*_around(user), *search_path])),
+        notes=(looked,),
+    )
 
 
 def locate_base(name: str, user: Path | None, search_path: Sequence[Path]) -> Path | None:
@@ -146,10 +164,6 @@ def read_bytes(path: Path, use: Span | None = None) -> bytes:
         return stream.read(MAX_SOURCE_BYTES + 1)
 
 
-def _folders(search_path: Sequence[Path]) -> list[Path]:
-    return [*search_path, rulebooks_folder()]
-
-
 def _vocabulary_folders(user: Path | None, search_path: Sequence[Path]) -> list[Path]:
     beside = [] if user is None else [user.parent, user.parent / "vocabulary"]
     if user is not None and user.parent.name == user.stem:
@@ -158,36 +172,22 @@ def _vocabulary_folders(user: Path | None, search_path: Sequence[Path]) -> list[
     return [*beside, *listed, rulebooks_folder() / "vocabulary"]
 
 
-def _vocabularies_in(folders: Sequence[Path]) -> list[Path]:
-    first: dict[str, Path] = {}
-    for folder in folders:
-        for path in _rules_files(folder):
-            if path.parent == folder and _lead(path) == "vocabulary":
-                first.setdefault(path.stem, path)
-    return [first[name] for name in sorted(first)]
-
-
 def _rules_files(folder: Path) -> Iterator[Path]:
-    try:
+    """The files with rules in a folder and in the folders in it."""
+    with suppress(OSError):
         yield from folder.glob(f"*{_SUFFIX}")
         yield from folder.glob(f"*/*{_SUFFIX}")
-    except OSError:
-        return
 
 
 def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
+    return os.path.isfile(path)  # noqa: PTH113 - Path raises on a null character
 
 
-def is_same_file(one: Path, other: Path) -> bool:
+def is_same_file(path: Path, other: Path) -> bool:
     """Tell whether two paths lead to the same file."""
-    try:
-        return one.samefile(other)
-    except OSError:
-        return False
+    with suppress(OSError):
+        return path.samefile(other)
+    return False
 
 
 def _lead(path: Path) -> str:
@@ -197,12 +197,8 @@ def _lead(path: Path) -> str:
             text = stream.read(_LEAD_BYTES).decode("utf-8-sig", "replace")
     except OSError:
         return ""
-    match_ = _LEAD.match(text)
-    return match_[1] if match_ else ""
-
-
-def _no_rulebook(name: str, known: Sequence[str]) -> Diagnostic:
-    return NAME_NOT_FOUND.at(None, f"there is no rulebook `{name}`", help=_suggest(name, known))
+    lead = _LEAD.match(text)
+    return lead[1] if lead else ""
 
 
 def suggest(name: str, known: Sequence[str]) -> str:

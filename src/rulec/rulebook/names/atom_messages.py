@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named, nearest_name
 from rulec.diagnostics.code import Code
@@ -124,27 +124,21 @@ def explain(
     name = use.name.text
     item = symbols.items.get(name)
     if isinstance(item, Enumeration):
-        values = any_of([f"`{_call(value, item)}`" for value in item.values])
-        return _not_an_atom(use, symbols, "has several values", f"write {values}")
-    if name in symbols.types:
-        return NOT_BOOLEAN.at(
-            use.name.span,
-            f"`{name}` is a type of objects and cannot be true or false",
-            expected=_ATOM,
-            help=f"speak of an object: give the rule a variable, such as `(x: {name})`",
-            labels=(Label(symbols.type_spans[name].place, f"`{name}` is declared here"),),
-        )
-    return _unknown(use, symbols, variables, others)
-
-
-def _not_an_atom(use: tree.AtomUse, symbols: SymbolTable, why: str, help_: str) -> Diagnostic:
-    name = use.name.text
+        call = f"({', '.join('…' for _ in item.parameters)})" if item.parameters else ""
+        values = any_of([f"`{value}{call}`" for value in item.values])
+        message, declared = "has several values and cannot", symbols.spans[name]
+        way_out = f"write {values}"
+    elif name in symbols.types:
+        message, declared = "is a type of objects and cannot", symbols.type_spans[name]
+        way_out = f"speak of an object: give the rule a variable, such as `(x: {name})`"
+    else:
+        return _unknown(use, symbols, variables, others)
     return NOT_BOOLEAN.at(
         use.name.span,
-        f"`{name}` {why} and cannot be true or false",
+        f"`{name}` {message} be true or false",
         expected=_ATOM,
-        help=help_,
-        labels=(Label(symbols.spans[name].place, f"`{name}` is declared here"),),
+        help=way_out,
+        labels=(Label(declared.place, f"`{name}` is declared here"),),
     )
 
 
@@ -157,7 +151,6 @@ def _unknown(
     name = use.name.text
     atoms = symbols.atoms()
     quantities = [item.name for item in symbols.items.values() if isinstance(item, Quantity)]
-    known = [*atoms, *quantities, *others]
     glued = _glued(name, set(atoms))
     if name == "if":
         way_out = "write `p implies q` for `if p then q`"
@@ -166,7 +159,7 @@ def _unknown(
     else:
         way_out = (
             ("" if use.arguments else _short_form(name, symbols, list(variables)))
-            or did_you_mean(name, known)
+            or did_you_mean(name, [*atoms, *quantities, *others])
             or f"declare it, such as `signal {_as_used(use, variables)}`, "
             "or `use` a vocabulary that has it"
         )
@@ -177,13 +170,11 @@ def _unknown(
 
 def _as_used(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:
     """The declaration that fits a use: `braking(v: vehicle)` for `braking(v)`."""
-    types = [variables.get(argument.text) for argument in use.arguments]
-    if not types or None in types:
+    names = [argument.text for argument in use.arguments]
+    if not names or any(variables.get(name) is None for name in names):
         return use.name.text
-    parameters = (
-        f"{argument.text}: {kind}" for argument, kind in zip(use.arguments, types, strict=True)
-    )
-    return f"{use.name.text}({', '.join(parameters)})"
+    parameters = ", ".join(f"{name}: {variables[name]}" for name in names)
+    return f"{use.name.text}({parameters})"
 
 
 def no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:
@@ -221,16 +212,12 @@ def _short_form(name: str, symbols: SymbolTable, variables: Sequence[str]) -> st
 
 
 def _glued(name: str, atoms: set[str]) -> str:
-    """Operators and atoms split from one word: ``GFp`` to ``G F p``.
-
-    Likewise ``pUq`` to ``p U q``; empty if the parts are no atoms.
-    """
+    """``GFp`` split to ``G F p``, ``pUq`` to ``p U q``; empty if the parts are no atoms."""
     unary = _GLUED.fullmatch(name)
     if unary is not None:
         for cut in range(len(unary[1]), 0, -1):
-            rest = unary[1][cut:] + unary[2]
-            if rest in atoms:
-                return " ".join([*unary[1][:cut], rest])
+            if name[cut:] in atoms:
+                return " ".join([*name[:cut], name[cut:]])
     binary = _GLUED_BINARY.fullmatch(name)
     if binary is not None and binary[1] in atoms and binary[3] in atoms:
         return " ".join(binary.groups())
@@ -239,17 +226,16 @@ def _glued(name: str, atoms: set[str]) -> str:
 
 def wrong_number(
     use: tree.AtomUse,
+    name: str,
     item: Signal | Enumeration | Quantity,
     symbols: SymbolTable,
-    variables: Iterable[str],
-    *,
-    name: str,
+    variables: Sequence[str],
 ) -> Diagnostic:
     """A known atom with too few or too many objects."""
     needed, given = len(item.parameters), len(use.arguments)
     objects = {0: "no object", 1: "one object"}.get(needed, f"{needed} objects")
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
-    arguments = ([*variables] + ["…"] * needed)[:needed]
+    arguments = [*variables, *["…"] * needed][:needed]
     written = f"{name}({', '.join(arguments)})" if needed else name
     return WRONG_ARITY.at(
         use.span,
@@ -271,19 +257,18 @@ def two_readings(use: tree.AtomUse, readings: Sequence[tuple[str, str]]) -> Diag
     )
 
 
-def _call(value: str, item: Enumeration) -> str:
-    return f"{value}({', '.join('…' for _ in item.parameters)})" if item.parameters else value
-
-
 def unknown_variable(
     name: tree.Name,
     symbols: SymbolTable,
     variables: Sequence[str],
+    relations: Sequence[str],
     *,
-    known: Iterable[str],
     owner: str,
 ) -> Diagnostic:
-    """Mistake: the rule or definition ``owner`` lacks a variable."""
+    """Mistake: the rule or definition ``owner`` lacks a variable.
+
+    In the place of one a definition could take ``relations``.
+    """
     if variables:
         way_out = f"the {owner}'s variables are {named(variables)}"
     else:
@@ -293,7 +278,7 @@ def unknown_variable(
         name.span,
         f"the {owner} has no variable `{name.text}`",
         expected=f"expected a variable of the {owner}",
-        help=did_you_mean(name.text, known) or way_out,
+        help=did_you_mean(name.text, [*variables, *relations]) or way_out,
     )
 
 

@@ -160,11 +160,10 @@ def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
         of_quantity = f" of `{quantity}`" if quantity else ""
         message = f"the unit `{unit}`{of_quantity} cannot be used: {refusal.why}"
         return UNKNOWN_UNIT.at(span, message, help=refusal.instead)
-    way_out = (
-        "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
-        if unit in ("step", "steps")
-        else did_you_mean(unit, known_unit_names())
-    )
+    if unit in ("step", "steps"):
+        way_out = "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
+    else:
+        way_out = did_you_mean(unit, known_unit_names())
     return UNKNOWN_UNIT.at(
         span,
         f"there is no unit `{unit}`",

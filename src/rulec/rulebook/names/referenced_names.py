@@ -11,26 +11,20 @@ def names_used(item: tree.Item) -> Iterator[str]:
     """Every name in an item's formulas, with repetitions, without its examples."""
     match item:
         case tree.RuleItem(require=require, when=when, unless=unless):
-            for formula in (require, when, *(one.formula for one in unless)):
+            for formula in (require, when, *(exception.formula for exception in unless)):
                 if formula is not None:
                     yield from names_in(formula)
-        case tree.DefineItem(body=body):
-            yield from names_in(body)
-        case tree.FactItem(formula=formula):
+        case tree.DefineItem(body=formula) | tree.FactItem(formula) | tree.ParamItem(value=formula):
             yield from names_in(formula)
-        case tree.ParamItem(value=value) | tree.SetItem(value=value):
-            if not isinstance(value, bool):
-                yield from names_in(value)
-        case _:
-            return
+        case tree.SetItem(value=value) if not isinstance(value, bool):
+            yield from names_in(value)
 
 
 def names_in_examples(rule: tree.RuleItem) -> Iterator[str]:
     """Every name in the states of a rule's examples, with repetitions."""
-    for example in rule.examples:
-        for state in example.states:
-            for literal in state.literals:
-                yield from names_in(literal.atom)
+    for state in (state for example in rule.examples for state in example.states):
+        for literal in state.literals:
+            yield from names_in(literal.atom)
 
 
 def atoms_in(formula: tree.Formula) -> Iterator[tree.AtomUse]:
@@ -70,16 +64,9 @@ def names_in(formula: tree.Formula) -> Iterator[str]:
 
 
 def _bounds(formula: tree.Formula) -> Iterator[tree.BoundNode]:
-    match formula:
-        case tree.Prefix(operand=operand, bound=bound):
-            if bound is not None:
-                yield bound
-            yield from _bounds(operand)
-        case tree.Infix(left=left, right=right, bound=bound):
-            if bound is not None:
-                yield bound
-            yield from _bounds(left)
-            yield from _bounds(right)
-        case _:
-            # In anything else there is no temporal operator.
-            return
+    # In anything else there is no temporal operator.
+    if isinstance(formula, tree.Prefix | tree.Infix):
+        if formula.bound is not None:
+            yield formula.bound
+        for part in parts_of(formula):
+            yield from _bounds(part)

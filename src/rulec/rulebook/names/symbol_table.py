@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span
-from rulec.rulebook.names.declaration_messages import (
-    TYPE_CIRCLE,
-    both_declare,
-    no_such_value,
-    twice,
-    unknown_type,
-    unknown_unit,
-    which_type,
-)
+from rulec.rulebook.names import declaration_messages as say
+from rulec.rulebook.names.declaration_messages import TYPE_CIRCLE
 from rulec.syntax import tree
 from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
 from rulec.vocabulary.units import Unit, parse_unit
@@ -54,7 +47,7 @@ class SymbolTable:
             self.shared.setdefault(files, []).append(again.text)
             self.uncertain.add(again.text)
         else:
-            self.mistakes.append(twice(what, again, first))
+            self.mistakes.append(say.twice(what, again, first))
 
     def vocabulary(self, name: str) -> Vocabulary:
         """The declarations as data; only of use when there were no mistakes."""
@@ -78,13 +71,13 @@ class SymbolTable:
 
     def atoms(self) -> list[str]:
         """The names of signals and of values."""
-        signals = (one for one, item in self.items.items() if isinstance(item, Signal))
+        signals = [name for name, item in self.items.items() if isinstance(item, Signal)]
         return [*signals, *self.value_of]
 
     def about_one(self) -> list[str]:
         """The atoms about one object."""
-        generator = ((name, self.behind_atom(name)) for name in self.atoms())
-        return [name for name, item in generator if item is not None and len(item.parameters) == 1]
+        items = ((name, self.behind_atom(name)) for name in self.atoms())
+        return [name for name, item in items if item is not None and len(item.parameters) == 1]
 
     def behind_atom(self, name: str) -> Signal | Enumeration | None:
         """The signal of a name, or the enumeration with such a value."""
@@ -99,9 +92,16 @@ class SymbolTable:
         heads = (name[:at] for at, letter in enumerate(name) if letter == "_")
         return self.opaque or not self.suspects.isdisjoint((name, *heads))
 
-    def may_know_type(self, name: str) -> bool:
-        """Tell whether unreadable text may declare a type."""
-        return self.opaque_types or self.may_know(name)
+    def known_type(self, name: tree.Name, report: Callable[[Diagnostic], object]) -> str | None:
+        """The type of a name; None if there is none.
+
+        Which is reported unless unreadable text may declare it.
+        """
+        if name.text in self.types:
+            return name.text
+        if not self.opaque_types and not self.may_know(name.text):
+            report(say.unknown_type(name, list(self.types)))
+        return None
 
     def ancestors(self, type_name: str) -> list[str]:
         """The type and those above it; stops where they close a circle."""
@@ -136,7 +136,7 @@ def symbol_table(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolT
     _note_clashes(symbols, files)
     for (first, again), names in symbols.shared.items():
         uses = [_use_of(source, files) for source in (first, again)]
-        symbols.mistakes.append(both_declare(names, *uses))
+        symbols.mistakes.append(say.both_declare(names, *uses))
     return symbols
 
 
@@ -164,9 +164,10 @@ def _note_suspects(symbols: SymbolTable, file: tree.File) -> None:
 
 
 def _declare_types(symbols: SymbolTable, file: tree.File) -> None:
-    own = [item for item in file.items if isinstance(item, tree.TypeItem)]
     fresh: list[tree.TypeItem] = []
-    for item in own:
+    for item in file.items:
+        if not isinstance(item, tree.TypeItem):
+            continue
         name = item.name.text
         if name in symbols.types:
             symbols.twice("type", item.name, symbols.type_spans[name])
@@ -176,8 +177,7 @@ def _declare_types(symbols: SymbolTable, file: tree.File) -> None:
         fresh.append(item)
     for item in fresh:
         parent = item.parent
-        if parent is not None and parent.text not in symbols.types:
-            _unknown_type(symbols, parent)
+        if parent is not None and symbols.known_type(parent, symbols.mistakes.append) is None:
             symbols.types[item.name.text] = ObjectType(item.name.text)
             symbols.uncertain.add(item.name.text)
     for item in fresh:
@@ -235,16 +235,14 @@ def _declare_item(
         case tree.QuantityItem(name, parameters, unit, number):
             types = _parameter_types(symbols, name, parameters, roots)
             if symbols.unit(unit) is None:
-                symbols.mistakes.append(unknown_unit(item.unit, item.unit_span, name.text))
+                symbols.mistakes.append(say.unknown_unit(item.unit, item.unit_span, name.text))
             _add(symbols, name, Quantity(name.text, types, unit, number))
         case tree.EnumerationItem(name, parameters, values, chosen):
             types = _parameter_types(symbols, name, parameters, roots)
             texts = tuple(dict.fromkeys(value.text for value in values))
-            default = None
-            if chosen is not None and chosen.text in texts:
-                default = chosen.text
-            elif chosen is not None:
-                symbols.mistakes.append(no_such_value(name, chosen, texts))
+            default = chosen.text if chosen is not None and chosen.text in texts else None
+            if chosen is not None and default is None:
+                symbols.mistakes.append(say.no_such_value(name, chosen, texts))
             enumeration = Enumeration(name.text, types, texts, default)
             _add(symbols, name, enumeration)
             for value in values:
@@ -276,22 +274,16 @@ def _parameter_types(
     for position, parameter in enumerate(parameters):
         first = seen.setdefault(parameter.name.text, parameter.name.span)
         if first is not parameter.name.span:
-            symbols.mistakes.append(twice("parameter", parameter.name, first))
+            symbols.mistakes.append(say.twice("parameter", parameter.name, first))
         if name.text not in symbols.spans:
             symbols.parameter_spans[name.text, position] = parameter.span
         if parameter.type is not None:
             types.append(parameter.type.text)
-            if parameter.type.text not in symbols.types:
-                _unknown_type(symbols, parameter.type)
+            symbols.known_type(parameter.type, symbols.mistakes.append)
         elif len(roots) == 1:
             types.append(roots[0])
         else:
             types.append("")
             if not (symbols.opaque or symbols.opaque_types or symbols.suspects):
-                symbols.mistakes.append(which_type(parameter, roots))
+                symbols.mistakes.append(say.which_type(parameter, roots))
     return tuple(types)
-
-
-def _unknown_type(symbols: SymbolTable, name: tree.Name) -> None:
-    if not symbols.may_know_type(name.text):
-        symbols.mistakes.append(unknown_type(name, list(symbols.types)))

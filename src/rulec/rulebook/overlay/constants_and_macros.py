@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
-from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, TooDeepError, TooLargeError
+from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, OverLimitError
 from rulec.rulebook.overlay.rulebook_overlay import Overlay
 from rulec.rulebook.rulebook_model import Traffic
-from rulec.syntax import tree
 
 
 @dataclass(slots=True)
@@ -37,40 +36,22 @@ class ConstantsAndMacros:
 
     @contextmanager
     def one_deeper(self) -> Iterator[None]:
-        """Look at one more part. Raises TooDeepError, TooLargeError."""
+        """Look at one more part. Raises OverLimitError."""
         self.parts += 1
         if self.parts > MOST_PARTS:
-            raise TooLargeError
+            raise OverLimitError("large")
         if self.depth == DEEPEST:
-            raise TooDeepError
+            raise OverLimitError("deep")
         self.depth += 1
         try:
             yield
         finally:
             self.depth -= 1
 
-    @property
-    def options(self) -> Mapping[str, bool]:
-        """The values of the options."""
-        return self.overlay.options
-
-    @property
-    def definitions(self) -> Mapping[str, tree.DefineItem]:
-        """By name."""
-        return self.overlay.definitions
-
     def names(self) -> list[str]:
         """The names of all options, parameters and definitions."""
-        overlay = self.overlay
-        return [*overlay.options, *overlay.parameters, *overlay.definitions]
+        return [*self.overlay.options, *self.overlay.parameters, *self.overlay.definitions]
 
     def may_know(self, name: str) -> bool:
         """Tell whether unreadable text may declare a name."""
         return self.overlay.unsure or name in self.overlay.suspects
-
-
-def in_force(dates: tree.InForce | None, day: str) -> bool:
-    """Tell whether a day (ISO) lies within dates, the last included."""
-    if dates is None:
-        return True
-    return dates.since <= day and (not dates.until or day <= dates.until)

@@ -7,26 +7,9 @@ from collections.abc import Sequence
 from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
 from rulec.diagnostics.code import Code
 from rulec.rulebook.names.atom_messages import NUMBER_OR_FORMULA, UNKNOWN_VARIABLE, WRONG_ARITY
-from rulec.rulebook.names.declaration_messages import DECLARED_TWICE, twice
+from rulec.rulebook.names.declaration_messages import DECLARED_TWICE
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_parameters
-
-__all__ = [
-    "changed_twice",
-    "inherited_name",
-    "inherited_rule",
-    "lost_variables",
-    "never_in_force",
-    "nothing_to",
-    "option_is_on_or_off",
-    "other_parameters",
-    "own",
-    "own_rule",
-    "parameter_is_a_number",
-    "rule_twice",
-    "soft_already",
-    "twice",
-]
 
 RULE_TWICE = Code(
     "R0205",
@@ -126,8 +109,8 @@ def nothing_to(
     if extends is None:
         way_out = "the rulebook extends no other; name one in its header by `extends NAME`"
     else:
-        listed = f"`{extends}` has {named(known)}" if known else f"`{extends}` has none"
-        way_out = did_you_mean(name.text, known) or listed
+        has = f"`{extends}` has {named(known) or 'none'}"
+        way_out = did_you_mean(name.text, known) or has
     return NOT_INHERITED.at(
         name.span,
         f"there is no {kind} `{name.text}` to {verb}",
@@ -136,19 +119,8 @@ def nothing_to(
     )
 
 
-def own_rule(name: tree.Name, verb: str, known: tree.RuleItem) -> Diagnostic:
-    """``override``, ``drop``, ``soften`` of a rule of the same rulebook."""
-    return NOT_INHERITED.at(
-        name.span,
-        f"`{name.text}` is a rule of this rulebook, not an inherited one to {verb}",
-        expected="expected an inherited rule",
-        help="change the rule itself",
-        labels=(Label(known.name.span.place, "the rule is here"),),
-    )
-
-
 def own(name: tree.Name, kind: str, verb: str, known: tree.Name) -> Diagnostic:
-    """``set`` or ``redefine`` of something of the same rulebook."""
+    """A change of something of the same rulebook, such as by ``set`` or ``override``."""
     article = "an" if kind == "option" else "a"
     return NOT_INHERITED.at(
         name.span,
@@ -188,9 +160,9 @@ def other_parameters(item: tree.DefineItem, before: tree.DefineItem) -> Diagnost
 def lost_variables(item: tree.RuleItem, lost: Sequence[tree.Parameter]) -> Diagnostic:
     """An override without variables that the clauses which it inherits speak of."""
     names = " and ".join(f"`{variable.name.text}`" for variable in lost)
-    first, last = item.variables[0].span, item.variables[-1].span
+    first = item.variables[0].span
     return UNKNOWN_VARIABLE.at(
-        Span(first.source, first.start, last.end),
+        Span(first.source, first.start, item.variables[-1].span.end),
         f"what `{item.name.text}` inherits speaks of {names}, and here is no such variable",
         expected=f"expected {names}",
         help="call variables as they are called there, or write every clause and example anew",
@@ -246,14 +218,15 @@ def priority_circle(
     higher: tree.Name, lower: tree.Name, sign: str, levels: dict[str, tree.Name]
 ) -> Diagnostic:
     """A line that contradicts the order of the lines before."""
-    named = dict.fromkeys(name.text for name in (higher, lower) if name.text in levels)
-    labels = tuple(Label(levels[name].span.place, f"`{name}` was placed here") for name in named)
+    placed = dict.fromkeys(name.text for name in (higher, lower) if name.text in levels)
     same = higher.text == lower.text
+    against = "itself" if same else "the order so far"
     return PRIORITY_CIRCLE.at(
         lower.span,
-        f"`{higher.text} {sign} {lower.text}` contradicts "
-        + ("itself" if same else "the order so far"),
-        expected="this closes a circle" if not same else "a level compared with itself",
+        f"`{higher.text} {sign} {lower.text}` contradicts {against}",
+        expected="a level compared with itself" if same else "this closes a circle",
         help="leave one of the lines out; levels of one rank are written `a = b`",
-        labels=labels,
+        labels=tuple(
+            Label(levels[name].span.place, f"`{name}` was placed here") for name in placed
+        ),
     )

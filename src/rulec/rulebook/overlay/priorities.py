@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import pairwise, product
 
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.overlay.overlay_messages import priority_circle
 from rulec.syntax import tree
-
-Order = frozenset[tuple[str, str]]
-"""All pairs (higher, lower), transitive; levels that are equal stand in both orders."""
-
 
 MOST_LEVELS = 100
 """More levels are no order that anyone could keep in mind."""
@@ -20,10 +16,11 @@ MOST_LEVELS = 100
 
 def pre_order(
     lines: Sequence[tree.PriorityLine],
-) -> tuple[tuple[str, ...], Order, list[Diagnostic]]:
+) -> tuple[tuple[str, ...], frozenset[tuple[str, str]], list[Diagnostic]]:
     """Levels in order of first mention, their pre-order, and the mistakes.
 
-    What contradicts the lines before it is reported and left out.
+    The pre-order is all pairs (higher, lower), transitive; levels that are equal stand in both
+    orders. What contradicts the lines before it is reported and left out.
     """
     levels: dict[str, tree.Name] = {}
     order: set[tuple[str, str]] = set()
@@ -31,17 +28,21 @@ def pre_order(
     mistakes: list[Diagnostic] = []
     for line in lines:
         if len({*levels, *(name.text for name in line.levels)}) > MOST_LEVELS:
-            mistakes.append(_too_many(line))
+            wrong = FORMULA_TOO_LARGE.at(
+                line.span,
+                f"there are more than {MOST_LEVELS} levels of priority",
+                help="use fewer levels, and weights among the rules of one level",
+            )
+            mistakes.append(wrong)
             break
         for (higher, lower), sign in zip(pairwise(line.levels), line.relations, strict=True):
             above, below = higher.text, lower.text
-            pairs = {(above, below)} if sign == ">" else {(above, below), (below, above)}
-            demanded = strict | ({(above, below)} if sign == ">" else set())
-            larger = order
-            for pair in pairs:
-                larger = _with_pair(larger, pair)
-            broken = next((pair for pair in demanded if pair[::-1] in larger), None)
-            if broken is not None or (above == below and sign == ">"):
+            larger, demanded = _with_pair(order, (above, below)), strict
+            if sign == ">":
+                demanded = strict | {(above, below)}
+            else:
+                larger = _with_pair(larger, (below, above))
+            if any(pair[::-1] in larger for pair in demanded) or (above == below and sign == ">"):
                 mistakes.append(priority_circle(higher, lower, sign, levels))
                 continue
             order, strict = larger, demanded
@@ -53,14 +54,6 @@ def pre_order(
 def _with_pair(order: set[tuple[str, str]], pair: tuple[str, str]) -> set[tuple[str, str]]:
     """Transitive closure of an order and one more pair, without reflexive pairs."""
     higher, lower = pair
-    above = [higher, *(one for one, other in order if other == higher)]
-    below = [lower, *(other for one, other in order if one == lower)]
-    return order | {(one, other) for one in above for other in below if one != other}
-
-
-def _too_many(line: tree.PriorityLine) -> Diagnostic:
-    return FORMULA_TOO_LARGE.at(
-        line.span,
-        f"there are more than {MOST_LEVELS} levels of priority",
-        help="use fewer levels, and weights among the rules of one level",
-    )
+    above = [higher, *(level for level, other in order if other == higher)]
+    below = [lower, *(level for other, level in order if other == lower)]
+    return order | {pair for pair in product(above, below) if pair[0] != pair[1]}

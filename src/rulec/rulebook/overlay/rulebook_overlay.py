@@ -6,10 +6,11 @@ definitions of the rulebook that inherits it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import Diagnostic, Span
+from rulec.rulebook.names.declaration_messages import twice
 from rulec.rulebook.names.referenced_names import names_in_examples, names_used
 from rulec.rulebook.overlay import overlay_messages as say
 from rulec.rulebook.rulebook_model import Remark
@@ -40,11 +41,13 @@ class Value:
 
 @dataclass(slots=True)
 class Overlay:
-    """The result of a chain of rulebooks, each laid over its base.
+    """A chain of rulebooks, each laid over its base; filled by ``overlay``.
 
     An option, a parameter and a definition never have the same name.
     """
 
+    spans: Mapping[str, Span] = field(default_factory=dict)
+    """Where the names of the vocabularies' and rulebooks' declarations stand."""
     options: dict[str, bool] = field(default_factory=dict)
     parameters: dict[str, list[Value]] = field(default_factory=dict)
     definitions: dict[str, tree.DefineItem] = field(default_factory=dict)
@@ -54,8 +57,6 @@ class Overlay:
     remarks: list[Remark] = field(default_factory=list)
     declared_at: dict[str, tree.Name] = field(default_factory=dict)
     """Where each option, parameter and definition was first named."""
-    levels: dict[str, int] = field(default_factory=dict)
-    """The number in the chain of the file that named it first."""
     changed_at: dict[str, tree.Name] = field(default_factory=dict)
     """Where an option or a definition was last ``set`` or redefined."""
     mistakes: list[Diagnostic] = field(default_factory=list)
@@ -74,197 +75,181 @@ class Overlay:
             return "parameter"
         return "definition" if name in self.definitions else ""
 
-
-def overlay(chain: Sequence[tree.File], spans: dict[str, Span], *, unsure: bool) -> Overlay:
-    """Lay rulebooks over one another, the most general first.
-
-    Args:
-        chain: their trees.
-        spans: where the names of the vocabularies' and rulebooks' declarations stand.
-        unsure: one of them could not be read.
-    """
-    result = Overlay(unsure=unsure)
-    for level, file in enumerate(chain):
-        laid = _Layer(result, file, level, spans)
-        for item in file.items:
-            laid.take(item)
-    return result
-
-
-@dataclass(frozen=True, slots=True)
-class _Layer:
-    result: Overlay
-    file: tree.File
-    level: int
-    spans: dict[str, Span]
-
-    def take(self, item: tree.Item) -> None:
-        """Lay one item over what there is."""
+    def lay(self, item: tree.Item, file: tree.File, level: int) -> None:
+        """Lay an item of a file, ``level`` files above the most general one, over the rest."""
+        dates: tree.InForce | None = getattr(item, "in_force", None)
+        if dates is not None and never_in_force(dates):
+            self.mistakes.append(say.never_in_force(dates))
         match item:
-            case tree.RuleItem() | tree.ParamItem() | tree.SetItem():
-                if item.in_force is not None and never_in_force(item.in_force):
-                    self.result.mistakes.append(say.never_in_force(item.in_force))
-        match item:
-            case tree.RuleItem(override=False):
-                self._rule(item)
-            case tree.RuleItem():
-                self._override(item)
+            case tree.RuleItem(override=True):
+                self._override(item, file)
+            case tree.RuleItem(name=name):
+                known = self.rules.get(name.text)
+                if known is None:
+                    self.rules[name.text] = RuleEntry(item, file, file)
+                else:
+                    message = say.rule_twice if known.book is file else say.inherited_rule
+                    self.mistakes.append(message(item, known.item))
             case tree.OptionItem(name, value):
-                if self._new(name, "option"):
-                    self.result.options[name.text] = value
+                if self._is_new(name, "option"):
+                    self.options[name.text] = value
             case tree.ParamItem(name):
-                known = name.text in self.result.parameters
-                again = known and self.result.levels[name.text] == self.level
-                if again or self._new(name, "parameter"):
-                    values = self.result.parameters.setdefault(name.text, [])
-                    values.append(Value(item, self.level))
+                again = name.text in self.parameters and self._is_own(name)
+                if again or self._is_new(name, "parameter"):
+                    self.parameters.setdefault(name.text, []).append(Value(item, level))
             case tree.SetItem():
-                self._set(item)
+                self._set(item, file, level)
             case tree.DefineItem(name, again=False):
-                if self._new(name, "definition"):
-                    self.result.definitions[name.text] = item
+                if self._is_new(name, "definition"):
+                    self.definitions[name.text] = item
             case tree.DefineItem(name):
-                if name.text not in self.result.definitions:
-                    self._nothing(name, "definition", "redefine", self.result.definitions)
+                if name.text not in self.definitions:
+                    self._nothing(name, "definition", "redefine", self.definitions, file)
                 elif self._changes(name, "definition", "redefine"):
-                    before = self.result.definitions[name.text]
+                    before = self.definitions[name.text]
                     if len(item.parameters) != len(before.parameters):
-                        self.result.mistakes.append(say.other_parameters(item, before))
+                        self.mistakes.append(say.other_parameters(item, before))
                     else:
-                        self.result.definitions[name.text] = item
+                        self.definitions[name.text] = item
             case tree.DropItem(name, because):
-                if self._inherited(name, "drop"):
-                    del self.result.rules[name.text]
-                    self.result.gone[name.text] = name
-                    self.result.remarks.append(Remark(name.text, because.value, "dropped"))
-            case tree.SoftenItem():
-                self._soften(item)
+                if self._is_inherited_rule(name, "drop", file):
+                    del self.rules[name.text]
+                    self.gone[name.text] = name
+                    self.remarks.append(Remark(name.text, because.value, "dropped"))
+            case tree.SoftenItem(name):
+                if self._is_inherited_rule(name, "soften", file):
+                    self._soften(item)
             case tree.SilentItem(name, because):
-                if name.text not in self.result.rules or self._inherited(name, "be silent on"):
-                    self.result.rules.pop(name.text, None)
-                    self.result.gone[name.text] = name
-                self.result.remarks.append(Remark(name.text, because.value, "silent"))
+                unknown = name.text not in self.rules
+                if unknown or self._is_inherited_rule(name, "be silent on", file):
+                    self.rules.pop(name.text, None)
+                    self.gone[name.text] = name
+                self.remarks.append(Remark(name.text, because.value, "silent"))
             case tree.BrokenItem(names):
-                self.result.suspects |= names
-                self.result.unsure_rules |= item.word == "rule"
-                self.result.unsure |= item.nameless and item.word != "rule"
-            case _:
-                return
+                self.suspects |= names
+                self.unsure_rules |= item.word == "rule"
+                self.unsure |= item.nameless and item.word != "rule"
 
-    def _new(self, name: tree.Name, kind: str) -> bool:
-        """Declare a name; return False and report it if taken."""
-        first = self.spans.get(name.text)
-        known = self.result.declared_at.get(name.text)
-        if known is not None:
-            inherited = self.result.levels[name.text] < self.level
-            mistake = say.inherited_name(name, kind, known) if inherited else None
-            self.result.mistakes.append(mistake or say.twice(kind, name, known.span))
+    def _is_new(self, name: tree.Name, kind: str) -> bool:
+        """Declare a name; report it if it is taken."""
+        if name.text in self.declared_at:
+            known = self.declared_at[name.text]
+            if self._is_own(name):
+                self.mistakes.append(twice(kind, name, known.span))
+            else:
+                self.mistakes.append(say.inherited_name(name, kind, known))
             return False
-        if first is not None:
-            self.result.mistakes.append(say.twice("name", name, first))
+        if name.text in self.spans:
+            self.mistakes.append(twice("name", name, self.spans[name.text]))
             return False
-        self.result.declared_at[name.text] = name
-        self.result.levels[name.text] = self.level
+        self.declared_at[name.text] = name
         return True
 
-    def _set(self, item: tree.SetItem) -> None:
+    def _is_own(self, name: tree.Name) -> bool:
+        """Tell whether the file that names something has also declared it."""
+        return self.declared_at[name.text].span.source is name.span.source
+
+    def _set(self, item: tree.SetItem, file: tree.File, level: int) -> None:
         name = item.name
-        if name.text in self.result.options:
+        if name.text in self.options:
             if not isinstance(item.value, bool):
-                self.result.mistakes.append(say.option_is_on_or_off(item))
+                self.mistakes.append(say.option_is_on_or_off(item))
             elif self._changes(name, "option", "set"):
-                self.result.options[name.text] = item.value
-        elif name.text in self.result.parameters:
+                self.options[name.text] = item.value
+        elif name.text in self.parameters:
             if isinstance(item.value, bool):
-                self.result.mistakes.append(say.parameter_is_a_number(item))
+                self.mistakes.append(say.parameter_is_a_number(item))
             elif self._is_inherited(name, "parameter", "set"):
-                self.result.parameters[name.text].append(Value(item, self.level))
+                self.parameters[name.text].append(Value(item, level))
         else:
-            known = [*self.result.options, *self.result.parameters]
-            self._nothing(name, "option or parameter", "set", known)
+            known = [*self.options, *self.parameters]
+            self._nothing(name, "option or parameter", "set", known, file)
 
     def _is_inherited(self, name: tree.Name, kind: str, verb: str) -> bool:
         """Tell whether an option, parameter or definition is inherited; else report."""
-        if self.result.levels[name.text] < self.level:
-            return True
-        known = self.result.declared_at[name.text]
-        self.result.mistakes.append(say.own(name, kind, verb, known))
-        return False
+        own = self._is_own(name)
+        if own:
+            self.mistakes.append(say.own(name, kind, verb, self.declared_at[name.text]))
+        return not own
 
     def _changes(self, name: tree.Name, kind: str, verb: str) -> bool:
         """Note the first change of an inherited name; report mistakes."""
         if not self._is_inherited(name, kind, verb):
             return False
-        before = self.result.changed_at.get(name.text)
+        before = self.changed_at.get(name.text)
         if before is not None and before.span.source is name.span.source:
-            self.result.mistakes.append(say.changed_twice(name, kind, before))
+            self.mistakes.append(say.changed_twice(name, kind, before))
             return False
-        self.result.changed_at[name.text] = name
+        self.changed_at[name.text] = name
         return True
 
-    def _rule(self, item: tree.RuleItem) -> None:
-        known = self.result.rules.get(item.name.text)
-        if known is None:
-            self.result.rules[item.name.text] = RuleEntry(item, self.file, self.file)
-        elif known.book is self.file:
-            self.result.mistakes.append(say.rule_twice(item, known.item))
-        else:
-            self.result.mistakes.append(say.inherited_rule(item, known.item))
-
-    def _override(self, item: tree.RuleItem) -> None:
-        if self._inherited(item.name, "override"):
-            base = self.result.rules[item.name.text]
-            after = merged(base.item, item)
-            lost = _lost_variables(base.item, item)
-            if lost:
-                self.result.mistakes.append(say.lost_variables(item, lost))
-                variables = (*after.variables, *lost)
-                after = replace(after, variables=variables, examples=item.examples, complete=False)
-            self.result.rules[item.name.text] = RuleEntry(
-                after,
-                self.file,
-                self.file if item.examples else base.examples_from,
-                item.name,
-            )
+    def _override(self, item: tree.RuleItem, file: tree.File) -> None:
+        if not self._is_inherited_rule(item.name, "override", file):
+            return
+        base = self.rules[item.name.text]
+        after = merged(base.item, item)
+        lost = _lost_variables(base.item, item)
+        if lost:
+            self.mistakes.append(say.lost_variables(item, lost))
+            variables = (*after.variables, *lost)
+            after = replace(after, variables=variables, examples=item.examples, complete=False)
+        examples_from = file if item.examples else base.examples_from
+        self.rules[item.name.text] = RuleEntry(after, file, examples_from, item.name)
 
     def _soften(self, item: tree.SoftenItem) -> None:
-        if not self._inherited(item.name, "soften"):
-            return
-        entry = self.result.rules[item.name.text]
+        entry = self.rules[item.name.text]
         if entry.item.strength == "soft" and item.level is None and item.weight is None:
-            self.result.mistakes.append(say.soft_already(item, entry.item))
+            self.mistakes.append(say.soft_already(item, entry.item))
         softer = replace(
             entry.item,
             strength="soft",
             level=item.level or entry.item.level,
             weight=item.weight or entry.item.weight,
         )
-        self.result.rules[item.name.text] = replace(entry, item=softer, changed=item.name)
+        self.rules[item.name.text] = replace(entry, item=softer, changed=item.name)
         because = item.because.value if item.because else ""
-        self.result.remarks.append(Remark(item.name.text, because, "softened"))
+        self.remarks.append(Remark(item.name.text, because, "softened"))
 
-    def _inherited(self, name: tree.Name, verb: str) -> bool:
+    def _is_inherited_rule(self, name: tree.Name, verb: str, file: tree.File) -> bool:
         """Tell whether a name is an inherited rule; report anything else."""
-        known = self.result.rules.get(name.text)
-        before = self.result.gone.get(name.text) if known is None else known.changed
+        known = self.rules.get(name.text)
+        before = self.gone.get(name.text) if known is None else known.changed
         if before is not None and before.span.source is name.span.source:
-            self.result.mistakes.append(say.changed_twice(name, "rule", before))
-            return False
-        if known is not None and known.book is not self.file:
-            return True
-        if known is not None:
-            self.result.mistakes.append(say.own_rule(name, verb, known.item))
+            self.mistakes.append(say.changed_twice(name, "rule", before))
+        elif known is None:
+            self._nothing(name, "rule", verb, self.rules, file)
+        elif known.book is file:
+            self.mistakes.append(say.own(name, "rule", verb, known.item.name))
         else:
-            self._nothing(name, "rule", verb, self.result.rules)
+            return True
         return False
 
-    def _nothing(self, name: tree.Name, kind: str, verb: str, known: Iterable[str]) -> None:
-        unsure = self.result.unsure or (kind == "rule" and self.result.unsure_rules)
-        if unsure or name.text in self.result.suspects:
-            return
-        base = self.file.extends
-        extends = None if base is None else base.name.text
-        self.result.mistakes.append(say.nothing_to(verb, kind, name, list(known), extends))
+    def _nothing(
+        self, name: tree.Name, kind: str, verb: str, known: Iterable[str], file: tree.File
+    ) -> None:
+        unsure = self.unsure or (kind == "rule" and self.unsure_rules)
+        if not unsure and name.text not in self.suspects:
+            extends = file.extends.name.text if file.extends else None
+            self.mistakes.append(say.nothing_to(verb, kind, name, list(known), extends))
+
+
+def overlay(chain: Sequence[tree.File], spans: Mapping[str, Span], *, unsure: bool) -> Overlay:
+    """Lay rulebooks over one another, the most general first.
+
+    ``spans`` are where the names of declarations stand; ``unsure``: a file could not be read.
+    """
+    laid = Overlay(spans, unsure=unsure)
+    for level, file in enumerate(chain):
+        for item in file.items:
+            laid.lay(item, file, level)
+    return laid
+
+
+def in_force(dates: tree.InForce | None, day: str) -> bool:
+    """Tell whether a day (ISO) lies within dates, the last included."""
+    if dates is None:
+        return True
+    return dates.since <= day and (not dates.until or day <= dates.until)
 
 
 def never_in_force(dates: tree.InForce | None) -> bool:
@@ -283,17 +268,21 @@ def _lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Param
         unless=() if over.unless else base.unless,
         examples=() if over.examples else base.examples,
     )
-    spoken_of = {*names_used(inherited), *names_in_examples(inherited)}
+    names = {*names_used(inherited), *names_in_examples(inherited)}
     kept = {variable.name.text for variable in over.variables}
+    lost = (variable for variable in base.variables if variable.name.text not in kept)
     return [
         variable
-        for variable in base.variables
-        if variable.name.text not in kept
-        and any(
-            name == variable.name.text or name.endswith(f"_{variable.name.text}")
-            for name in spoken_of
-        )
+        for variable in lost
+        if variable.name.text in names
+        or any(name.endswith(f"_{variable.name.text}") for name in names)
     ]
+
+
+_CLAUSES = (
+    *("strength", "variables", "require", "cite", "says", "examples", "level", "weight"),
+    *("unless", "when", "source", "certainty", "in_force"),
+)
 
 
 def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
@@ -301,23 +290,8 @@ def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
 
     Where a provision was read, and how sure that is, goes with the provision.
     """
-    read = replace(base, source=None, certainty="") if over.cite else base
-    return replace(
-        base,
-        strength=over.strength or base.strength,
-        name=over.name,
-        variables=over.variables or base.variables,
-        require=over.require or base.require,
-        cite=over.cite or base.cite,
-        says=over.says or base.says,
-        examples=over.examples or base.examples,
-        complete=over.complete and base.complete,
-        span=over.span,
-        level=over.level or base.level,
-        weight=over.weight or base.weight,
-        unless=over.unless or base.unless,
-        when=over.when or base.when,
-        source=over.source or read.source,
-        certainty=over.certainty or read.certainty,
-        in_force=over.in_force or base.in_force,
-    )
+    if over.cite:
+        base = replace(base, source=None, certainty="")
+    given = {clause: value for clause in _CLAUSES if (value := getattr(over, clause))}
+    complete = over.complete and base.complete
+    return replace(base, name=over.name, span=over.span, complete=complete, **given)

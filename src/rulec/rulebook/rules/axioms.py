@@ -2,59 +2,75 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
 
-from rulec.diagnostics import Diagnostic
+from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics.diagnostic import at
+from rulec.logic.kleene import Unknown, holds
+from rulec.logic.printing import formula_text
+from rulec.logic.renaming import rename_variables
+from rulec.logic.required_inputs import required_inputs
 from rulec.rulebook.elaborate.elaboration import truth
 from rulec.rulebook.elaborate.scope import SIDES, BoundVariable, Scope
 from rulec.rulebook.names.atom_messages import two_types
 from rulec.rulebook.names.referenced_names import parts_of
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
-from rulec.rulebook.rulebook_model import Axiom, Variable
+from rulec.rulebook.rulebook_model import Axiom, ExampleState, Rule, Variable
+from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.syntax import tree
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.object_choices import choices
 
 
-def axiom_of(
-    item: tree.FactItem, symbols: SymbolTable, constants: ConstantsAndMacros
-) -> tuple[Axiom | None, list[Diagnostic]]:
-    """Elaborate a fact; return its axiom or None, and its mistakes.
-
-    Its variables are not declared: they are of the types that what it says of them is about.
-    """
+def axioms_of(
+    files: Sequence[tree.File], symbols: SymbolTable, constants: ConstantsAndMacros
+) -> tuple[tuple[Axiom, ...], list[Diagnostic]]:
+    """The axioms of files, and the mistakes in their facts."""
+    axioms: list[Axiom] = []
     mistakes: list[Diagnostic] = []
+    for item in (item for file in files for item in file.items):
+        if isinstance(item, tree.FactItem):
+            wrong: list[Diagnostic] = []
+            axiom = _axiom(item, symbols, constants, wrong)
+            mistakes += wrong
+            if axiom is not None and not wrong:
+                axioms.append(axiom)
+    return tuple(axioms), mistakes
+
+
+def _axiom(
+    item: tree.FactItem,
+    symbols: SymbolTable,
+    constants: ConstantsAndMacros,
+    mistakes: list[Diagnostic],
+) -> Axiom | None:
+    """Axiom of a fact. Its variables are of the types that what it says of them is about."""
     formula = item.formula
     if isinstance(formula, tree.Prefix) and formula.operator == "always" and not formula.bound:
         # Facts hold always; one may say so.
         formula = formula.operand
-    variables = _variables(_asked_for(formula, symbols, constants), symbols, mistakes)
+    variables: dict[str, BoundVariable] = {}
+    for name, wanted in _required_types(formula, symbols, constants):
+        known = variables.get(name.text)
+        if known is None or known.type is None or symbols.fits(wanted, known.type):
+            variables[name.text] = BoundVariable(wanted, name.span, name.text)
+        elif not symbols.fits(known.type, wanted):
+            mistakes.append(two_types(name, wanted, known.type, known.span))
     scope = Scope(
         symbols, constants, variables, mistakes, in_moment=True, taken=frozenset(variables)
     )
     constants.begin()
-    result = truth(formula, scope)
-    if result is None or mistakes:
-        return None, mistakes
+    holding = truth(formula, scope)
     typed = tuple(
         Variable(name, variable.type) for name, variable in variables.items() if variable.type
     )
-    return Axiom(typed, result, item.span), mistakes
+    return None if holding is None else Axiom(typed, holding, item.span)
 
 
-def _variables(
-    asked_for: Iterable[tuple[tree.Name, str]], symbols: SymbolTable, mistakes: list[Diagnostic]
-) -> dict[str, BoundVariable]:
-    bound_variables: dict[str, BoundVariable] = {}
-    for name, wanted in asked_for:
-        known = bound_variables.get(name.text)
-        if known is None or known.type is None or symbols.fits(wanted, known.type):
-            bound_variables[name.text] = BoundVariable(wanted, name.span, name.text)
-        elif not symbols.fits(known.type, wanted):
-            mistakes.append(two_types(name, wanted, known.type, known.span))
-    return bound_variables
-
-
-def _asked_for(
+def _required_types(
     formula: tree.Formula,
     symbols: SymbolTable,
     constants: ConstantsAndMacros,
@@ -65,29 +81,89 @@ def _asked_for(
     ``counted`` are the variables of the counts around it, which are no objects of the fact's.
     """
     if isinstance(formula, tree.AtomUse):
-        wanted = _parameters(formula, symbols, constants)
-        if len(wanted) == len(formula.arguments):
-            for name, kind in zip(formula.arguments, wanted, strict=True):
-                if kind is not None and name.text not in counted:
-                    yield name, kind
+        types = _parameter_types(formula.name.text, symbols, constants)
+        if len(types) == len(formula.arguments):
+            for name, type_ in zip(formula.arguments, types, strict=True):
+                if type_ is not None and name.text not in counted:
+                    yield name, type_
     elif isinstance(formula, tree.Aggregate):
         counted |= {formula.variable.name.text}
     for part in parts_of(formula):
-        yield from _asked_for(part, symbols, constants, counted)
+        yield from _required_types(part, symbols, constants, counted)
 
 
-def _parameters(
-    use: tree.AtomUse, symbols: SymbolTable, constants: ConstantsAndMacros
+def _parameter_types(
+    name: str, symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> Sequence[str | None]:
     """Parameter types of a name; None where any argument will do."""
-    name = use.name.text
-    definition = constants.definitions.get(name)
+    definition = constants.overlay.definitions.get(name)
     if definition is not None:
-        kinds = [
-            parameter.type.text if parameter.type else None for parameter in definition.parameters
-        ]
-        return [kind if kind in symbols.types else None for kind in kinds]
+        written = (parameter.type for parameter in definition.parameters)
+        return [type_.text if type_ and type_.text in symbols.types else None for type_ in written]
     item = symbols.items.get(name) or symbols.value_of.get(
         SIDES[name]["right"] if name in SIDES else name
     )
     return () if item is None else item.parameters
+
+
+@dataclass(frozen=True, slots=True)
+class ExampleValues:
+    """Values of an example's state, and defaults for others read.
+
+    What neither of them speaks of is not known. ``read`` are those: declarations and objects.
+    """
+
+    said: ExampleState
+    read: frozenset[tuple[str, tuple[str, ...]]]
+    objects: Mapping[str, str]
+    vocabulary: Vocabulary
+
+    def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
+        """The value of a signal or an enumeration."""
+        known = self.said.get((name, items))
+        if known is None and (name, items) in self.read:
+            known = self.vocabulary.declarations[name].default
+        return Unknown(name, items) if known is None else known
+
+    def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
+        """The value of a quantity."""
+        value = self.value(name, items)
+        # A number's decimals are what is written.
+        return value if isinstance(value, Unknown) else Fraction(repr(value))
+
+
+def contradicted(
+    rule: Rule, axioms: Sequence[Axiom], vocabulary: Vocabulary
+) -> Iterator[Diagnostic]:
+    """Mistakes (R0306), one per state of examples that contradicts an axiom."""
+    for example in rule.examples if axioms else ():
+        objects = {item.name: item.type for item in (*rule.variables, *example.objects)}
+        read = frozenset(
+            (term.name, term.arguments)
+            for term in required_inputs(rule.formula, objects, vocabulary.is_subtype)
+        )
+        for number, state in enumerate(example.states):
+            violated = _violated(ExampleValues(state, read, objects, vocabulary), axioms)
+            if violated is not None:
+                axiom, text = violated
+                spans = example.state_spans
+                yield CONTRADICTORY_STATE.at(
+                    spans[number].place if spans else at(example.span),
+                    f"this state cannot be: `{text}` holds in every state",
+                    help="correct the state; or the fact, if there can be such states",
+                    labels=(Label(axiom.span.place, "what holds in every state"),)
+                    if axiom.span
+                    else (),
+                )
+
+
+def _violated(state: ExampleValues, axioms: Sequence[Axiom]) -> tuple[Axiom, str] | None:
+    """The first violated axiom, and its text about the chosen objects."""
+    for axiom in axioms:
+        types = [variable.type for variable in axiom.variables]
+        for chosen in choices(types, state.objects, state.vocabulary):
+            names = (variable.name for variable in axiom.variables)
+            binding = dict(zip(names, chosen, strict=True))
+            if holds(axiom.formula, binding, state) is False:
+                return axiom, formula_text(rename_variables(axiom.formula, binding))
+    return None

@@ -52,14 +52,14 @@ def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
     initially = [exemption.formula for exemption in exemptions if exemption.scope == "initially"]
     if inside:
         formula = _with_stretch(formula, inside)
-    return any_of(iter([*initially, formula]))
+    return any_of([*initially, formula])
 
 
 def _with_stretch(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
     match formula:
         case Unary(UnaryOperator.ALWAYS, operand):
             exempt = any_of(exemption.formula for exemption in exemptions)
-            return replace(formula, operand=any_of(iter([exempt, operand])))
+            return replace(formula, operand=any_of([exempt, operand]))
         case Unary(UnaryOperator.NEVER, operand):
             return replace(formula, operand=_counted(_phases(operand), exemptions))
         case _:
@@ -124,7 +124,7 @@ def _border(
         for n in range(len(throughout) + 1)
         for now in combinations(throughout, n)
     ]
-    return any_of(iter(ways))
+    return any_of(ways)
 
 
 def _ends(phase: _Phase, at_last: Formula, behind: Formula) -> Formula:
@@ -190,5 +190,5 @@ class _Inner:
                 if now:
                     onward.append(Unary(UnaryOperator.NEXT, self._inside(index, left)))
                 if onward:
-                    ways.append(all_of([*now, any_of(iter(onward))]))
-        return Binary(_UNTIL, phase.formula, all_of([phase.formula, any_of(iter(ways))]))
+                    ways.append(all_of([*now, any_of(onward)]))
+        return Binary(_UNTIL, phase.formula, all_of([phase.formula, any_of(ways)]))

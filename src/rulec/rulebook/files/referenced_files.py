@@ -1,0 +1,112 @@
+"""The rulebooks that one extends and the vocabularies that it uses, read from files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from typing import Literal
+
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
+from rulec.rulebook.files import reference_messages as say
+from rulec.rulebook.files import search_path as search
+from rulec.rulebook.rulebook_model import SourceFile
+from rulec.syntax import decode, parse, tree
+
+MOST_BASES = 50
+"""Far more than any family of laws has."""
+
+
+@dataclass(frozen=True, slots=True)
+class Book:
+    """Syntax tree of a rulebook, with its path or None."""
+
+    file: tree.File
+    path: Path | None
+
+
+def source_file(name: str, data: bytes) -> SourceFile:
+    """A file for the record, by its base name and its content."""
+    # A file's name may be no text at all; what goes into a compiled rulebook has to be.
+    text = Path(name).name.encode("utf-8", "backslashreplace").decode()
+    return SourceFile(text, sha256(data).hexdigest())
+
+
+@dataclass(slots=True)
+class ReferencedFiles:
+    """Reader of the files that rulebooks refer to, with records and mistakes.
+
+    ``failed``: one of them could not be read.
+    """
+
+    search_path: Sequence[Path]
+    sources: list[SourceFile] = field(default_factory=list)
+    mistakes: list[Diagnostic] = field(default_factory=list)
+    dependencies: list[search.Dependency] = field(default_factory=list)
+    failed: bool = False
+    _vocabularies: list[Path] = field(default_factory=list, init=False)
+
+    def bases(self, book: Book) -> list[Book]:
+        """The rulebooks that one extends, the most general first."""
+        chain = [book]
+        try:
+            while (line := chain[-1].file.extends) is not None:
+                chain.append(self._base(line, chain))
+        except RulecError as error:
+            self._fail(error)
+        return chain[:0:-1]
+
+    def _base(self, line: tree.ExtendsLine, chain: Sequence[Book]) -> Book:
+        name, user = line.name, chain[-1].path
+        path = search.find_base(name.text, name.span, user, self.search_path)
+        if any(book.path is not None and search.is_same_file(book.path, path) for book in chain):
+            raise RulecError(say.extends_circle(line, [book.file for book in chain]))
+        if len(chain) > MOST_BASES:
+            raise FORMULA_TOO_LARGE.error(
+                line.span,
+                f"more than {MOST_BASES} rulebooks build upon one another",
+                help="let a rulebook extend a more general one directly",
+            )
+        data = self._read("base", name, user, path)
+        file, mistakes = parse(decode(str(path), data))
+        if file.kind == "vocabulary" and file.name is not None:
+            expected = "expected the name of a rulebook"
+            raise RulecError(say.vocabulary_for_rulebook(name, expected=expected))
+        self.mistakes += mistakes
+        self.sources.append(source_file(path.name, data))
+        return Book(file, path)
+
+    def vocabulary(self, use: tree.UseLine, user: Path | None) -> tree.File | None:
+        """Syntax tree of a vocabulary; None if unreadable or already read."""
+        name = use.name
+        try:
+            path = search.find_vocabulary(name.text, name.span, user, self.search_path)
+            data = self._read("vocabulary", name, user, path)
+            if any(search.is_same_file(path, known) for known in self._vocabularies):
+                return None
+            source = decode(str(path), data)
+            self._vocabularies.append(path)
+            file, mistakes = parse(source)
+            if file.name is not None and (file.kind, file.name.text) != ("vocabulary", name.text):
+                raise RulecError(say.not_the_vocabulary(use, file, path))
+        except RulecError as error:
+            self._fail(error)
+            return None
+        self.sources.append(source_file(path.name, data))
+        self.mistakes += mistakes
+        return file
+
+    def _read(
+        self, kind: Literal["base", "vocabulary"], name: tree.Name, user: Path | None, path: Path
+    ) -> bytes:
+        data = search.read_bytes(path, name.span)
+        content = sha256(data).hexdigest()
+        dependency = search.Dependency(kind, name.text, str(user or ""), str(path), content)
+        self.dependencies.append(dependency)
+        return data
+
+    def _fail(self, error: RulecError) -> None:
+        self.mistakes += error.diagnostics
+        self.failed = True
