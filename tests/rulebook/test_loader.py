@@ -8,8 +8,8 @@ import pytest
 
 from rulec.diagnostics import RulecError, named
 from rulec.resources import rulebooks_folder
+from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.rulebook.loader import (
-    available_rulebooks,
     load_rulebook,
     load_vocabulary,
     parse_rulebook,

@@ -146,7 +146,7 @@ def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
 
 
 def _formula(item: tree.RuleItem, parts: _Parts, scope: Scope) -> ltl.Formula | None:
-    """ltl.Formula of a whole rule; None after a reported mistake."""
+    """Formula of a whole rule; None after a reported mistake."""
     formula, exemptions = parts.required, list(parts.exemptions)
     if parts.condition is not None:
         guarding = (ltl.UnaryOperator.ALWAYS, ltl.UnaryOperator.NEVER)
