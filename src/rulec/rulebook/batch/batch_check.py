@@ -13,15 +13,8 @@ from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import diagnostic_rows
 from rulec.file_messages import UNREADABLE_FILE
 from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
+from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
-from rulec.rulebook.files.search_path import (
-    BY_PATH,
-    available_rulebooks,
-    available_vocabularies,
-    find_rulebook,
-    read_bytes,
-    suggest,
-)
 from rulec.value_display import Rows, short_repr
 
 _STANDARD_INPUT = Path("standard input")
@@ -54,11 +47,9 @@ def check(
 
     Args:
         references: names of rulebooks and vocabularies, paths of files, folders, ``-``.
-        standard_input: the text that ``-`` stands for. It finds vocabularies as a file of the
-            working directory would.
+        standard_input: the text that ``-`` stands for, as of a file of the working directory.
         search_path: folders of rulebooks and vocabularies.
-        at: the day (ISO) whose law it is; if empty, that of each rulebook's `law` line or else
-            today.
+        at: the day (ISO) whose law it is; if empty, that of each `law` line or else today.
         recalls: may findings come from the cache where nothing has changed, and go there?
     """
     files: dict[str, str] = {}
@@ -66,7 +57,7 @@ def check(
     unread: list[Diagnostic] = []
     for path in _meant(references, search_path, unread):
         try:
-            data = standard_input() if path is _STANDARD_INPUT else read_bytes(path)
+            data = standard_input() if path is _STANDARD_INPUT else search.read_bytes(path)
         except RulecError as error:
             unread += error.diagnostics
             continue
@@ -113,10 +104,7 @@ def _meant(
 
 
 def _identity(diagnostic: Diagnostic) -> tuple[object, ...]:
-    """Identity of a finding, independent of the path to its file.
-
-    Every rulebook that uses a vocabulary finds its mistakes again.
-    """
+    # Every rulebook that uses a vocabulary finds its mistakes again, perhaps by another path.
     place = diagnostic.place
     where = () if place is None else (os.path.realpath(place.file), place.start, place.end_column)
     return diagnostic.code, diagnostic.message, where
@@ -126,23 +114,26 @@ def find_sources(reference: str, search_path: Sequence[Path] = ()) -> list[Path]
     """The files that a name, a path or a folder refers to.
 
     A folder stands for every ``.rules`` file in it and below it, hidden folders left out. A path
-    that leads nowhere is returned as it is; reading it tells why.
-
-    Raises:
-        RulecError: R0703 for an unknown name, R0701 for a folder without any such file.
+    that leads nowhere is returned as it is; reading it tells why. Raises RulecError R0703 for an
+    unknown name, R0701 for a folder without any such file.
     """
     is_path = "/" in reference or reference.endswith(".rules")
     if not is_path:
-        rulebooks = available_rulebooks(search_path)
-        vocabularies = {path.stem: path for path in available_vocabularies(search_path)}
+        rulebooks = search.available_rulebooks(search_path)
+        vocabularies = {path.stem: path for path in search.available_vocabularies(search_path)}
         if reference in rulebooks:
-            return [find_rulebook(reference, search_path)]
+            return [search.find_rulebook(reference, search_path)]
         if reference in vocabularies:
             return [vocabularies[reference]]
     if os.path.isdir(reference):  # noqa: PTH112 - Path raises on a null character
         return _in_folder(reference)
     if not is_path:
-        raise RulecError(_nothing_called(reference, [*rulebooks, *vocabularies]))
+        raise NAME_NOT_FOUND.error(
+            None,
+            f"there is no rulebook, vocabulary or folder `{reference}`",
+            help=search.suggest(reference, [*rulebooks, *vocabularies]),
+            notes=(search.BY_PATH,),
+        )
     return [Path(reference)]
 
 
@@ -151,23 +142,14 @@ def _in_folder(folder: str) -> list[Path]:
     for here, inner, names in os.walk(folder, onerror=_locked):
         inner[:] = sorted(name for name in inner if not name.startswith("."))
         paths += [Path(here, name) for name in sorted(names) if name.endswith(".rules")]
-    if not paths:
-        message = "there is no rulebook and no vocabulary in this folder"
-        way_out = "give a folder with files whose names end in `.rules`"
-        raise UNREADABLE_FILE.error(SourceLocation(folder), message, help=way_out)
-    return paths
+    if paths:
+        return paths
+    message = "there is no rulebook and no vocabulary in this folder"
+    way_out = "give a folder with files whose names end in `.rules`"
+    raise UNREADABLE_FILE.error(SourceLocation(folder), message, help=way_out)
 
 
 def _locked(problem: OSError) -> NoReturn:
     message = f"the folder cannot be read: {(problem.strerror or str(problem)).lower()}"
     place = SourceLocation(os.fsdecode(problem.filename))
     raise UNREADABLE_FILE.error(place, message, help="check its permissions")
-
-
-def _nothing_called(name: str, known: Sequence[str]) -> Diagnostic:
-    return NAME_NOT_FOUND.at(
-        None,
-        f"there is no rulebook, vocabulary or folder `{name}`",
-        help=suggest(name, known),
-        notes=(BY_PATH,),
-    )

@@ -34,13 +34,9 @@ class Formatted:
 def format_files(
     references: Iterable[str], search_path: Sequence[Path] = ()
 ) -> tuple[tuple[Formatted, ...], tuple[Diagnostic, ...]]:
-    """Format the files at the paths, each once, and collect errors.
+    """Format the files at the paths, each once, and collect errors; nothing is written.
 
-    Nothing is written. A folder stands for every ``.rules`` file in it and below it, hidden folders
-    left out. ``search_path`` is for who gives a name instead.
-
-    Raises:
-        FormattingError: a mistake in rulec.
+    ``search_path`` is for who gives a name instead. Raises FormattingError, a mistake in rulec.
     """
     done: dict[str, Formatted] = {}
     refused: list[Diagnostic] = []
@@ -62,10 +58,7 @@ def format_files(
 
 
 def _at(reference: str, search_path: Sequence[Path]) -> list[Path]:
-    """The files at a path; a rulebook's name is refused.
-
-    The file that it stands for is often another's.
-    """
+    # The file that a rulebook's name stands for is often another's.
     if "/" not in reference and not os.path.lexists(reference):
         elsewhere = _named(reference, search_path)
         if elsewhere is not None:
@@ -87,10 +80,7 @@ def _named(reference: str, search_path: Sequence[Path]) -> Path | None:
 
 
 def formatted(name: str, path: Path | None, data: bytes) -> Formatted:
-    """Format one file.
-
-    Raises RulecError with its mistakes, or FormattingError, a mistake in rulec.
-    """
+    """Format one file. Raises RulecError, or FormattingError, a mistake in rulec."""
     return Formatted(name, path, data, format_source(decode(name, data)).encode())
 
 

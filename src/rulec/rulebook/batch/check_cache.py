@@ -36,8 +36,7 @@ _WORDS = 200
 class CheckQuestion:
     """Key of a check: its inputs except for other files.
 
-    ``name`` is what messages call the file, ``path`` where it is (empty for standard input),
-    ``day`` the day whose law it is where the rulebook does not say.
+    ``path`` is empty for standard input; ``day`` is the day whose law it is by default.
     """
 
     name: str
@@ -58,12 +57,8 @@ class CheckQuestion:
 
 
 def cache_folder() -> Path | None:
-    """The cache folder: ``RULEC_CACHE_DIR``, or ``rulec`` in the user's cache folder.
-
-    None if there is no such place.
-    """
-    own = os.environ.get("RULEC_CACHE_DIR")
-    if own:
+    """``RULEC_CACHE_DIR``, or ``rulec`` in the user's cache folder; None without either."""
+    if own := os.environ.get("RULEC_CACHE_DIR"):
         return Path(own)
     shared = os.environ.get("XDG_CACHE_HOME", "")
     if Path(shared).is_absolute():
@@ -84,10 +79,11 @@ def recall(question: CheckQuestion) -> tuple[Diagnostic, ...] | None:
         data = json.loads(kept.read_bytes())
         if data["stamp"] != question.stamp():
             return None
-        search_path = [Path(each) for each in question.search_path]
-        if not all(_as_it_was(Dependency(**one), search_path) for one in data["dependencies"]):
+        dependencies = [Dependency(**dependency) for dependency in data["dependencies"]]
+        folders = [Path(folder) for folder in question.search_path]
+        if not all(_as_it_was(dependency, folders) for dependency in dependencies):
             return None
-        diagnostics = tuple(_diagnostic(one) for one in data["findings"])
+        diagnostics = tuple(map(_diagnostic, data["findings"]))
     except (OSError, ValueError, TypeError, LookupError):
         return None
     with suppress(OSError):
@@ -116,12 +112,9 @@ def remember(
 
 def _size(findings: Sequence[Diagnostic]) -> int:
     """Estimated size of findings, in characters."""
-    places = [
-        place
-        for finding in findings
-        for place in (finding.place, *[x.place for x in finding.labels])
-    ]
-    return sum(_WORDS + len(place.excerpt) for place in places if place is not None)
+    places = [finding.place for finding in findings if finding.place is not None]
+    places += [label.place for finding in findings for label in finding.labels]
+    return sum(_WORDS + len(place.excerpt) for place in places)
 
 
 def _as_it_was(dependency: Dependency, search_path: Sequence[Path]) -> bool:
@@ -137,18 +130,10 @@ def _as_it_was(dependency: Dependency, search_path: Sequence[Path]) -> bool:
 
 
 def _diagnostic(data: dict[str, Any]) -> Diagnostic:
-    place = data["place"]
-    labels = tuple(Label(SourceLocation(**one["place"]), one["message"]) for one in data["labels"])
-    return Diagnostic(
-        code=data["code"],
-        message=data["message"],
-        place=None if place is None else SourceLocation(**place),
-        expected=data["expected"],
-        help=data["help"],
-        labels=labels,
-        notes=tuple(data["notes"]),
-        severity=data["severity"],
-    )
+    place = None if data["place"] is None else SourceLocation(**data["place"])
+    labels = [Label(SourceLocation(**label["place"]), label["message"]) for label in data["labels"]]
+    parts = {"place": place, "labels": tuple(labels), "notes": tuple(data["notes"])}
+    return Diagnostic(**{**data, **parts})
 
 
 def _program() -> str:
@@ -162,5 +147,5 @@ def _program() -> str:
 def _tidy(folder: Path) -> None:
     kept = list(folder.glob("*.json"))
     if len(kept) > MOST_FILES:
-        for path in sorted(kept, key=lambda one: one.stat().st_mtime)[: len(kept) // 2]:
+        for path in sorted(kept, key=lambda file: file.stat().st_mtime)[: len(kept) // 2]:
             path.unlink(missing_ok=True)
