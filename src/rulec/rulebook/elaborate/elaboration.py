@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import partial
 
 from rulec.logic import formula as ltl
-from rulec.logic.printing import term_text
+from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.arithmetic import linear_arithmetic as numbers
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, TooManyCasesError, negated
 from rulec.rulebook.arithmetic.size_limits import exceeded_limit
@@ -14,14 +15,18 @@ from rulec.rulebook.elaborate import constant_messages
 from rulec.rulebook.elaborate import elaboration_messages as say
 from rulec.rulebook.elaborate.amounts import bound_of, literal
 from rulec.rulebook.elaborate.macro_expansion import expand_macro, parameter_value
-from rulec.rulebook.elaborate.quantifiers import aggregate
-from rulec.rulebook.elaborate.scope import AnyArgument, Scope
+from rulec.rulebook.elaborate.rule_messages import unused_variable
+from rulec.rulebook.elaborate.scope import AnyArgument, BoundVariable, Scope
+from rulec.rulebook.names.declaration_messages import twice
 from rulec.syntax import tree
+from rulec.vocabulary.units import DIMENSIONS
 
 _OF_ONE_STATE = frozenset(("not", "and", "or", "implies", "iff", "xor"))
 """The operators that are not temporal."""
 
 _ENDLESS = ("always", "never", "eventually")
+
+_ONE = numbers.constant(Fraction(1), DIMENSIONS["number"], "1")
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +100,7 @@ def elaborate(node: tree.Formula, scope: Scope) -> Meaning | None:
                     first, test = elaborate(value, scope), truth(condition, scope)
                     return _either(node, first, test, elaborate(otherwise, scope), scope)
                 case tree.Aggregate():
-                    return aggregate(node, scope, truth)
+                    return _aggregate(node, scope)
         except TooManyCasesError:
             scope.report(say.too_many_cases(node))
             return None
@@ -262,3 +267,38 @@ def _either(
     sides = ((condition, value), (negated(condition), otherwise))
     first, second = (ltl.Binary(ltl.BinaryOperator.AND, test, side) for test, side in sides)
     return _checked(ltl.Binary(ltl.BinaryOperator.OR, first, second))
+
+
+def _aggregate(node: tree.Aggregate, scope: Scope) -> ltl.Formula | NumberByCases | None:
+    name, kind = node.variable.name, node.variable.type
+    assert kind is not None, "the grammar asks for a type"
+    known_type = scope.symbols.known_type(kind, scope.report)
+    if name.text in scope.variables:
+        scope.report(twice("variable", name, scope.variables[name.text].span))
+        return None
+    actual, number = name.text, 2
+    while actual in scope.taken:
+        actual, number = f"{name.text}_{number}", number + 1
+    variable = BoundVariable(known_type, node.variable.span, actual)
+    inner = replace(
+        scope,
+        variables={**scope.variables, name.text: variable},
+        counted=scope.counted | {actual},
+        taken=scope.taken | {actual},
+        in_moment=True,
+        used=set(),
+    )
+    body = truth(node.body, inner)
+    if body is not None and name.text not in inner.used:
+        scope.report(unused_variable(node.variable, node))
+    scope.used |= inner.used - {name.text}
+    if body is None or known_type is None:
+        return None
+    every = node.kind == "every"
+    term = ltl.Count(actual, known_type, negated(_checked(body)) if every else _checked(body))
+    count = numbers.measured(term, Fraction(1), DIMENSIONS["number"], term_text(term))
+    if node.kind == "count":
+        return count
+    comparison = numbers.compared(count, "<" if every else ">=", _ONE)
+    assert isinstance(comparison, ltl.Comparison), "a count varies"
+    return replace(comparison, text=f"{node.kind} {actual}: {known_type} ({formula_text(body)})")

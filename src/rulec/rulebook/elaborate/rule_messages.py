@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
 from rulec.diagnostics.code import Code
 from rulec.logic.bounds import NotAMultipleError
 from rulec.logic.printing import time_in_words
@@ -50,9 +50,8 @@ UNFITTING_SCOPE = Code(
     "R0318",
     title="an exception's scope does not fit the rule",
     why="Exceptions `at start`, `throughout`, `at some point` and `at end` speak of the stretch of "
-    "time that a rule guards, which begins with `never` or `always`. Other rules can except "
-    "what holds `initially`. What holds `throughout` phases whose length is bounded cannot "
-    "be said.",
+    "time that a rule guards, which begins with `never` or `always`. Other rules can except what "
+    "holds `initially`. What holds `throughout` phases whose length is bounded cannot be said.",
     bad="rulebook example\nsignal wet, fog\n"
     "hard rule r { require eventually wet unless fog throughout }\n",
     good="rulebook example\nsignal wet, fog\n"
@@ -180,32 +179,29 @@ def unused_provision(kind: str, name: tree.Name) -> Diagnostic:
     )
 
 
-def no_stretch(unless: tree.Unless, scope: str, require: Span | None) -> Diagnostic:
-    """Mistake: an exception's scope needs a formula that guards a stretch."""
-    written = f"`{scope}`" if unless.scope else "this exception"
-    labels = () if require is None else (Label(require.place, "this is what the rule requires"),)
-    return UNFITTING_SCOPE.at(
-        unless.span,
-        f"{written} speaks of a sequence, and the rule guards none: it does not begin with "
-        "`never` or `always`",
-        expected="expected `initially`",
-        help="write `initially`, which looks at the first state, or say what must `never` happen",
-        labels=labels,
-    )
-
-
-def bounded_phase(unless: tree.Unless) -> Diagnostic:
-    """``throughout`` phases whose length is bounded."""
-    return UNFITTING_SCOPE.at(
-        unless.span,
-        "an exception cannot hold `throughout` phases whose length is bounded",
-        expected="expected another scope",
-        help="write `at start`, `at end` or `at some point`, or leave the bounds of `then` out",
-    )
-
-
-def too_many_exceptions(unless: tree.Unless) -> Diagnostic:
-    """More exceptions that hold throughout than a formula can take."""
+def unfitting_exception(problem: str, item: tree.RuleItem) -> Diagnostic:
+    """An exception whose scope does not fit the rule, or one too many."""
+    if problem == "no stretch":
+        unless = next(unless for unless in item.unless if unless.scope != "initially")
+        written = f"`{unless.scope}`" if unless.scope else "this exception"
+        require = () if item.require is None else (item.require.span.place,)
+        return UNFITTING_SCOPE.at(
+            unless.span,
+            f"{written} speaks of a sequence, and the rule guards none: it does not begin with "
+            "`never` or `always`",
+            expected="expected `initially`",
+            help="write `initially`, which looks at the first state, or say what must `never` "
+            "happen",
+            labels=tuple(Label(place, "this is what the rule requires") for place in require),
+        )
+    unless = [unless for unless in item.unless if unless.scope in (None, "throughout")][-1]
+    if problem == "bounded phase":
+        return UNFITTING_SCOPE.at(
+            unless.span,
+            "an exception cannot hold `throughout` phases whose length is bounded",
+            expected="expected another scope",
+            help="write `at start`, `at end` or `at some point`, or leave the bounds of `then` out",
+        )
     return FORMULA_TOO_LARGE.at(
         unless.span,
         "with this one, too many exceptions of the rule have to hold `throughout` its phases: "

@@ -42,10 +42,7 @@ class AnyArgument:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """Expansion of a definition, or evaluation of a parameter, in progress.
-
-    ``span`` is the use; None where that says nothing: a parameter is the same wherever it is used.
-    """
+    """Expansion of a definition, used at ``span``, or evaluation of a parameter, in progress."""
 
     name: str
     span: Span | None
@@ -114,10 +111,7 @@ class Scope:
                 yield unused_variable(variable, owner)
 
     def behind(self, name: str) -> Signal | Enumeration | Quantity | None:
-        """The signal, quantity or enumeration that a name refers to.
-
-        An enumeration is found by the names of its values.
-        """
+        """The signal, the quantity, or the enumeration with such a value."""
         quantity = self.symbols.items.get(name)
         if isinstance(quantity, Quantity):
             return quantity
@@ -127,8 +121,9 @@ class Scope:
         """Names that can be given to a definition for a relation."""
         return [*self.symbols.atoms(), *SIDES, *self.constants.names(), *self.relations]
 
-    def absolute(self, use: tree.AtomUse, name: str) -> str | None:
+    def _absolute(self, use: tree.AtomUse) -> str | None:
         """The name with ``near_side_of`` resolved by traffic; None if reported."""
+        name = use.name.text
         if name not in SIDES or self.behind(name) is not None:
             return name
         traffic = self.constants.traffic
@@ -144,14 +139,13 @@ class Scope:
 
     def enumeration(self, use: tree.AtomUse) -> Enumeration | None:
         """The enumeration of that name, which is no atom: its values are."""
-        name = use.name.text
-        item = self.symbols.items.get(name)
-        hidden = name in self.variables or name in self.relations
+        item = self.symbols.items.get(use.name.text)
+        hidden = use.name.text in {*self.variables, *self.relations}
         return item if isinstance(item, Enumeration) and not hidden else None
 
     def reference(self, use: tree.AtomUse) -> Atom | QuantityTerm | None:
         """The atom or quantity of a use; None after a reported mistake."""
-        name = self.absolute(use, use.name.text)
+        name = self._absolute(use)
         if name is None:
             return None
         if self.behind(name) is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from rulec.diagnostics import Diagnostic, Label, Span, any_of
 from rulec.diagnostics.code import Code
 from rulec.logic.formula import Atom, QuantityTerm
@@ -31,8 +33,7 @@ INCOMPLETE_STATE = Code(
     "R0307",
     title="a state leaves open what has no default",
     why="What an example does not say takes the default of its declaration. Without a default "
-    "every state has to say it if the formula needs it: a missing value is never taken for "
-    "false.",
+    "every state has to say it if the formula needs it: a missing value is never taken for false.",
     bad="rulebook example\nsignal wet, fog\nhard rule r {\n  require always not (wet and fog)\n"
     "  accept { wet }\n}\n",
     good="rulebook example\nsignal wet, fog\nhard rule r {\n  require always not (wet and fog)\n"
@@ -55,11 +56,8 @@ def denied(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> Diagnos
     """``not`` before an enumeration's value."""
     item = symbols.items[atom.name]
     assert isinstance(item, Enumeration), "only enumerations have values"
-    others = [
-        f"`{Atom(atom.name, atom.arguments, value)}`"
-        for value in item.values
-        if value != atom.value
-    ]
+    atoms = (replace(atom, value=value) for value in item.values if value != atom.value)
+    others = [f"`{other}`" for other in atoms]
     return DENIED_VALUE.at(
         fact.span,
         f"a state says which value `{_subject(atom)}` has, not which it lacks",
@@ -104,7 +102,7 @@ def left_open(
     )
 
 
-def no_fact(use: tree.AtomUse, kind: str, symbols: tree.Name) -> Diagnostic:
+def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
     """An option, a parameter or a definition in a state."""
     return NOT_BOOLEAN.at(
         use.span,
@@ -112,7 +110,7 @@ def no_fact(use: tree.AtomUse, kind: str, symbols: tree.Name) -> Diagnostic:
         "about a state",
         expected="expected a signal, a value or a quantity",
         help="name the facts themselves",
-        labels=(Label(symbols.span.place, f"`{use.name.text}` is declared here"),),
+        labels=(Label(declared.span.place, f"`{use.name.text}` is declared here"),),
     )
 
 

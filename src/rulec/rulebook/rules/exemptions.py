@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import comb
+from typing import Literal
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
 from rulec.rulebook.arithmetic.linear_arithmetic import all_of, any_of, negated
@@ -28,42 +29,34 @@ _MOST_WAYS = 2_000
 """Ways for them to fail in one phase or the other; with many phases there are more of them."""
 
 
-class NoStretchError(Exception):
-    """A formula that is neither ``always`` nor ``never`` guards no stretch."""
+class ExemptionError(Exception):
+    """Error: a formula guards no stretch or bounds its phases, or has too many exemptions."""
 
-
-class BoundedPhaseError(Exception):
-    """An exemption throughout phases of bounded length, which cannot be said."""
-
-
-class TooManyExceptionsError(Exception):
-    """Too many exceptions have to hold throughout."""
+    def __init__(self, problem: Literal["no stretch", "bounded phase", "too many"]) -> None:
+        super().__init__(problem)
+        self.problem = problem
 
 
 def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
     """The formula with its exceptions.
 
     Raises:
-        NoStretchError: for another scope than ``initially`` of a formula that guards no stretch.
-        BoundedPhaseError: for ``throughout`` if a phase's length is bounded.
-        TooManyExceptionsError: if too many hold throughout.
+        ExemptionError: for another scope than ``initially`` of a formula that guards no stretch,
+            for ``throughout`` if a phase's length is bounded, and if too many hold throughout.
     """
     inside = [exemption for exemption in exemptions if exemption.scope != "initially"]
     initially = [exemption.formula for exemption in exemptions if exemption.scope == "initially"]
-    if inside:
-        formula = _with_stretch(formula, inside)
-    return any_of([*initially, formula])
-
-
-def _with_stretch(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
     match formula:
+        case _ if not inside:
+            pass
         case Unary(UnaryOperator.ALWAYS, operand):
-            exempt = any_of(exemption.formula for exemption in exemptions)
-            return replace(formula, operand=any_of([exempt, operand]))
+            exempt = any_of(exemption.formula for exemption in inside)
+            formula = replace(formula, operand=any_of([exempt, operand]))
         case Unary(UnaryOperator.NEVER, operand):
-            return replace(formula, operand=_counted(_phases(operand), exemptions))
+            formula = replace(formula, operand=_counted(_phases(operand), inside))
         case _:
-            raise NoStretchError
+            raise ExemptionError("no stretch")
+    return any_of([*initially, formula])
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,11 +86,11 @@ def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
         )
     throughout = denied.get("throughout", [])
     if len(throughout) > MOST_THROUGHOUT:
-        raise TooManyExceptionsError
+        raise ExemptionError("too many")
     if throughout and any(phase.bound is not None for phase in phases):
-        raise BoundedPhaseError
+        raise ExemptionError("bounded phase")
     if comb(len(phases) - 1 + len(throughout), len(throughout)) * 2 ** len(throughout) > _MOST_WAYS:
-        raise TooManyExceptionsError
+        raise ExemptionError("too many")
     at_start, at_end = all_of(denied.get("at start", [])), all_of(denied.get("at end", []))
     everywhere = all_of(denied.get("at some point", []))
     if len(phases) == 2:
@@ -155,10 +148,7 @@ class _Inner:
     everywhere: Formula
 
     def whole(self, somewhere: frozenset[Formula]) -> Formula:
-        """Formula of all phases, at their first instant.
-
-        Each of ``somewhere`` has to hold somewhere in the stretch.
-        """
+        """Formula of all phases, with each of ``somewhere`` to hold somewhere in the stretch."""
         first = self.phases[0]
         return Binary(_THEN, first.formula, self._enter(1, somewhere), first.bound)
 

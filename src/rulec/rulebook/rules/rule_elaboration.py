@@ -19,8 +19,8 @@ from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.overlay.rulebook_overlay import RuleEntry
 from rulec.rulebook.rulebook_model import Exemption, Rule, Variable
-from rulec.rulebook.rules import exemptions as exceptions
 from rulec.rulebook.rules.example_elaboration import example_of
+from rulec.rulebook.rules.exemptions import ExemptionError, exempted
 from rulec.syntax import tree
 from rulec.vocabulary.units import DIMENSIONS
 
@@ -155,23 +155,11 @@ def _formula(item: tree.RuleItem, parts: _Parts, scope: Scope) -> ltl.Formula | 
         else:
             formula = ltl.Binary(ltl.BinaryOperator.IMPLIES, parts.condition, formula)
     try:
-        formula = exceptions.exempted(formula, exemptions)
-    except exceptions.NoStretchError:
-        wrong = next(unless for unless in item.unless if unless.scope != "initially")
-        require = None if item.require is None else item.require.span
-        scope.report(say.no_stretch(wrong, wrong.scope or "", require))
-        return None
-    except exceptions.BoundedPhaseError:
-        scope.report(say.bounded_phase(_throughout(item)))
-        return None
-    except exceptions.TooManyExceptionsError:
-        scope.report(say.too_many_exceptions(_throughout(item)))
+        formula = exempted(formula, exemptions)
+    except ExemptionError as error:
+        scope.report(say.unfitting_exception(error.problem, item))
         return None
     limit = exceeded_limit(formula)
     if limit is not None:
         scope.report(say.over_limit(limit, "formula", item.name))
     return formula if limit is None else None
-
-
-def _throughout(item: tree.RuleItem) -> tree.Unless:
-    return [unless for unless in item.unless if unless.scope in (None, "throughout")][-1]
