@@ -31,9 +31,8 @@ class RulebookFile:
 class Trees:
     """Syntax trees of a rulebook and of its dependencies, with mistakes.
 
-    Messages call the file ``name``. ``books`` are those that it extends, the most general first,
-    and itself. Without ``dependencies`` a file could not be read, so that any name may be missing
-    for that reason.
+    ``books`` are those that it extends, the most general first, and itself. Without
+    ``dependencies`` a file could not be read, so that any name may be missing for that reason.
     """
 
     name: str
@@ -46,11 +45,7 @@ class Trees:
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """Rulebook without errors, with its warnings and syntax trees.
-
-    ``books`` are those that it extends, the most general first, and itself; ``vocabularies`` those
-    that they use.
-    """
+    """Rulebook without errors, with its warnings and the syntax trees as in ``Trees``."""
 
     rulebook: Rulebook
     warnings: tuple[Diagnostic, ...] = ()
@@ -60,10 +55,9 @@ class Loaded:
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """All that there is to say about a file.
+    """All that there is to say about a file, and the other files that it depends on.
 
-    ``dependencies`` are the other files that it depends on; None if one of them is missing, so that
-    any new file could make a difference.
+    None of them are known if one is missing, as any new file could make a difference.
     """
 
     findings: tuple[Diagnostic, ...]

@@ -28,7 +28,7 @@ def resolve(
     at: str,
     traffic: Traffic = "",
 ) -> tuple[Rulebook | None, tuple[Diagnostic, ...]]:
-    """The rulebook as meant, and what is wrong with it.
+    """The rulebook as meant, if there is no error and the trees are whole, and what is wrong.
 
     Args:
         books: the trees of the rulebooks that it extends, the most general first, and its own. What
@@ -39,10 +39,6 @@ def resolve(
             reason.
         at: the day (ISO) whose law it is.
         traffic: the side on which traffic drives, whatever the trees say; if empty, what they say.
-
-    Returns:
-        The rulebook, None if there is an error in it or if its tree is not whole; errors and
-        warnings.
     """
     file, files = books[-1], (*vocabularies, *books)
     symbols = symbol_table(files, opaque=opaque)

@@ -37,10 +37,7 @@ ExampleState = Mapping[tuple[str, tuple[str, ...]], bool | str | float]
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """Trace that its rule must accept or reject.
-
-    Unmentioned values take their defaults.
-    """
+    """Trace that its rule must accept or reject. Unmentioned values take their defaults."""
 
     __repr__ = short_repr
 
@@ -59,10 +56,7 @@ ExemptionScope = Literal["initially", "at start", "throughout", "at some point",
 
 @dataclass(frozen=True, slots=True)
 class Exemption:
-    """Exception to a rule where ``formula`` holds within ``scope``.
-
-    See ``exceptions``.
-    """
+    """Exception to a rule where ``formula`` holds within ``scope``; see ``exemptions``."""
 
     formula: Formula
     scope: ExemptionScope
@@ -157,14 +151,8 @@ class Rulebook(Rows):
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a rule."""
+        columns = ("strength", "level", "cite", "says", "book")
         return [
-            {
-                "rule": rule.name,
-                "strength": rule.strength,
-                "level": rule.level,
-                "cite": rule.cite,
-                "says": rule.says,
-                "book": rule.book,
-            }
+            {"rule": rule.name, **{column: getattr(rule, column) for column in columns}}
             for rule in self.rules
         ]

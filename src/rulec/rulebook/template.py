@@ -63,8 +63,7 @@ law     "The law that it puts into rules" as of {today}
 def new_rulebook(name: str, today: date) -> str:
     """Text of a new rulebook that checks, tests and compiles.
 
-    Raises:
-        RulecError: if a rulebook cannot have this name, at its place in the text.
+    Raises RulecError if a rulebook cannot have this name, at its place in the text.
     """
     text = _TEXT.format(name=name, today=today.isoformat())
     parse_rulebook(text, f"{name}.rules")
@@ -72,12 +71,9 @@ def new_rulebook(name: str, today: date) -> str:
 
 
 def new_rulebook_upon(name: str, base: str, today: date, search_path: Sequence[Path] = ()) -> str:
-    """Text of a new rulebook that extends another one.
+    """Text of a new rulebook that extends another one, with all that it could change as comments.
 
-    All that it could change stands in comments.
-
-    Raises:
-        RulecError: if a rulebook cannot have this name, or if the base cannot be read.
+    Raises RulecError if a rulebook cannot have this name, or if the base cannot be read.
     """
     inherited = read_rulebook(base, search_path)
     head = _UPON.format(name=name, base=base, today=today.isoformat())
@@ -118,16 +114,14 @@ def _settings(loaded: Loaded) -> list[str]:
                 continue
         values[name.text] = text
         notes[name.text] = description(item.span) or notes.get(name.text, "")
-    return [
-        f"# set {name} = {value}" + (f"  # {notes[name]}" if notes[name] else "")
-        for name, value in values.items()
-    ]
+    comments = {name: f"  # {note}" if note else "" for name, note in notes.items()}
+    return [f"# set {name} = {value}{comments[name]}" for name, value in values.items()]
 
 
 def _rule(rule: Rule) -> Iterator[str]:
     about = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
     if rule.says or rule.cite:
-        yield f"# {' '.join(part for part in (rule.cite, rule.says) if part)}"
+        yield f"# {' '.join(filter(None, (rule.cite, rule.says)))}"
     head = f"{rule.name} ({about})" if about else rule.name
     yield f'# override rule {head} {{ cite "…" }}'
     yield f'# drop rule {rule.name} because "…"'

@@ -24,10 +24,7 @@ BY_PATH = "a file is given by its path, such as `./mine.rules`"
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
-    """Dependency of the file ``user`` on another, with its content's hash.
-
-    ``user`` is empty where that is no file.
-    """
+    """Dependency of the file ``user`` (empty for none) on another, with its content's hash."""
 
     kind: Literal["base", "vocabulary"]
     name: str
@@ -37,12 +34,9 @@ class Dependency:
 
 
 def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
-    """The file of a rulebook, given by name or path.
+    """The file of a rulebook, given by name or by a path with ``/`` or ``.rules`` in it.
 
-    A path has a ``/`` or ``.rules`` in it.
-
-    Raises:
-        RulecError: R0703 with the nearest name and all those available.
+    Raises RulecError R0703 with the nearest name and all those available.
     """
     text = str(reference)
     if "/" in text or text.endswith(_SUFFIX):
@@ -81,10 +75,7 @@ def available_rulebooks(search_path: Sequence[Path] = ()) -> tuple[str, ...]:
 def available_vocabularies(
     search_path: Sequence[Path] = (), user: Path | None = None
 ) -> tuple[Path, ...]:
-    """Files of vocabularies, in order of their names.
-
-    Those that any rulebook can use, or with those that the rulebook ``user`` has beside it.
-    """
+    """Files of all vocabularies, by name, those beside the rulebook ``user`` included."""
     first: dict[str, Path] = {}
     for folder in _vocabulary_folders(user, search_path):
         for path in _rules_files(folder):
@@ -94,12 +85,9 @@ def available_vocabularies(
 
 
 def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequence[Path]) -> Path:
-    """The file of a vocabulary, searched from the rulebook that uses it.
+    """The file of a vocabulary: beside its user, on the search path, or rulec's own.
 
-    Beside that rulebook, then on the search path, then among rulec's own.
-
-    Raises:
-        RulecError: R0703 at the ``use`` line.
+    Raises RulecError R0703 at the ``use`` line.
     """
     found = locate_vocabulary(name, user, search_path)
     if found is not None:
@@ -123,12 +111,9 @@ def locate_vocabulary(name: str, user: Path | None, search_path: Sequence[Path])
 
 
 def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Path]) -> Path:
-    """The file of an extended rulebook, searched from the one extending it.
+    """The file of a base: beside its user, on the search path, or rulec's own.
 
-    Beside that one, then on the search path, then among rulec's own.
-
-    Raises:
-        RulecError: R0703 at the ``extends`` line.
+    Raises RulecError R0703 at the ``extends`` line.
     """
     found = locate_base(name, user, search_path)
     if found is not None:
@@ -154,10 +139,9 @@ def _around(user: Path | None) -> list[Path]:
 
 
 def read_bytes(path: Path, use: Span | None = None) -> bytes:
-    """Read a file's bytes, up to just above the size limit.
+    """A file's bytes, up to just above the size limit. Raises RulecError R0701.
 
-    Raises:
-        RulecError: R0701; ``use`` is the line that asked for the file.
+    ``use`` is the line that asks for the file.
     """
     labels = (Label(use.place, "it is used here"),) if use else ()
     with opened(path, labels=labels) as stream:

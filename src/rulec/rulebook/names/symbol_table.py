@@ -18,10 +18,9 @@ from rulec.vocabulary.units import Unit, parse_unit
 class SymbolTable:
     """Symbol table: declarations of the files, and where; filled by ``symbol_table``.
 
-    ``of_vocabularies`` are the files that are used. ``suspects`` are names that an unreadable item
-    may have declared; with ``opaque`` any name may be missing for a reason that has been reported,
-    with ``opaque_types`` any type. ``uncertain`` are types whose parents are not known for such a
-    reason.
+    ``suspects`` are names that an unreadable item may have declared; with ``opaque`` any name may
+    be missing for a reason that has been reported, with ``opaque_types`` any type. ``uncertain``
+    are types whose parents are not known for such a reason.
     """
 
     types: dict[str, ObjectType] = field(default_factory=dict)
@@ -85,18 +84,12 @@ class SymbolTable:
         return signal if isinstance(signal, Signal) else self.value_of.get(name)
 
     def may_know(self, name: str) -> bool:
-        """Tell whether unreadable text may declare a name.
-
-        In a name ``b_v`` it may also declare ``b``.
-        """
+        """Tell whether unreadable text may declare a name, or ``b`` of a name ``b_v``."""
         heads = (name[:at] for at, letter in enumerate(name) if letter == "_")
         return self.opaque or not self.suspects.isdisjoint((name, *heads))
 
     def known_type(self, name: tree.Name, report: Callable[[Diagnostic], object]) -> str | None:
-        """The type of a name; None if there is none.
-
-        Which is reported unless unreadable text may declare it.
-        """
+        """The type of a name; else None, reported unless unreadable text may declare it."""
         if name.text in self.types:
             return name.text
         if not self.opaque_types and not self.may_know(name.text):
@@ -127,7 +120,11 @@ def symbol_table(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolT
         opaque=opaque or not all(file.complete for file in files),
     )
     for file in files:
-        _note_suspects(symbols, file)
+        for item in file.items:
+            if isinstance(item, tree.BrokenItem):
+                symbols.suspects |= item.names
+                symbols.opaque |= item.nameless and item.word != "type"
+                symbols.opaque_types |= item.nameless and item.word == "type"
         _declare_types(symbols, file)
     for file in files:
         for item in file.items:
@@ -153,14 +150,6 @@ def _note_clashes(symbols: SymbolTable, files: Sequence[tree.File]) -> None:
         spans = (symbols.type_spans[name], symbols.spans[name])
         first, again = sorted(spans, key=lambda span: (order.index(span.source), span.start))
         symbols.twice("name", tree.Name(name, span=again), first)
-
-
-def _note_suspects(symbols: SymbolTable, file: tree.File) -> None:
-    for item in file.items:
-        if isinstance(item, tree.BrokenItem):
-            symbols.suspects |= item.names
-            symbols.opaque |= item.nameless and item.word != "type"
-            symbols.opaque_types |= item.nameless and item.word == "type"
 
 
 def _declare_types(symbols: SymbolTable, file: tree.File) -> None:
@@ -210,10 +199,7 @@ def _break_circle(symbols: SymbolTable, item: tree.TypeItem) -> None:
 
 
 def _roots(symbols: SymbolTable, file: tree.File) -> list[str]:
-    """Types without a parent that a parameter may default to.
-
-    A vocabulary's own ones, for a rulebook all that it knows.
-    """
+    # A parameter defaults to one of a vocabulary's own types, in a rulebook to any.
     own = {item.name.text for item in file.items if isinstance(item, tree.TypeItem)}
     return [
         type_.name
@@ -246,21 +232,20 @@ def _declare_item(
             enumeration = Enumeration(name.text, types, texts, default)
             _add(symbols, name, enumeration)
             for value in values:
-                first = symbols.spans.get(value.text)
-                if first is not None:
-                    symbols.twice("name", value, first)
-                else:
-                    symbols.spans[value.text] = value.span
+                if _is_new(symbols, value):
                     symbols.value_of[value.text] = enumeration
 
 
-def _add(symbols: SymbolTable, name: tree.Name, item: Declaration) -> None:
-    first = symbols.spans.get(name.text)
-    if first is not None:
+def _is_new(symbols: SymbolTable, name: tree.Name) -> bool:
+    first = symbols.spans.setdefault(name.text, name.span)
+    if first is not name.span:
         symbols.twice("name", name, first)
-        return
-    symbols.spans[name.text] = name.span
-    symbols.items[name.text] = item
+    return first is name.span
+
+
+def _add(symbols: SymbolTable, name: tree.Name, item: Declaration) -> None:
+    if _is_new(symbols, name):
+        symbols.items[name.text] = item
 
 
 def _parameter_types(

@@ -183,23 +183,17 @@ def never_in_force(dates: tree.InForce) -> Diagnostic:
     )
 
 
-def option_is_on_or_off(item: tree.SetItem) -> Diagnostic:
-    """An option set to something else."""
+def value_of_another_kind(item: tree.SetItem) -> Diagnostic:
+    """An option set to something else, or a parameter set to on or off."""
+    name = item.name.text
+    if isinstance(item.value, bool):
+        what, expected = "a parameter, which is a number", "a number"
+        way_out = "only an option is on or off"
+    else:
+        what, expected = "an option, which is on or off", "`on` or `off`"
+        way_out = f"write `set {name} = on` or `set {name} = off`"
     return NUMBER_OR_FORMULA.at(
-        item.span,
-        f"`{item.name.text}` is an option, which is on or off",
-        expected="expected `on` or `off`",
-        help=f"write `set {item.name.text} = on` or `set {item.name.text} = off`",
-    )
-
-
-def parameter_is_a_number(item: tree.SetItem) -> Diagnostic:
-    """A parameter set to on or off."""
-    return NUMBER_OR_FORMULA.at(
-        item.span,
-        f"`{item.name.text}` is a parameter, which is a number",
-        expected="expected a number",
-        help="only an option is on or off",
+        item.span, f"`{name}` is {what}", expected=f"expected {expected}", help=way_out
     )
 
 

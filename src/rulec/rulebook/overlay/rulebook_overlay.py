@@ -150,20 +150,16 @@ class Overlay:
         return self.declared_at[name.text].span.source is name.span.source
 
     def _set(self, item: tree.SetItem, file: tree.File, level: int) -> None:
-        name = item.name
-        if name.text in self.options:
-            if not isinstance(item.value, bool):
-                self.mistakes.append(say.option_is_on_or_off(item))
-            elif self._changes(name, "option", "set"):
-                self.options[name.text] = item.value
-        elif name.text in self.parameters:
-            if isinstance(item.value, bool):
-                self.mistakes.append(say.parameter_is_a_number(item))
-            elif self._is_inherited(name, "parameter", "set"):
-                self.parameters[name.text].append(Value(item, level))
-        else:
-            known = [*self.options, *self.parameters]
+        name, known = item.name, [*self.options, *self.parameters]
+        if name.text not in known:
             self._nothing(name, "option or parameter", "set", known, file)
+        elif isinstance(item.value, bool) != (name.text in self.options):
+            self.mistakes.append(say.value_of_another_kind(item))
+        elif not isinstance(item.value, bool):
+            if self._is_inherited(name, "parameter", "set"):
+                self.parameters[name.text].append(Value(item, level))
+        elif self._changes(name, "option", "set"):
+            self.options[name.text] = item.value
 
     def _is_inherited(self, name: tree.Name, kind: str, verb: str) -> bool:
         """Tell whether an option, parameter or definition is inherited; else report."""
