@@ -22,7 +22,7 @@ from rulec.vocabulary import Declaration, ObjectType, Vocabulary
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.shortest_word import shortest_word
+from rulec.witnesses.shortest_traces import shortest_word
 from rulec.witnesses.trace_synthesis import synthesize_trace
 from rulec.witnesses.undecided import UndecidedError
 

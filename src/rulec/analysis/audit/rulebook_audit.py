@@ -13,7 +13,7 @@ from typing import Any
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.lineage.book_lineage import HARDNESS
-from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
+from rulec.analysis.lineage.rule_lineage import BookLineage
 from rulec.logic.free_names import names_in
 from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.rulebook.rulebook_model import Rule, Rulebook
@@ -100,12 +100,22 @@ def audit(
     articles = articles_of(rulebook.rules, inherited)
     used = used_declarations(rulebook)
     words = tuple(rulebook.vocabulary.declarations)
+    hard = {rule.name for rule in rulebook.rules if rule.strength == "hard"}
     findings = [
         *(finding for rule in rulebook.rules for finding in _of_rule(rule)),
         *(AuditFinding("failing", rule, f"example {name}") for rule, name in failing),
-        *_soft_only(articles, rulebook),
+        *(
+            AuditFinding("soft-only", article.cite, ", ".join(article.rules))
+            for article in articles
+            if hard.isdisjoint(article.rules)
+        ),
         *_history(inherited, rulebook.at),
-        *(finding for item in inherited.provisions for finding in _of_provision(item)),
+        *(
+            _dated(constant.name, value.since, value.until, f"{value.text} ")
+            for constant in inherited.provisions
+            for value in constant.settings
+            if value.current and (value.since or value.until)
+        ),
         *(AuditFinding("unused", name) for name in words if name not in used),
     ]
     order = list(KINDS)
@@ -213,15 +223,11 @@ def _of_rule(rule: Rule) -> Iterator[AuditFinding]:
     if rule.certainty != "verified":
         yield AuditFinding(rule.certainty or "unstated", rule.name, rule.source)
     if rule.in_force_from or rule.in_force_until:
-        dates = tree.InForce(rule.in_force_from, rule.in_force_until)
-        yield AuditFinding("dated", rule.name, print_in_force(dates))
+        yield _dated(rule.name, rule.in_force_from, rule.in_force_until)
 
 
-def _soft_only(articles: Sequence[CitedArticle], rulebook: Rulebook) -> Iterator[AuditFinding]:
-    hard = {rule.name for rule in rulebook.rules if rule.strength == "hard"}
-    for article in articles:
-        if hard.isdisjoint(article.rules):
-            yield AuditFinding("soft-only", article.cite, ", ".join(article.rules))
+def _dated(name: str, since: str, until: str, value: str = "") -> AuditFinding:
+    return AuditFinding("dated", name, value + print_in_force(tree.InForce(since, until)))
 
 
 def _history(inherited: BookLineage, at: str) -> Iterator[AuditFinding]:
@@ -238,11 +244,3 @@ def _history(inherited: BookLineage, at: str) -> Iterator[AuditFinding]:
             yield AuditFinding("softened", history.name, softened[-1].because)
         if history.rule.in_force is not None and not in_force(history.rule.in_force, at):
             yield AuditFinding("out-of-force", history.name, print_in_force(history.rule.in_force))
-
-
-def _of_provision(item: ConstantHistory) -> Iterator[AuditFinding]:
-    """The finding about a parameter value in force for a time only."""
-    for value in item.settings:
-        if value.current and (value.since or value.until):
-            dates = print_in_force(tree.InForce(value.since, value.until))
-            yield AuditFinding("dated", item.name, f"{value.text} {dates}")

@@ -15,7 +15,7 @@ from rulec.vocabulary import Vocabulary
 from rulec.witnesses.joint_alphabet import JointAlphabet, JointLetter
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.shortest_word import MOST_STATES, MOST_STEPS, ProductState
+from rulec.witnesses.shortest_traces import MOST_STATES, MOST_STEPS, ProductState
 from rulec.witnesses.trace_synthesis import synthesize_trace
 from rulec.witnesses.undecided import UndecidedError
 

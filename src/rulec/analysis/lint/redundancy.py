@@ -11,7 +11,7 @@ from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.shortest_word import shortest_word
+from rulec.witnesses.shortest_traces import shortest_word
 
 MOST_PREMISES = 6
 MOST_JOINT_STATES = 5_000
