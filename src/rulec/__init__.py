@@ -69,9 +69,7 @@ if TYPE_CHECKING:
     from rulec.planning import Maneuvers as Maneuvers
     from rulec.planning import RankedManeuver as RankedManeuver
     from rulec.planning import RulePruning as RulePruning
-    from rulec.planning.probability.alternative_predictions import (
-        AlternativeCounts as AlternativeCounts,
-    )
+    from rulec.planning.probability.rule_probability import AlternativeCounts as AlternativeCounts
     from rulec.planning.probability.rule_probability import RuleProbabilities as RuleProbabilities
     from rulec.planning.probability.rule_probability import RuleProbability as RuleProbability
     from rulec.planning.ranking.cheapest import Maneuver as Maneuver
@@ -128,8 +126,9 @@ _HOME = {
     "rulec.monitoring.verdict": "NotJudged Verdict Violation",
     "rulec.partition": "Cell Envelope Layer NavigationGraph",
     "rulec.planning": "Maneuvers RankedManeuver RulePruning",
-    "rulec.planning.probability.alternative_predictions": "AlternativeCounts",
-    "rulec.planning.probability.rule_probability": "RuleProbabilities RuleProbability",
+    "rulec.planning.probability.rule_probability": (
+        "AlternativeCounts RuleProbabilities RuleProbability"
+    ),
     "rulec.planning.ranking.cheapest": "Maneuver",
     "rulec.planning.ranking.homotopy": "HomotopyClasses Variant",
     "rulec.planning.ranking.penalties": "PenaltyRank",

@@ -17,8 +17,7 @@ from rulec.monitoring.verify import verify
 from rulec.partition import navigation_graph
 from rulec.planning import evaluate
 from rulec.planning.probability import violation_events
-from rulec.planning.probability.alternative_predictions import alternative_counts
-from rulec.planning.probability.rule_probability import rule_probabilities
+from rulec.planning.probability.rule_probability import alternative_counts, rule_probabilities
 from rulec.planning.product.graph_product import count_paths
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.rulebook.loader import parse_rulebook

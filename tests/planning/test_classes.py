@@ -7,10 +7,10 @@ from math import comb
 from hypothesis import given
 
 from rulec.automata.stutter_invariance import stutter_invariant
-from rulec.planning.product.cell_tracks import cell_tracks
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.ranking.cell_tracks import cell_tracks
 from rulec.planning.ranking.homotopy import HomotopyClasses, count_classes, variants
 from rulec.trace import TraceGraph
 from support.generators.random_graphs import graphs

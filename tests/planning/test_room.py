@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 from rulec import navigation_graph
 from rulec.diagnostics import RulecError
 from rulec.planning.product.graph_instances import HARD, SOFT, instances
-from rulec.planning.product.graph_product import explore
+from rulec.planning.product.graph_product import explore, largest_product
 from rulec.planning.product.node_transformers import node_transformers
-from rulec.planning.product.product_limit import largest_product
 from rulec.planning.ranking.least_violating import front, ranked, with_penalty
 from rulec.planning.ranking.penalties import ranks_of
 from support.generators.random_graphs import graphs
@@ -24,8 +23,8 @@ REFUSED = ["R0616"]
 def with_room(most, work):
     """What work says where there is room for so many, or the codes of what it is refused for."""
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("rulec.planning.product.product_limit.MOST", most)
-        patched.setattr("rulec.planning.product.product_limit.MOST_PER_NODE", 0)
+        patched.setattr("rulec.planning.product.graph_product.MOST", most)
+        patched.setattr("rulec.planning.product.graph_product.MOST_PER_NODE", 0)
         try:
             return work()
         except RulecError as refused:
@@ -60,5 +59,5 @@ def test_a_large_graph_has_more_room(monkeypatch):
     graph = navigation_graph("s1").trace_graph()
     n_nodes = sum(map(len, graph.states))
     assert largest_product(graph) == 1 << 17
-    monkeypatch.setattr("rulec.planning.product.product_limit.MOST", 32 * n_nodes - 1)
+    monkeypatch.setattr("rulec.planning.product.graph_product.MOST", 32 * n_nodes - 1)
     assert largest_product(graph) == 32 * n_nodes

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from rulec.api.rulebook_compilation import Rules
     from rulec.partition import Envelope, GraphOptions, NavigationGraph
     from rulec.planning import Maneuvers
-    from rulec.planning.probability.alternative_predictions import AlternativeCounts
-    from rulec.planning.probability.rule_probability import RuleProbabilities
+    from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
     from rulec.planning.ranking.cheapest import Maneuver
     from rulec.planning.trace_history import Before
     from rulec.scenario import Choice, Scenario
@@ -103,7 +102,7 @@ class ScenarioVerbs(SessionSettings):
 
     def alternative_counts(self, maneuvers: Maneuvers) -> tuple[AlternativeCounts, ...]:
         """Counts of maneuvers for each less likely prediction of an obstacle."""
-        from rulec.planning.probability.alternative_predictions import alternative_counts
+        from rulec.planning.probability.rule_probability import alternative_counts
 
         return tuple(alternative_counts(maneuvers))
 

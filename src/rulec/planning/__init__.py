@@ -1,7 +1,8 @@
 """Navigation graphs evaluated by compiled rulebooks."""
 
-from rulec.planning.maneuver_results import RankedManeuver, RulePruning
 from rulec.planning.maneuvers import Maneuvers, evaluate
-from rulec.planning.partition_choice import partition_for
+from rulec.planning.ranking.least_violating import RankedManeuver
+from rulec.planning.ranking.pruning import RulePruning
+from rulec.planning.rule_instances import partition_for
 
 __all__ = ["Maneuvers", "RankedManeuver", "RulePruning", "evaluate", "partition_for"]

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import islice
-from typing import TYPE_CHECKING, Any
+from itertools import chain, islice, starmap
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.stutter_invariance import stutter_invariant
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verdict import Violation
-from rulec.planning.maneuver_results import RankedManeuver, RulePruning
-from rulec.planning.product.cell_tracks import CellTracks, cell_tracks
 from rulec.planning.product.graph_instances import HARD, SOFT, violations
 from rulec.planning.product.graph_product import Joint, Product, count_paths, explore
 from rulec.planning.product.node_transformers import NodeTransformers, node_transformers
+from rulec.planning.ranking.cell_tracks import CellTracks, cell_tracks
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_classes, variants
-from rulec.planning.ranking.least_violating import front, ranked, with_penalty
+from rulec.planning.ranking.least_violating import RankedManeuver, front, ranked, with_penalty
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
-from rulec.planning.ranking.pruning import Blaming, violating, violating_alone
+from rulec.planning.ranking.pruning import Blaming, RulePruning, violating, violating_alone
 from rulec.planning.rule_instances import bind_rules, in_rule_words, past_for
 from rulec.trace import TraceGraph
 from rulec.value_display import Rows, short_count
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
     from rulec.planning.trace_history import Before
 
+Item = TypeVar("Item")
 
 MOST_BEST = 100
 """Levels that are not comparable can leave any number of maneuvers that none is better than."""
@@ -64,17 +65,14 @@ class Maneuvers(Rows):
 
     @property
     def by_default(self) -> tuple[str, ...]:
-        """Names that rules read and the scenario leaves at their defaults.
-
-        In the order of the vocabulary.
-        """
+        """Names that rules read and the scenario leaves at their defaults."""
         supplied = {name for layer in self.paths.states for state in layer for name in state}
         read = {name for rule in self.rules.rules for name in names_in(rule.formula)}
         return tuple(name for name in self.rules.vocabulary.declarations if name in read - supplied)
 
     def cheapest(self, n: int) -> list[Maneuver]:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
-        return list(islice(cheapest(self.product), _number(n)))
+        return _first(n, cheapest(self.product))
 
     def best(self, n: int = MOST_BEST) -> list[RankedManeuver]:
         """The least violating maneuvers: for each lowest penalty one of the cheapest.
@@ -84,9 +82,8 @@ class Maneuvers(Rows):
         as ``evaluate`` does, for soft rules too.
         """
         return [
-            self._ranked(1, penalty, next(cheapest(product)), product.accepted)
-            for penalty in islice(front(self._every, self._ranks), _number(n))
-            for product in [with_penalty(self._every, self._ranks, penalty)]
+            next(self._of_penalty(1, penalty))
+            for penalty in _first(n, front(self._every, self._ranks))
         ]
 
     def ranked(self, n: int) -> list[RankedManeuver]:
@@ -95,18 +92,8 @@ class Maneuvers(Rows):
         Each stands behind all that violate less; those with equal penalties are in the order of
         cost. Raises RulecError as ``best`` does.
         """
-        every, ranks = self._every, self._ranks
-        return list(
-            islice(
-                (
-                    self._ranked(place, penalty, maneuver, product.accepted)
-                    for place, penalty in ranked(every, ranks)
-                    for product in [with_penalty(every, ranks, penalty)]
-                    for maneuver in cheapest(product)
-                ),
-                _number(n),
-            )
-        )
+        penalties = ranked(self._every, self._ranks)
+        return _first(n, chain.from_iterable(starmap(self._of_penalty, penalties)))
 
     def prunings(self) -> list[RulePruning]:
         """Effect of every rule on the number of maneuvers.
@@ -125,13 +112,10 @@ class Maneuvers(Rows):
 
     def variants(self, n: int) -> list[Variant]:
         """Cheapest satisfying maneuver of each of the ``n`` cheapest classes."""
-        return list(islice(variants(self.product, self._places), _number(n)))
+        return _first(n, variants(self.product, self._places))
 
     def counting_steps(self) -> list[CompiledRule]:
-        """Hard rules that are not stutter-invariant.
-
-        They may judge members of one class differently.
-        """
+        """Hard rules that are not stutter-invariant: they may divide a class."""
         hard = [rule for rule in self.rules.rules if rule.strength == "hard"]
         return [rule for rule in hard if not stutter_invariant(rule.machine)]
 
@@ -150,17 +134,14 @@ class Maneuvers(Rows):
         soft = bind_rules(self.graph, self.paths, self.rules, SOFT, past)
         return node_transformers(self.paths, [*self.hard.instances, *soft])
 
-    def _ranked(
-        self, place: int, penalty: Penalty, maneuver: Maneuver, members: int
-    ) -> RankedManeuver:
+    def _of_penalty(self, place: int, penalty: Penalty) -> Iterator[RankedManeuver]:
+        """The maneuvers with just this penalty, cheapest first."""
+        product = with_penalty(self._every, self._ranks, penalty)
         weights = zip(self._ranks.ranks, self._ranks.weights(penalty), strict=True)
-        return RankedManeuver(
-            place,
-            {rank: weight for rank, weight in weights if weight},
-            members,
-            maneuver,
-            violations(self._every.instances, maneuver.nodes),
-        )
+        by_rank = {rank: weight for rank, weight in weights if weight}
+        for maneuver in cheapest(product):
+            lost = violations(self._every.instances, maneuver.nodes)
+            yield RankedManeuver(place, by_rank, product.accepted, maneuver, lost)
 
     def _pruning(
         self, rule: CompiledRule, every: Product[Blaming] | None, alone: Product[Blaming] | None
@@ -189,9 +170,8 @@ class Maneuvers(Rows):
         ]
 
 
-def _number(n: int) -> int:
-    """Limit a number to what counting functions take."""
-    return min(n, sys.maxsize)
+def _first(n: int, items: Iterator[Item]) -> list[Item]:
+    return list(islice(items, min(n, sys.maxsize)))
 
 
 def evaluate(
@@ -209,15 +189,13 @@ def evaluate(
     paths = in_rule_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary)
     past = past_for(graph, paths, rules, HARD, after)
     hard = node_transformers(paths, bind_rules(graph, paths, rules, HARD, past))
-    before = None if after is None else past.violations
-    counted = count_paths(paths)
     return Maneuvers(
         graph=graph,
         rules=rules,
         paths=paths,
-        traces=counted,
+        traces=count_paths(paths),
         hard=hard,
         product=explore(hard),
         after=after,
-        violated_before=before,
+        violated_before=None if after is None else past.violations,
     )

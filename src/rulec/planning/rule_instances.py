@@ -1,4 +1,4 @@
-"""Rules applied to paths through a navigation graph."""
+"""Rules applied to paths through a navigation graph, and the partition that they need."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation, named
+from rulec.logic.free_names import names_in
 from rulec.monitoring.verdict import NO_PAST, CarriedState
-from rulec.planning.partition_choice import SUPPLIED
+from rulec.planning.planning_messages import TWO_PARTITIONS
 from rulec.planning.product.graph_instances import GraphInstance, instances
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph
@@ -17,9 +18,55 @@ from rulec.trace.vocabulary_projection import project_graph
 from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
-    from rulec.partition import NavigationGraph
+    from rulec.partition import NavigationGraph, PartitionName
     from rulec.planning.trace_history import Before
+    from rulec.rulebook.rulebook_model import Rulebook
     from rulec.scenario import Obstacle
+
+
+RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {
+    "paper": ("position",),
+    "fine": ("station", "lateral"),
+}
+"""The relations that only one partition supplies."""
+
+SUPPLIED = {"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]}
+"""The names that partitions supply."""
+
+
+def partition_for(
+    rules: Rulebook | CompiledRulebook, wanted: PartitionName | None
+) -> PartitionName:
+    """The wanted partition, or the one that the rules need.
+
+    Raises:
+        RulecError: R0405 if the rules need another one, or two.
+    """
+    read = {name for rule in rules.rules for name in names_in(rule.formula)}
+    needed = {
+        name: named([relation for relation in relations if relation in read])
+        for name, relations in RELATIONS_OF.items()
+        if read.intersection(relations)
+    }
+    if len(needed) > 1:
+        raise TWO_PARTITIONS.error(
+            None,
+            f"rulebook `{rules.name}` reads {needed['paper']} and {needed['fine']}, "
+            "which no one partition supplies",
+            help="say it with `station` and `lateral` alone: they tell apart all that `position` "
+            "does",
+        )
+    for name, relations in needed.items():
+        if wanted not in (None, name):
+            raise TWO_PARTITIONS.error(
+                None,
+                f"rulebook `{rules.name}` reads {relations}, which the partition "
+                f"`{wanted}` does not supply",
+                help=f"use the partition `{name}`, or leave the choice to the rulebook",
+            )
+        return name
+    declares_fine = not rules.vocabulary.declarations.keys().isdisjoint(RELATIONS_OF["fine"])
+    return wanted or ("fine" if declares_fine else "paper")
 
 
 def in_rule_words(
@@ -45,10 +92,7 @@ def past_for(
     strengths: Collection[Strength],
     after: Before | None,
 ) -> CarriedState:
-    """Carried state of the past, for rules of these strengths.
-
-    Raises RulecError.
-    """
+    """Carried state of the past, for rules of these strengths. Raises RulecError."""
     if after is None:
         return NO_PAST
     from rulec.planning.trace_history import past_of  # 30 ms, only where there is a past

@@ -53,19 +53,12 @@ def past_of(
         if there.get(name, kind) != kind:
             raise _no_way(f"`{name}` was a `{kind}` and now is a `{there[name]}`", place)
     past = monitor.past(there)
-    return replace(
-        past,
-        violations=tuple(
-            violation for violation in past.violations if violation.strength in strengths
-        ),
-    )
+    violations = [own for own in past.violations if own.strength in strengths]
+    return replace(past, violations=tuple(violations))
 
 
 def read_past(path: Path) -> Before:
-    """Read the one trace of a file, or a monitor's snapshot.
-
-    Raises RulecError.
-    """
+    """Read the one trace of a file, or a monitor's snapshot. Raises RulecError."""
     if path.suffix == ".json":
         saved: Mapping[str, Any] = read_saved(path)
         return saved
@@ -73,24 +66,23 @@ def read_past(path: Path) -> Before:
 
 
 def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Trace:
-    """Read the one trace of a file; raise what is wrong.
+    """Read the one trace of a file.
 
     Raises:
-        RulecError: that, or R0511 if there are several.
+        RulecError: what is wrong with it, or R0511 if there are several.
     """
-    result = list(islice(items, 2))
-    for rulec_error in result:
-        if isinstance(rulec_error, RulecError):
-            raise rulec_error
-    if len(result) > 1:
+    traces = []
+    for trace in islice(items, 2):
+        if isinstance(trace, RulecError):
+            raise trace
+        traces.append(trace)
+    if len(traces) > 1:
         raise UNFITTING_PAST.error(
             place,
             "there are several traces in this file; there is but one past",
             help="give a file with one trace",
         )
-    (trace,) = result
-    assert isinstance(trace, Trace)
-    return trace
+    return traces[0]
 
 
 def _monitor(

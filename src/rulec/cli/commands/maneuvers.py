@@ -84,8 +84,7 @@ def command(
     Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
     """
     # Maneuvers, 130 ms: not for --help.
-    from rulec.planning.probability.alternative_predictions import alternative_counts
-    from rulec.planning.probability.rule_probability import rule_probabilities
+    from rulec.planning.probability.rule_probability import alternative_counts, rule_probabilities
     from rulec.planning.trace_history import read_past
     from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers
     from rulec.report.maneuvers.maneuver_report import as_text

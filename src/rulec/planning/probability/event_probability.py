@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
+from functools import cache
+from math import prod
 
 Event = frozenset[tuple[str, int]]
 """Of these obstacles these predictions come true; the empty event always comes about."""
@@ -23,38 +25,27 @@ def none_of(events: Collection[Event], weights: Weights) -> Fraction:
     Events that share no obstacle are independent. Of others one obstacle after the other is fixed,
     which takes time that is exponential only in how far they are entangled.
     """
-    return _none_of(frozenset(events), weights, {})
 
+    @cache
+    def none(events: frozenset[Event]) -> Fraction:
+        if frozenset() in events:
+            return Fraction(0)
+        return prod(map(none_entangled, _independent(events)), start=Fraction(1))
 
-def _none_of(
-    events: frozenset[Event], weights: Weights, known: dict[frozenset[Event], Fraction]
-) -> Fraction:
-    if not events:
-        return Fraction(1)
-    if frozenset() in events:
-        return Fraction(0)
-    if events not in known:
-        result = Fraction(1)
-        for together in _independent(events):
-            result *= _entangled(together, weights, known)
-        known[events] = result
-    return known[events]
+    def none_entangled(events: frozenset[Event]) -> Fraction:
+        counted = Counter(obstacle for event in events for obstacle, _ in event)
+        obstacle = min(counted, key=lambda candidate: (-counted[candidate], candidate))
+        result = Fraction(0)
+        for number, weight in weights[obstacle].items():
+            left = frozenset(
+                event - {(obstacle, number)}
+                for event in events
+                if all(name != obstacle or what == number for name, what in event)
+            )
+            result += weight * none(left)
+        return result
 
-
-def _entangled(
-    events: frozenset[Event], weights: Weights, known: dict[frozenset[Event], Fraction]
-) -> Fraction:
-    counted = Counter(obstacle for event in events for obstacle, _ in event)
-    obstacle = min(counted, key=lambda candidate: (-counted[candidate], candidate))
-    result = Fraction(0)
-    for number, weight in weights[obstacle].items():
-        left = frozenset(
-            event - {(obstacle, number)}
-            for event in events
-            if all(name != obstacle or what == number for name, what in event)
-        )
-        result += weight * _none_of(left, weights, known)
-    return result
+    return none(frozenset(events))
 
 
 def _independent(events: frozenset[Event]) -> Iterator[frozenset[Event]]:

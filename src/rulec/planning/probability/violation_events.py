@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import cache
 from itertools import product
 from math import prod
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.logic.formula import Count, Formula
+from rulec.logic.free_names import variables_of
+from rulec.logic.kleene import holds
 from rulec.monitoring.letter_reader import LetterReader
+from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verify import Binding, bindings, run
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event
-from rulec.planning.probability.prediction_classes import PredictionClasses, counted_types
 from rulec.planning.product.graph_instances import HARD, SOFT
 from rulec.planning.rule_instances import in_rule_words, past_for
+from rulec.trace import TraceGraph
+from rulec.vocabulary import Vocabulary
+from rulec.witnesses.object_universe import counts_in
 
 MOST_WORLDS = 10_000
 """So many worlds are looked at one by one for a rule that counts objects, and no more."""
@@ -69,9 +76,7 @@ class ViolationEvents:
         for binding in self._bindings(rule):
             names = binding.objects.values()
             event = self._event(names)
-            about = {
-                self._path.predicted[name].of: self._path.predicted[name].number for name in names
-            }
+            about = {own.of: own.number for own in map(self._path.predicted.__getitem__, names)}
             events = {event | self._event([name]) for name in hitting if self._is_in(about, name)}
             if event not in events:
                 others = {
@@ -82,13 +87,14 @@ class ViolationEvents:
                 if left < 0:
                     return None
                 for chosen in product(*others.values()):
-                    world = {of: group[0] for of, group in zip(others, chosen, strict=True)}
-                    there = [
-                        name
-                        for name in self._words.objects
-                        if self._is_in({**about, **world}, name)
-                    ]
-                    columns = self._columns({name: self._words.objects[name] for name in there})
+                    world = about | {of: group[0] for of, group in zip(others, chosen, strict=True)}
+                    columns = self._columns(
+                        {
+                            name: kind
+                            for name, kind in self._words.objects.items()
+                            if self._is_in(world, name)
+                        }
+                    )
                     if not self._keeps(rule, binding, columns):
                         open_ones = [
                             [(of, number) for number in group]
@@ -113,10 +119,9 @@ class ViolationEvents:
 
     def _event(self, names: Collection[str]) -> Event:
         """Event that these predictions come true; certain ones are left out."""
-        who = [self._path.predicted[name] for name in names]
         return frozenset(
             (predicted.of, predicted.number)
-            for predicted in who
+            for predicted in map(self._path.predicted.__getitem__, names)
             if len(self._path.weights[predicted.of]) > 1
         )
 
@@ -137,9 +142,8 @@ class ViolationEvents:
         vocabulary, objects = self._book.vocabulary, self._words.objects
         for binding in bindings(rule, vocabulary, objects, self._words.present, len(self._states)):
             who = [self._path.predicted[name] for name in binding.objects.values()]
-            if len({predicted.of for predicted in who}) == len(
-                {(predicted.of, predicted.number) for predicted in who}
-            ):
+            chosen = {(predicted.of, predicted.number) for predicted in who}
+            if len({of for of, _ in chosen}) == len(chosen):
                 yield binding
 
     def _keeps(self, rule: CompiledRule, binding: Binding, columns: LetterReader) -> bool:
@@ -154,3 +158,67 @@ class ViolationEvents:
         word = columns.word(rule, binding.objects, binding.first, binding.last)
         start = self._past.states.get(about, 0) if goes_on else 0
         return run(rule.machine, word, start)[0]
+
+
+class PredictionClasses:
+    """Predictions of an obstacle that a counting rule cannot tell apart, on one path."""
+
+    def __init__(
+        self, rule: CompiledRule, path: PredictedPath, words: TraceGraph, vocabulary: Vocabulary
+    ) -> None:
+        self._terms = list(dict.fromkeys(counts_in(rule.formula)))
+        self._path = path
+        self._moments = [StateView(state, words.objects, vocabulary) for (state,) in words.states]
+        self._words = words
+        self._truth = cache(self._is_counted)
+
+    def groups(self, obstacle: str, binding: Binding) -> list[list[int]]:
+        """An obstacle's predictions that do not hit ego, in groups.
+
+        Those of a group count alike in every state, for a rule that is about other objects.
+        """
+        result: dict[object, list[int]] = {}
+        for number in self._path.weights[obstacle]:
+            names = [
+                name
+                for name, predicted in self._path.predicted.items()
+                if (predicted.of, predicted.number) == (obstacle, number)
+            ]
+            if self._path.hit.isdisjoint(names):
+                result.setdefault(self._counted(names, number, binding), []).append(number)
+        return list(result.values())
+
+    def _counted(self, names: list[str], number: int, binding: Binding) -> object:
+        """Contribution to every count, term by term and state by state."""
+        if any(counts(term.body) for term in self._terms):
+            # What it makes of others is not known without them
+            return number
+        layers = range(binding.first, binding.last + 1)
+        result: list[int] = []
+        for term in self._terms:
+            free = dict.fromkeys(variables_of(term.body))
+            bound = tuple([(own, binding.objects[own]) for own in free if own != term.variable])
+            result += [
+                sum([self._truth(term, layer, name, bound) for name in names]) for layer in layers
+            ]
+        return tuple(result)
+
+    def _is_counted(
+        self, term: Count, layer: int, name: str, bound: tuple[tuple[str, str], ...]
+    ) -> bool:
+        """Test it for one object, the other ones that the term speaks of being bound."""
+        moment = self._moments[layer]
+        first, last = self._words.present.get(name, (0, len(self._moments) - 1))
+        if name not in moment.objects or not first <= layer <= last:
+            return False
+        if not moment.vocabulary.is_subtype(moment.objects[name], term.type):
+            return False
+        # If it is not known, whoever reads it is told so
+        return holds(term.body, {**dict(bound), term.variable: name}, moment) is True
+
+
+def counted_types(formula: Formula) -> Iterator[str]:
+    """The types of the objects that a formula counts."""
+    for term in counts_in(formula):
+        yield term.type
+        yield from counted_types(term.body)

@@ -27,7 +27,7 @@ class AcceptedEdges:
 def accepted_edges(transformers: NodeTransformers, product: Product[Memory]) -> AcceptedEdges:
     """Edges of a graph on accepted and on possible paths.
 
-    ``product`` has been explored from ``transformers``.
+    ``product`` has been explored from ``transformers``; it is trimmed backwards from its ends.
     """
     nodes = [
         frozenset(i for i, there in enumerate(row) if there) for row in transformers.on_the_way
@@ -36,17 +36,9 @@ def accepted_edges(transformers: NodeTransformers, product: Product[Memory]) -> 
         frozenset((node, target) for node in here for target, _ in rows[node])
         for here, rows in zip(nodes, transformers.steps, strict=False)
     ]
-    accepted_nodes, accepted = _accepted(product)
-    return AcceptedEdges(tuple(nodes), accepted_nodes, tuple(edges), accepted)
-
-
-def _accepted(
-    product: Product[Memory],
-) -> tuple[tuple[frozenset[int], ...], tuple[frozenset[Edge], ...]]:
-    """Trim the product backwards from its ends."""
     ahead: frozenset[ProductNode[Memory]] | set[ProductNode[Memory]] = product.ends
-    nodes = [frozenset(node for node, _ in ahead)]
-    edges = []
+    accepted_nodes = [frozenset(node for node, _ in ahead)]
+    accepted = []
     for steps in reversed(product.steps):
         result = [
             (origin, target)
@@ -54,7 +46,9 @@ def _accepted(
             for target, _ in onward
             if target in ahead
         ]
-        edges.append(frozenset((origin[0], target[0]) for origin, target in result))
+        accepted.append(frozenset((origin[0], target[0]) for origin, target in result))
         ahead = {origin for origin, _ in result}
-        nodes.append(frozenset(node for node, _ in ahead))
-    return tuple(reversed(nodes)), tuple(reversed(edges))
+        accepted_nodes.append(frozenset(node for node, _ in ahead))
+    return AcceptedEdges(
+        tuple(nodes), tuple(accepted_nodes[::-1]), tuple(edges), tuple(accepted[::-1])
+    )

@@ -67,20 +67,20 @@ def instances(
         check_step(rule, exact(graph.step_s) if step_s is None else step_s, "the graph")
     check_objects(graph.objects, vocabulary)
     validator = StateValidator(vocabulary, graph.objects)
-    for layer, states in enumerate(graph.states):
-        validator.check(states, f"a cell of layer {layer}".format)
+    places = [f"a cell of layer {layer}".format for layer in range(len(graph.states))]
+    for states, where in zip(graph.states, places, strict=True):
+        validator.check(states, where)
     columns = [
         LetterReader(
             states,
             rulebook,
-            f"a cell of layer {layer}".format,
+            places[layer],
             objects=present_in(layer, graph.objects, graph.present),
         )
         for layer, states in enumerate(graph.states)
     ]
-    for layer, read in enumerate(columns):
-        where = f"a cell of layer {layer}".format
-        check_counting_axioms(rulebook, len(graph.states[layer]), read.view, where, None)
+    for states, read, where in zip(graph.states, columns, places, strict=True):
+        check_counting_axioms(rulebook, len(states), read.view, where, None)
     result: list[GraphInstance] = []
     for rule in rules:
         alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}

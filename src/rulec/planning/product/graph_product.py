@@ -12,10 +12,17 @@ from functools import cached_property
 from operator import getitem
 from typing import Generic, TypeVar
 
-from rulec.planning.product.node_transformers import LOST, Effect, NodeTransformers
-from rulec.planning.product.product_limit import largest_product, too_large
-from rulec.planning.product.reachability import Step
+from rulec.diagnostics import RulecError
+from rulec.planning.planning_messages import TOO_MANY_MANEUVERS
+from rulec.planning.product.node_transformers import LOST, Effect, NodeTransformers, Step
 from rulec.trace import TraceGraph
+from rulec.trace.interned import Interned
+
+MOST = 1 << 17
+"""So many kinds of partial paths are kept apart at most, whatever the graph."""
+
+MOST_PER_NODE = 32
+"""So many for each of its nodes, if that is more. Rules of the law come to less than one."""
 
 Joint = tuple[int, ...]
 """The state of each instance's machine; SAFE where nothing can be lost any more."""
@@ -38,7 +45,7 @@ _DROPPED = -1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ProductEdges(Generic[Memory]):
-    """Edges of the product from one layer to ``targets`` in the next.
+    """Edges of the product from one layer to ``targets`` in the next, equal if the same.
 
     Each of the ``origins`` has in ``into`` the index of the target that each follower of its node
     in ``rows`` leads to.
@@ -82,9 +89,8 @@ class Product(Generic[Memory]):
     @cached_property
     def steps(self) -> tuple[Steps[Memory], ...]:
         """For the product nodes of each layer their followers in the next one, with costs."""
-        different = {id(ways): ways for ways in self.ways}
-        known = {which: ways.steps() for which, ways in different.items()}
-        return tuple([known[id(ways)] for ways in self.ways])
+        known = {ways: ways.steps() for ways in set(self.ways)}
+        return tuple([known[ways] for ways in self.ways])
 
 
 def count_paths(graph: TraceGraph) -> int:
@@ -131,9 +137,9 @@ def explore_with(
     counts = [{} if memory is None else {(graph.start, memory): 1}]
     ways = []
     # Where nothing changes from one layer to the next, nor do the ways on from there.
-    known: dict[tuple[int, int], ProductEdges[Memory]] = {}
+    known: dict[object, ProductEdges[Memory]] = {}
     for rows, nodes in zip(transformers.steps, transformers.nodes[1:], strict=True):
-        key, origins = (id(rows), id(nodes)), list(counts[-1])
+        key, origins = (Interned(rows), Interned(nodes)), list(counts[-1])
         if key not in known or known[key].origins != origins:
             known[key] = _ways(origins, rows, nodes, enter, room)
         onward = known[key]
@@ -185,3 +191,18 @@ def _ways(
             into.append(at)
         every.append(into)
     return ProductEdges(origins, rows, targets, every)
+
+
+def largest_product(graph: TraceGraph) -> int:
+    """Largest number of product nodes for a graph."""
+    return max(MOST, MOST_PER_NODE * sum(map(len, graph.states)))
+
+
+def too_large(graph: TraceGraph) -> RulecError:
+    """There is no room for so many: a product can be as large as that of all automata."""
+    message = (
+        f"these rules keep more than {largest_product(graph):,} kinds of partial maneuvers "
+        "apart, by where they are, what the automata remember, and what is violated"
+    )
+    help_text = "take fewer rules at a time, a larger step, or the same weight for several rules"
+    return TOO_MANY_MANEUVERS.error(None, message, help=help_text)

@@ -9,12 +9,15 @@ path onward is rejected is lost at once, one that can no longer be lost is safe.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.planning.product.graph_instances import GraphInstance
-from rulec.planning.product.reachability import Step, trimmed, trimmed_steps
 from rulec.trace import TraceGraph
+from rulec.trace.interned import Interned
+
+Step = tuple[int, int]
+"""A follower in the next layer, and the cost of going there."""
 
 SAFE = -1
 """In place of a state: nothing that comes is rejected. As an index it means the last entry."""
@@ -54,42 +57,71 @@ class NodeTransformers:
 
     def of(self, chosen: Sequence[int]) -> NodeTransformers:
         """The effects on some of the instances alone, by index."""
-        known: dict[int, tuple[tuple[Effect, ...], ...]] = {}
-        for layer in self.nodes:
-            if id(layer) not in known:
-                known[id(layer)] = tuple(
-                    [tuple([row[i] for i in chosen]) if row else () for row in layer]
-                )
-        return NodeTransformers(
-            self.graph,
-            tuple([self.instances[i] for i in chosen]),
-            self.on_the_way,
-            self.steps,
-            tuple([known[id(layer)] for layer in self.nodes]),
+        rows = {
+            layer: tuple([tuple([row[i] for i in chosen]) if row else () for row in layer.value])
+            for layer in set(map(Interned, self.nodes))
+        }
+        return replace(
+            self,
+            instances=tuple([self.instances[i] for i in chosen]),
+            nodes=tuple([rows[Interned(layer)] for layer in self.nodes]),
         )
 
 
 def node_transformers(graph: TraceGraph, instances: Sequence[GraphInstance]) -> NodeTransformers:
     """Transformer of every instance by every node between start and goals."""
-    on_the_way = trimmed(graph)
-    steps = trimmed_steps(graph, on_the_way)
+    on_the_way, steps = _trimmed(graph)
     result = [
         (instance, layers)
         for instance in instances
         if _can_be_lost(instance) and (layers := _merged(instance, steps, on_the_way)) is not None
     ]
     nodes = []
-    known: dict[tuple[int, ...], tuple[tuple[Effect, ...], ...]] = {}
+    known: dict[object, tuple[tuple[Effect, ...], ...]] = {}
     for p, alive in enumerate(on_the_way):
         rows = [layers[p] for _, layers in result]
-        key = (id(alive), *map(id, rows))
+        key = tuple(map(Interned[object], (alive, *rows)))
         if key not in known:
             known[key] = tuple(
                 [tuple([row[i] for row in rows]) if there else () for i, there in enumerate(alive)]
             )
         nodes.append(known[key])
     bound = tuple([instance for instance, _ in result])
-    return NodeTransformers(graph, bound, tuple(on_the_way), steps, tuple(nodes))
+    return NodeTransformers(graph, bound, on_the_way, steps, tuple(nodes))
+
+
+def _trimmed(
+    graph: TraceGraph,
+) -> tuple[tuple[tuple[bool, ...], ...], tuple[tuple[tuple[Step, ...], ...], ...]]:
+    """Nodes between the start and some goal, and their followers there with costs.
+
+    Equal layers are one object.
+    """
+    from_start = [{graph.start}]
+    for successors in graph.successors:
+        from_start.append({target for node in from_start[-1] for target in successors[node]})
+    ahead = set(graph.goals) & from_start[-1]
+    trimmed = [ahead]
+    for reached, rows in zip(from_start[-2::-1], reversed(graph.successors), strict=True):
+        ahead = {node for node in reached if not ahead.isdisjoint(rows[node])}
+        trimmed.append(ahead)
+    trimmed.reverse()
+    alive: dict[tuple[bool, ...], tuple[bool, ...]] = {}
+    on_the_way = []
+    for states, nodes in zip(graph.states, trimmed, strict=True):
+        layer = tuple([node in nodes for node in range(len(states))])
+        on_the_way.append(alive.setdefault(layer, layer))
+    same: dict[object, tuple[tuple[Step, ...], ...]] = {}
+    steps = []
+    for rows, costs, ahead in zip(graph.successors, graph.weights, trimmed[1:], strict=True):
+        onward = tuple(
+            [
+                tuple([step for step in zip(row, cost, strict=True) if step[0] in ahead])
+                for row, cost in zip(rows, costs, strict=True)
+            ]
+        )
+        steps.append(same.setdefault(onward, onward))
+    return tuple(on_the_way), tuple(steps)
 
 
 def _can_be_lost(instance: GraphInstance) -> bool:
@@ -116,21 +148,41 @@ def _merged(
 
     None if no path loses the instance: then it does not matter.
     """
+    machine = instance.rule.machine
+    n_states = len(machine.successors)
+    # The machine waits until its objects are there. With their last layer it gives its verdict.
+    waiting, over = [(instance.start,) * n_states], [(SAFE,) * n_states]
+    within, final = _columns(machine, final=False), _columns(machine, final=True)
     nobody = {len(layer): (0,) * len(layer) for layer in on_the_way}
-    merging = _Merging(instance)
+    effects: dict[Interned[list[Effect]], dict[object, Effect]] = {
+        Interned(raw): {} for raw in (waiting, within, final, over)
+    }
     known: dict[object, tuple[Effect, ...]] = {}
     same: dict[tuple[Effect, ...], tuple[Effect, ...]] = {}
     later: tuple[Effect, ...] = ()
     layers = []
-    for layer in reversed(range(len(on_the_way))):
-        alive = on_the_way[layer]
-        here = instance.first <= layer <= instance.last
-        symbols = instance.letters[layer - instance.first] if here else nobody[len(alive)]
-        raw = merging.raw(layer)
-        rows = steps[layer] if layer < len(steps) else ()
-        key = (symbols, id(raw), id(rows), id(later), id(alive))
+    for p in reversed(range(len(on_the_way))):
+        alive, rows = on_the_way[p], steps[p] if p < len(steps) else ()
+        if instance.first <= p <= instance.last:
+            symbols = instance.letters[p - instance.first]
+            raw = final if p == instance.last else within
+        else:
+            symbols = nobody[len(alive)]
+            raw = waiting if p < instance.first else over
+        key = (symbols, *map(Interned[object], (raw, rows, later, alive)))
         if key not in known:
-            transformers = merging.layer(symbols, raw, rows, later, alive)
+            seen = effects[Interned(raw)]
+            layer: list[Effect] = []
+            for node, symbol in enumerate(symbols):
+                if not alive[node]:
+                    layer.append(())
+                    continue
+                futures = frozenset([later[target] for target, _ in rows[node]]) if rows else None
+                effect = seen.get((symbol, futures))
+                if effect is None:
+                    effect = seen[symbol, futures] = _in_view_of(futures, raw[symbol])
+                layer.append(effect)
+            transformers = tuple(layer)
             known[key] = same.setdefault(transformers, transformers)
         later = known[key]
         layers.append(later)
@@ -141,52 +193,6 @@ def _merged(
         if LOST in states:
             return layers
     return None
-
-
-class _Merging:
-    """Merge states of an instance's monitor by their futures."""
-
-    def __init__(self, instance: GraphInstance) -> None:
-        machine = instance.rule.machine
-        self._instance = instance
-        n_states = len(machine.successors)
-        self._before = [((instance.start,) * n_states)]
-        self._after = [((SAFE,) * n_states)]
-        self._within = _columns(machine, final=False)
-        self._last = _columns(machine, final=True)
-        self._known: dict[object, Effect] = {}
-
-    def raw(self, layer: int) -> list[Effect]:
-        """Transformer of each letter class in a layer, before merging.
-
-        The machine waits until its objects are there. With their last layer it gives its verdict.
-        """
-        if layer < self._instance.first:
-            return self._before
-        if layer > self._instance.last:
-            return self._after
-        return self._last if layer == self._instance.last else self._within
-
-    def layer(
-        self,
-        symbols: Sequence[int],
-        raw: Sequence[Effect],
-        rows: Sequence[Sequence[Step]],
-        later: Sequence[Effect],
-        alive: Sequence[bool],
-    ) -> tuple[Effect, ...]:
-        """Transformers of a layer's nodes, given those of the next."""
-        transformers: list[Effect] = []
-        for node, symbol in enumerate(symbols):
-            if not alive[node]:
-                transformers.append(())
-                continue
-            futures = frozenset([later[target] for target, _ in rows[node]]) if rows else None
-            key = (id(raw), symbol, futures)
-            if key not in self._known:
-                self._known[key] = _in_view_of(futures, raw[symbol])
-            transformers.append(self._known[key])
-        return tuple(transformers)
 
 
 def _columns(machine: MealyMonitor, *, final: bool) -> list[Effect]:
@@ -207,10 +213,8 @@ def _in_view_of(futures: Collection[Effect] | None, raw: Effect) -> Effect:
     merged: list[int] = []
     first: dict[tuple[int, ...], int] = {}
     for state, future in enumerate(zip(*futures, strict=True)):
-        if all(after == LOST for after in future):
-            merged.append(LOST)
-        elif all(after == SAFE for after in future):
-            merged.append(SAFE)
+        if set(future) in ({LOST}, {SAFE}):
+            merged.append(future[0])
         else:
             merged.append(first.setdefault(future, state))
     return (*[after if after < 0 else merged[after] for after in raw], SAFE)

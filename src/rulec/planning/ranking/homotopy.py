@@ -6,16 +6,16 @@ any automaton, words are counted over the sets of product nodes that a word can 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from heapq import heapify, heappop, heappush
 from operator import attrgetter
 
-from rulec.planning.product.cell_tracks import CellTracks
 from rulec.planning.product.graph_product import Joint, Memory, Product, explore_with, kept
 from rulec.planning.product.node_transformers import LOST, Effect, NodeTransformers
+from rulec.planning.ranking.cell_tracks import CellTracks, TrackProduct, track_product
 from rulec.planning.ranking.cheapest import Maneuver, maneuver
-from rulec.planning.ranking.track_product import TrackProduct, track_product
 from rulec.value_display import short_repr
 
 REJECTED: Joint = (LOST,)
@@ -71,21 +71,30 @@ class Variant:
 
 def count_classes(transformers: NodeTransformers, tracks: CellTracks) -> HomotopyClasses:
     """The classes of all paths from start to a goal, exactly."""
-    tracked, accepted = _both_verdicts(transformers, tracks)
-    ways: list[dict[frozenset[int], int]] = [{} for _ in transformers.nodes]
+
+    def enter(row: Sequence[Effect], memory: Joint) -> Joint:
+        after = None if memory == REJECTED else kept(row, memory)
+        return REJECTED if after is None else after
+
+    product = explore_with(transformers, enter, transformers.waiting)
+    tracked = track_product(product, tracks)
+    # Ends are the last of the numbered nodes.
+    verdicts = [memory != REJECTED for _, memory in product.counts[-1]]
+    first = len(tracked.nodes) - len(verdicts)
+    accepted = frozenset(first + i for i, verdict in enumerate(verdicts) if verdict)
+    ways: list[Counter[frozenset[int]]] = [Counter() for _ in transformers.nodes]
     if tracked.starts:
         ways[0][tracked.stayed(tracked.starts)] = 1
-    counts = {(True, False): 0, (False, True): 0, (True, True): 0, (False, False): 0}
+    counts: Counter[tuple[bool, bool]] = Counter()
     for layer in range(len(ways)):
         # Whoever changes place is in a later layer, so no way to these sets is still to come.
         for here, words in ways[layer].items():
             ends = here & tracked.ends
             counts[not ends.isdisjoint(accepted), not ends <= accepted] += words
             for entered in tracked.left(here).values():
-                first = min(tracked.layers[entry] for entry in entered)
-                there = tracked.stayed(entered)
-                ways[first][there] = ways[first].get(there, 0) + words
-        ways[layer] = {}
+                later = min(tracked.layers[entry] for entry in entered)
+                ways[later][tracked.stayed(entered)] += words
+        ways[layer].clear()
     return HomotopyClasses(counts[True, False], counts[False, True], counts[True, True])
 
 
@@ -122,23 +131,6 @@ def variants(product: Product[Memory], tracks: CellTracks) -> Iterator[Variant]:
                     _join(entered.setdefault(tracked.place[target], {}), target, cost, way)
         for place, those in entered.items():
             offer((*word, place), those)
-
-
-def _both_verdicts(
-    transformers: NodeTransformers, tracks: CellTracks
-) -> tuple[TrackProduct, frozenset[int]]:
-    """All paths, violating ones included, and which ends are accepted."""
-
-    def enter(row: Sequence[Effect], memory: Joint) -> Joint:
-        after = None if memory == REJECTED else kept(row, memory)
-        return REJECTED if after is None else after
-
-    product = explore_with(transformers, enter, transformers.waiting)
-    tracked = track_product(product, tracks)
-    last = list(product.counts[-1])
-    first = len(tracked.nodes) - len(last)
-    accepted = [first + i for i, (_, memory) in enumerate(last) if memory != REJECTED]
-    return tracked, frozenset(accepted)
 
 
 def _costs_to_come(tracked: TrackProduct) -> dict[int, int]:
@@ -191,4 +183,4 @@ def _variant(
         nodes.append(tracked.nodes[way.node])
         way = way.before
     members = sum(way.members for way in ends.values())
-    return Variant(word, members, maneuver(product.graph, tuple(reversed(nodes)), best.cost))
+    return Variant(word, members, maneuver(product.graph, tuple(nodes[::-1]), best.cost))

@@ -7,23 +7,50 @@ first, so those that violate much are not touched while there are better ones.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import count
 from operator import add, getitem, gt
 
-from rulec.planning.product.graph_product import Joint, Product, explore_with
+from rulec.monitoring.verdict import Violation
+from rulec.planning.product.graph_product import (
+    Joint,
+    Product,
+    explore_with,
+    largest_product,
+    too_large,
+)
 from rulec.planning.product.node_transformers import LOST, SAFE, Effect, NodeTransformers
-from rulec.planning.product.product_limit import largest_product, too_large
-from rulec.planning.ranking.penalties import Penalty, PenaltyOrder
+from rulec.planning.ranking.cheapest import Maneuver
+from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, PenaltyRank
+from rulec.trace.interned import Interned
+from rulec.value_display import short_repr
 
 Paying = tuple[Joint, Penalty]
 """The machines' states, and what has been violated so far."""
 
-
 Place = tuple[int, int, Joint]
 """A layer, a node in it, and the machines' states behind it."""
+
+
+@dataclass(frozen=True, slots=True)
+class RankedManeuver:
+    """A maneuver beside others by what it violates: see ``docs/ranking.md``.
+
+    ``place`` is 1 if no maneuver violates less, else 1 more than the last place of those that do.
+    ``penalty`` are the weights of what it violates, summed up by rank, ranks without any left out.
+    So many ``members`` have this penalty; of them this is one of the cheapest.
+    """
+
+    __repr__ = short_repr
+
+    place: int
+    penalty: Mapping[PenaltyRank, Fraction]
+    members: int
+    maneuver: Maneuver
+    violations: tuple[Violation, ...]
 
 
 def front(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:
@@ -60,11 +87,7 @@ def ranked(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tupl
     places: dict[Penalty, int] = {}
     for penalty in _ascending(transformers, ranks, worth):
         if penalty not in places:
-            lower = [
-                place
-                for lower_penalty, place in places.items()
-                if ranks.at_most(lower_penalty, penalty)
-            ]
+            lower = [place for other, place in places.items() if ranks.at_most(other, penalty)]
             places[penalty] = 1 + max(lower, default=0)
             yield places[penalty], penalty
 
@@ -98,16 +121,15 @@ def _ascending(
     """
     room = largest_product(transformers.graph)
     fee = _fees(transformers, ranks)
-    known: dict[tuple[int, int, Joint], tuple[Joint, Penalty]] = {}
+    of_layer: dict[object, dict[tuple[int, Joint], tuple[Joint, Penalty]]] = {}
+    fees = [of_layer.setdefault(Interned(rows), {}) for rows in transformers.nodes]
     queue: list[tuple[Penalty, int, int, int, Joint]] = []
     numbers = count()
 
     def reach(layer: int, node: int, joint: Joint, paid: Penalty) -> None:
-        rows = transformers.nodes[layer]
-        key = (id(rows), node, joint)
-        if key not in known:
-            known[key] = fee(rows[node], joint)
-        after, due = known[key]
+        if (node, joint) not in fees[layer]:
+            fees[layer][node, joint] = fee(transformers.nodes[layer][node], joint)
+        after, due = fees[layer][node, joint]
         total = tuple(map(add, paid, due)) if due else paid
         heappush(queue, (total, -layer, next(numbers), node, after))
 

@@ -6,7 +6,6 @@ Rulebooks" (ICRA 2019), over the levels of a rulebook, with every hard rule abov
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
@@ -20,10 +19,7 @@ Penalty = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class PenaltyRank:
-    """Levels of equal priority for rules of one strength.
-
-    The level "" is that of rules without one.
-    """
+    """Levels of equal priority for rules of one strength; "" for rules without one."""
 
     strength: Strength
     levels: tuple[str, ...]
@@ -77,37 +73,34 @@ def ranks_of(rulebook: CompiledRulebook) -> PenaltyOrder:
     first: a rank stands behind all above it, and among others as the rulebook names the levels.
     """
     order = rulebook.priorities
-    penalty_ranks = []
+
+    def is_above(higher: str, lower: str) -> bool:
+        return (higher, lower) in order and (lower, higher) not in order
+
+    ranks: list[PenaltyRank] = []
     for strength in ("hard", "soft"):
         used = {rule.level for rule in rulebook.rules if rule.strength == strength}
         waiting = [level for level in (*rulebook.levels, "") if level in used]
         while waiting:
-            top = next(level for level in waiting if not _any_above(level, waiting, order))
+            top = next(
+                level for level in waiting if not any(is_above(other, level) for other in waiting)
+            )
             equal = [
-                level
-                for level in waiting
-                if level == top or ((level, top) in order and (top, level) in order)
+                level for level in waiting if level == top or {(level, top), (top, level)} <= order
             ]
-            penalty_ranks.append(PenaltyRank(strength, tuple(equal)))
+            ranks.append(PenaltyRank(strength, tuple(equal)))
             waiting = [level for level in waiting if level not in equal]
     above = tuple(
         frozenset(
             index
-            for index, penalty_rank in enumerate(penalty_ranks)
-            if _is_above(penalty_rank, rank, order)
+            for index, upper in enumerate(ranks)
+            if (
+                is_above(upper.levels[0], rank.levels[0])
+                if upper.strength == rank.strength
+                else upper.strength == "hard"
+            )
         )
-        for rank in penalty_ranks
+        for rank in ranks
     )
     weights = [rule.weight.denominator for rule in rulebook.rules]
-    return PenaltyOrder(tuple(penalty_ranks), above, Fraction(1, lcm(*weights)))
-
-
-def _is_above(left: PenaltyRank, right: PenaltyRank, order: frozenset[tuple[str, str]]) -> bool:
-    if left.strength != right.strength:
-        return left.strength == "hard"
-    (higher, *_), (lower, *_) = left.levels, right.levels
-    return (higher, lower) in order and (lower, higher) not in order
-
-
-def _any_above(level: str, others: Sequence[str], order: frozenset[tuple[str, str]]) -> bool:
-    return any((higher, level) in order and (level, higher) not in order for higher in others)
+    return PenaltyOrder(tuple(ranks), above, Fraction(1, lcm(*weights)))

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from operator import getitem
 
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.monitoring.verdict import Violation
 from rulec.planning.product.graph_product import Joint, Product, explore_with
 from rulec.planning.product.node_transformers import LOST, SAFE, Effect, NodeTransformers
+from rulec.planning.ranking.cheapest import Maneuver
+from rulec.value_display import short_repr
 
 NOBODY = -1
 """In place of a rule: none has been violated."""
@@ -16,28 +20,42 @@ Blaming = tuple[Joint, int]
 """The machines' states, and the one rule that has been violated so far, or NOBODY."""
 
 
+@dataclass(frozen=True, slots=True)
+class RulePruning:
+    """Numbers of maneuvers that violate a rule, and that rule alone.
+
+    The latter is None for a soft rule: it rejects nothing. The example is one of the cheapest of
+    the latter, if there are any, else of the former; None if there are none of these either. The
+    violations are those of the rule by the example.
+    """
+
+    __repr__ = short_repr
+
+    rule: CompiledRule
+    violating: int
+    alone: int | None
+    example: Maneuver | None
+    violations: tuple[Violation, ...]
+
+
 def violating(transformers: NodeTransformers) -> dict[str, Product[Blaming]]:
-    """Product of the paths that violate it, for each rule."""
-    rules = _rules(transformers)
-    result = {}
-    for number, rule in enumerate(dict.fromkeys(rules)):
+    """Product of the paths that violate it, for each rule that some path violates."""
+    rules = [instance.rule.name for instance in transformers.instances]
+    products = {}
+    for rule in dict.fromkeys(rules):
         indices = [i for i, name in enumerate(rules) if name == rule]
-        product = _blaming(transformers.of(indices), [number] * len(indices))
-        result[rule] = _blamed(product, number)
-    return {rule: product for rule, product in result.items() if product.ends}
+        products[rule] = _blaming(transformers.of(indices), [0] * len(indices))
+    blamed = {rule: _blamed(product, 0) for rule, product in products.items()}
+    return {rule: product for rule, product in blamed.items() if product.ends}
 
 
 def violating_alone(transformers: NodeTransformers) -> dict[str, Product[Blaming]]:
-    """Product of the paths that violate it alone, for each rule."""
-    rules = _rules(transformers)
+    """Product of the paths that violate it alone, for each rule that some do."""
+    rules = [instance.rule.name for instance in transformers.instances]
     numbers = {rule: number for number, rule in enumerate(dict.fromkeys(rules))}
     product = _blaming(transformers, [numbers[rule] for rule in rules])
-    result = {rule: _blamed(product, number) for rule, number in numbers.items()}
-    return {rule: product for rule, product in result.items() if product.ends}
-
-
-def _rules(transformers: NodeTransformers) -> list[str]:
-    return [instance.rule.name for instance in transformers.instances]
+    blamed = {rule: _blamed(product, number) for rule, number in numbers.items()}
+    return {rule: product for rule, product in blamed.items() if product.ends}
 
 
 def _blaming(transformers: NodeTransformers, of: Sequence[int]) -> Product[Blaming]:

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 from rulec.partition import NavigationGraph
 from rulec.planning import RankedManeuver, RulePruning
-from rulec.planning.probability.alternative_predictions import AlternativeCounts
-from rulec.planning.probability.rule_probability import RuleProbabilities
+from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 

@@ -6,8 +6,11 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from math import prod
 
-from rulec.planning.probability.alternative_predictions import AlternativeCounts
-from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
+from rulec.planning.probability.rule_probability import (
+    AlternativeCounts,
+    RuleProbabilities,
+    RuleProbability,
+)
 from rulec.planning.probability.violation_events import MOST_WORLDS
 from rulec.report.text.count_text import shown_count
 from rulec.report.text.terminal_text import table_lines, visible
