@@ -105,8 +105,7 @@ class SharedVocabulary:
 def shared_vocabulary(first: Vocabulary, second: Vocabulary) -> SharedVocabulary:
     """The words of two vocabularies together.
 
-    Where defaults differ there is none, so that traces say the value. Raises UndecidedError if a
-    type is not the same in both.
+    Where defaults differ there is none, so that traces say the value. Raises UndecidedError.
     """
     types: dict[str, ObjectType] = dict(first.types)
     for name, kind in second.types.items():

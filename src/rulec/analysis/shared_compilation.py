@@ -91,10 +91,7 @@ def _key(rule: Rule, book: Rulebook) -> object:
 
 
 def at_one_step(rules: Iterable[Rule], step_s: Fraction | None) -> list[Rule]:
-    """The rules compiled for one step of the trace.
-
-    The step is the given one, else one that divides those of all.
-    """
+    """The rules for one step of the trace: the given one, else one that divides all."""
     listed = list(rules)
     steps = [rule.step_s for rule in listed if has_seconds(rule.formula)]
     if step_s is None and steps:

@@ -31,10 +31,7 @@ class SignalRow:
 
 @dataclass(frozen=True, slots=True)
 class TraceTable:
-    """A table of a trace; equal neighbouring states share a column.
-
-    Such a column has the numbers of its first and last state.
-    """
+    """A table of a trace; columns have the first and the last of equal states in a row."""
 
     columns: tuple[tuple[int, int], ...]
     rows: tuple[SignalRow, ...]

@@ -96,10 +96,7 @@ class Maneuvers(Rows):
         return _first(n, chain.from_iterable(starmap(self._of_penalty, penalties)))
 
     def prunings(self) -> list[RulePruning]:
-        """Effect of every rule on the number of maneuvers.
-
-        Raises RulecError as ``best`` does.
-        """
+        """Effect of every rule on the number of maneuvers. Raises RulecError as ``best`` does."""
         every, alone = violating(self._every), violating_alone(self.hard)
         return [
             self._pruning(rule, every.get(rule.name), alone.get(rule.name))
@@ -179,11 +176,9 @@ def evaluate(
 ) -> Maneuvers:
     """Count a graph's paths, and those that keep every hard rule.
 
-    ``after`` has led up to the first layer.
-
-    Raises:
-        RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a hard
-            rule was compiled for another step; R0501 to R0511 if ``after`` is no such past.
+    ``after`` has led up to the first layer. Raises RulecError: R0502 to R0505 if the graph does not
+    supply what the rules read, R0507 if a hard rule was compiled for another step; R0501 to R0511
+    if ``after`` is no such past.
     """
     rules = rules.fitted_to(graph.step)
     paths = in_rule_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary)

@@ -39,8 +39,7 @@ def partition_for(
 ) -> PartitionName:
     """The wanted partition, or the one that the rules need.
 
-    Raises:
-        RulecError: R0405 if the rules need another one, or two.
+    Raises RulecError: R0405 if the rules need another one, or two.
     """
     read = {name for rule in rules.rules for name in names_in(rule.formula)}
     needed = {
@@ -75,10 +74,7 @@ def in_rule_words(
     obstacles: Mapping[str, Obstacle],
     vocabulary: Vocabulary,
 ) -> TraceGraph:
-    """Traces of paths through a graph in the words of a vocabulary.
-
-    ``obstacles`` are the objects of the traces.
-    """
+    """Traces of paths through a graph, about these obstacles, in the words of a vocabulary."""
     recorded = None
     if graph.scenario.account is not None:
         recorded = {name: (own.type, *own.broader) for name, own in obstacles.items()}

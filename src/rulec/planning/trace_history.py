@@ -34,13 +34,10 @@ def past_of(
     step_s: Fraction,
     strengths: Collection[Strength] = HARD,
 ) -> CarriedState:
-    """Carried state when a graph with this step begins.
+    """Carried state when a graph with this step begins, after the last state of what was before.
 
-    Its first layer is the state after the last one of what was before.
-
-    Raises:
-        RulecError: R0501 to R0508 if a trace does not fit the rulebook, R0510 if a snapshot is not
-            of these rules, R0511 if what was before does not lead up to the graph.
+    Raises RulecError: R0501 to R0508 if a trace does not fit the rulebook, R0510 if a snapshot is
+    not of these rules, R0511 if what was before does not lead up to the graph.
     """
     check_objects(graph.objects, rulebook.vocabulary)
     monitor, place = _monitor(before, rulebook, step_s, strengths)
@@ -66,11 +63,7 @@ def read_past(path: Path) -> Before:
 
 
 def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Trace:
-    """Read the one trace of a file.
-
-    Raises:
-        RulecError: what is wrong with it, or R0511 if there are several.
-    """
+    """Read the one trace of a file. Raises what is wrong with it, or R0511 if there are several."""
     traces = []
     for trace in islice(items, 2):
         if isinstance(trace, RulecError):

@@ -14,13 +14,7 @@ from operator import add
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic.formula import Count, Formula
 from rulec.logic.free_names import variables_of
-from rulec.witnesses.letter_functions import (
-    body_of,
-    counts_read,
-    letter_of,
-    speaks_of_extra,
-    truths_of,
-)
+from rulec.witnesses import letter_functions
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
 from rulec.witnesses.state_synthesis import JointState, Subject, Value, synthesize_state
 from rulec.witnesses.undecided import UndecidedError
@@ -100,7 +94,7 @@ def _enough(count: Count, state: JointState) -> int:
 
 
 def _counts_of(state: JointState) -> list[Count]:
-    return counts_read(read for read, _ in state.number_digits)
+    return letter_functions.counts_read(read for read, _ in state.number_digits)
 
 
 def _comes_out(state: JointState, universe: ObjectUniverse, counted: Mapping[Count, int]) -> bool:
@@ -136,21 +130,25 @@ def _of_type(
 ) -> Iterator[CountedObject]:
     vocabulary = universe.vocabulary
     own_counts = [count for count in counts if vocabulary.is_subtype(kind, count.type)]
-    bodies = [body_of(count, EXTRA) for count in own_counts]
-    reads, truths = truths_of([*bodies, *_axioms_about(kind, universe)], vocabulary)
+    bodies = [letter_functions.body_of(count, EXTRA) for count in own_counts]
+    reads, truths = letter_functions.truths_of(
+        [*bodies, *_axioms_about(kind, universe)], vocabulary
+    )
     choices: list[Sequence[int]] = [
-        range(read.size) if speaks_of_extra(read) else (_digit(read, state, universe),)
+        range(read.size)
+        if letter_functions.speaks_of_extra(read)
+        else (_digit(read, state, universe),)
         for read in reads
     ]
     for digits in product(*choices):
-        letter = letter_of(digits, reads)
+        letter = letter_functions.letter_of(digits, reads)
         values = [bool(letters >> letter & 1) for letters in truths]
         if not all(values[len(bodies) :]):
             continue
         about_it = [
             (read if isinstance(read, Read) else _unknown(read, state, universe), digit)
             for read, digit in zip(reads, digits, strict=True)
-            if speaks_of_extra(read)
+            if letter_functions.speaks_of_extra(read)
         ]
         added = synthesize_state(universe, about_it)
         if added is not None:

@@ -22,10 +22,7 @@ from rulec.witnesses.state_synthesis import numbers_near_thresholds, values_of
 
 @dataclass(frozen=True, slots=True)
 class CoverageWitness:
-    """State for a letter, with further comparisons in words in ``besides``.
-
-    Those are of counts, or of sums of numbers that cannot be chosen.
-    """
+    """State for a letter; ``besides`` says in words what cannot be chosen."""
 
     says: ExampleState
     besides: tuple[str, ...] = ()
@@ -82,8 +79,7 @@ def coverage_witness(
 ) -> CoverageWitness:
     """Synthesise a state in which a rule's monitor reads the letter.
 
-    ``axioms`` hold in every state. Where chosen numbers would contradict one, they are left to the
-    reader.
+    Where chosen numbers would contradict one of the ``axioms``, they are left to the reader.
     """
     digits = list(zip(monitor.reads, digits_of(letter, monitor.reads), strict=True))
     says = values_of(digits, vocabulary)

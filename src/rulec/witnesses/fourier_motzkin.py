@@ -44,8 +44,7 @@ def solve(
             the first whole numbers tried leave no room for it.
         near_bounds: the unknowns for which a number near a bound is better than zero.
 
-    Returns:
-        A number for each unknown; None if there are none, or none that short decimals write.
+    Returns None if there are no such numbers, or none that short decimals write.
     """
     stages: list[tuple[Term, list[LinearBound]]] = []
     rest = list(system)

@@ -11,22 +11,11 @@ from heapq import heappop, heappush
 from itertools import count
 
 from rulec.automata.mealy_monitor import NumberRead
+from rulec.witnesses import letter_functions, state_synthesis
 from rulec.witnesses.counted_objects import fewest_counted_objects
 from rulec.witnesses.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.joint_reads import joint_reads
-from rulec.witnesses.letter_functions import (
-    LetterFunction,
-    axiom_function,
-    count_function,
-    counts_read,
-)
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.state_synthesis import (
-    JointState,
-    default_digit,
-    solve_numbers,
-    synthesize_state,
-)
 from rulec.witnesses.undecided import UndecidedError
 
 JointLetter = tuple[int, ...]
@@ -46,19 +35,29 @@ class JointAlphabet:
     many further objects as counts ask for. Raises UndecidedError where that is too much to tell.
     """
 
-    def __init__(self, universe: ObjectUniverse, monitors: Sequence[LetterFunction]) -> None:
+    def __init__(
+        self, universe: ObjectUniverse, monitors: Sequence[letter_functions.LetterFunction]
+    ) -> None:
         self._universe = universe
         vocabulary = universe.vocabulary
-        axioms = [axiom_function(formula, vocabulary) for formula in universe.axiom_formulas()]
+        axioms = [
+            letter_functions.axiom_function(formula, vocabulary)
+            for formula in universe.axiom_formulas()
+        ]
         reads = (read for function in (*monitors, *axioms) for read in function.reads)
-        self._counts = [count_function(count, universe) for count in counts_read(reads)]
+        self._counts = [
+            letter_functions.count_function(count, universe)
+            for count in letter_functions.counts_read(reads)
+        ]
         functions = [*monitors, *(count.function for count in self._counts), *axioms]
         self._joint = joint_reads(functions, vocabulary)
         self._n_keys = len(monitors) + len(self._counts)
         self._n_numbers = sum(isinstance(read, NumberRead) for read in self._joint.reads)
         self._diagrams = DecisionDiagrams()
         roots = list(map(self._diagrams.of, functions, self._joint.views))
-        self._defaults = [default_digit(read, vocabulary) for read in self._joint.reads]
+        self._defaults = [
+            state_synthesis.default_digit(read, vocabulary) for read in self._joint.reads
+        ]
         self._plain: dict[tuple[int, ...], dict[JointLetter, tuple[int, Steps]]] = {}
         ways_to: dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]] = {}
         numbers = count()
@@ -72,7 +71,7 @@ class JointAlphabet:
                 heappush(ways_to.setdefault(letter, []), way)
             if len(ways_to) > MOST_LETTERS:
                 raise UndecidedError("too many different states of the world have to be told apart")
-        self.states: Mapping[JointLetter, JointState] = {
+        self.states: Mapping[JointLetter, state_synthesis.JointState] = {
             letter: best
             for letter, candidates in ways_to.items()
             if (best := self._best(candidates)) is not None
@@ -128,7 +127,7 @@ class JointAlphabet:
         known = {term for read, _ in earlier for _, term in read.terms}
         if known.isdisjoint(term for _, term in last.terms):
             return True
-        return solve_numbers(numbers, self._universe.vocabulary, {}) is not None
+        return state_synthesis.solve_numbers(numbers, self._universe.vocabulary, {}) is not None
 
     def _ways(self, nodes: tuple[int, ...]) -> Mapping[JointLetter, tuple[int, Steps]]:
         """Number of non-defaults and digits with fewest, for each joint letter."""
@@ -152,7 +151,9 @@ class JointAlphabet:
         self._plain[nodes] = ways
         return ways
 
-    def _best(self, candidates: list[tuple[int, int, Steps, JointLetter]]) -> JointState | None:
+    def _best(
+        self, candidates: list[tuple[int, int, Steps, JointLetter]]
+    ) -> state_synthesis.JointState | None:
         while candidates:
             _, _, steps, classes = heappop(candidates)
             digits = []
@@ -163,7 +164,7 @@ class JointAlphabet:
                 (function.count, function.counted[letter_class])
                 for function, letter_class in zip(self._counts, classes, strict=True)
             )
-            state = synthesize_state(self._universe, digits, counted)
+            state = state_synthesis.synthesize_state(self._universe, digits, counted)
             if state is not None and fewest_counted_objects(state, self._universe) is not None:
                 return state
         return None

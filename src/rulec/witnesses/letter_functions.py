@@ -103,10 +103,7 @@ class CountFunction:
 
 
 def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
-    """A count as a function of what it reads of its universe.
-
-    Raises UndecidedError for a count in which others stand.
-    """
+    """A count as a function of its universe. Raises UndecidedError if others stand in it."""
     if any(True for _ in counts_in(count.body)):
         raise UndecidedError("a count stands inside another one")
     vocabulary = universe.vocabulary

@@ -17,22 +17,10 @@ from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead
 from rulec.logic.formula import Count
 from rulec.rulebook.rulebook_model import ExampleState, Variable
 from rulec.vocabulary import Vocabulary
+from rulec.witnesses import letter_functions, state_synthesis
 from rulec.witnesses.counted_objects import fewest_counted_objects
 from rulec.witnesses.joint_reads import JointReads, joint_reads
-from rulec.witnesses.letter_functions import (
-    CountFunction,
-    LetterFunction,
-    all_digits,
-    count_function,
-    counts_read,
-)
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.state_synthesis import (
-    JointState,
-    default_digit,
-    required_counts,
-    synthesize_state,
-)
 from rulec.witnesses.trace_synthesis import place_objects
 from rulec.witnesses.undecided import UndecidedError
 
@@ -58,18 +46,20 @@ class LetterWitnesses:
 
     def __init__(self, rule: CompiledRule, vocabulary: Vocabulary) -> None:
         self._monitor = rule.machine
-        self._counts = counts_read(rule.machine.reads)
+        self._counts = letter_functions.counts_read(rule.machine.reads)
         objects = {variable.name: variable.type for variable in rule.variables}
         self._universe = ObjectUniverse(objects, vocabulary)
-        self._states: dict[int, JointState | None] = {}
+        self._states: dict[int, state_synthesis.JointState | None] = {}
         self._undecided: set[int] = set()
-        self._digits = list(all_digits(rule.machine.reads))
+        self._digits = list(letter_functions.all_digits(rule.machine.reads))
         self._members: list[list[int]] = [[] for _ in rule.machine.successors[0]]
         for letter, letter_class in enumerate(rule.machine.letters):
             if letter_class != IMPOSSIBLE:
                 self._members[letter_class].append(letter)
         self._plain = [
-            0 if isinstance(read, NumberRead) else default_digit(read, vocabulary) or 0
+            0
+            if isinstance(read, NumberRead)
+            else state_synthesis.default_digit(read, vocabulary) or 0
             for read in rule.machine.reads
         ]
 
@@ -78,10 +68,7 @@ class LetterWitnesses:
         return self._nearest_of(letter_class, self._plain)
 
     def nearest(self, letter: int) -> list[tuple[int, int]]:
-        """Nearest possible letter in every other class, after its distance.
-
-        The distance is the number of reads in which two letters differ (Hamming).
-        """
+        """Nearest possible letter in every other class, after its Hamming distance."""
         own, digits = self._monitor.letters[letter], self._digits[letter]
         nearest = [
             self._nearest_of(letter_class, digits)
@@ -92,7 +79,7 @@ class LetterWitnesses:
             (_distance(self._digits[near], digits), near) for near in nearest if near is not None
         ]
 
-    def state(self, letter: int) -> JointState | None:
+    def state(self, letter: int) -> state_synthesis.JointState | None:
         """A state that has this letter; None if none has it."""
         if letter not in self._states:
             self._states[letter] = self._state(letter)
@@ -111,10 +98,10 @@ class LetterWitnesses:
                 further = tuple(Variable(name, kind) for name, kind in objects.items())
                 return WitnessTrace(further, tuple(values))
         vocabulary = self._universe.vocabulary
-        required = tuple(required_counts(state, vocabulary) for state in states)
+        required = tuple(state_synthesis.required_counts(state, vocabulary) for state in states)
         return WitnessTrace((), tuple(state.values for state in states), required)
 
-    def _state(self, letter: int) -> JointState | None:
+    def _state(self, letter: int) -> state_synthesis.JointState | None:
         digits = self._digits[letter]
         if self._counts:
             try:
@@ -123,17 +110,17 @@ class LetterWitnesses:
                 self._undecided.add(letter)
         at_least = tuple((count, 0) for count in self._counts)
         reads = list(zip(self._monitor.reads, digits, strict=True))
-        return synthesize_state(self._universe, reads, at_least)
+        return state_synthesis.synthesize_state(self._universe, reads, at_least)
 
     @cached_property
-    def _joint_counts(self) -> tuple[list[CountFunction], JointReads]:
+    def _joint_counts(self) -> tuple[list[letter_functions.CountFunction], JointReads]:
         """The counts, and the joint reads of the monitor and of them."""
-        counts = [count_function(count, self._universe) for count in self._counts]
-        own = LetterFunction(self._monitor.reads, self._monitor.letters)
+        counts = [letter_functions.count_function(count, self._universe) for count in self._counts]
+        own = letter_functions.LetterFunction(self._monitor.reads, self._monitor.letters)
         functions = [own, *(count.function for count in counts)]
         return counts, joint_reads(functions, self._universe.vocabulary)
 
-    def _counted_state(self, digits: Sequence[int]) -> JointState | None:
+    def _counted_state(self, digits: Sequence[int]) -> state_synthesis.JointState | None:
         """State with these digits of the monitor's reads and fitting counts.
 
         What the monitor leaves open has its default where it can.
@@ -148,7 +135,7 @@ class LetterWitnesses:
                 for index, count in enumerate(counts, 1)
             )
             reads = list(zip(joint.reads, joint_digits, strict=True))
-            state = synthesize_state(self._universe, reads, counted)
+            state = state_synthesis.synthesize_state(self._universe, reads, counted)
             if state is not None and fewest_counted_objects(state, self._universe) is not None:
                 return state
         return None
@@ -157,7 +144,7 @@ class LetterWitnesses:
         """Digits of a joint read that the monitor's allow, default first."""
         _, joint = self._joint_counts
         read = joint.reads[level]
-        default = default_digit(read, self._universe.vocabulary)
+        default = state_synthesis.default_digit(read, self._universe.vocabulary)
         allowed = [
             joint_digit
             for joint_digit in range(read.size)

@@ -128,8 +128,8 @@ def _near_miss(
 ) -> list[int] | None:
     """Accepted word that differs from the rejected one in one letter.
 
-    The letter is as late as possible, changed as little as possible, and then so that the run
-    visits most states of the monitor.
+    It is as late as possible, changed as little as possible, and then so that the run visits most
+    states of the monitor.
     """
     for place in reversed(range(len(rejected))):
         candidates = []

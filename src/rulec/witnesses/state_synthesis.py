@@ -32,8 +32,7 @@ NumberDigits = tuple[tuple[NumberRead, int], ...]
 class JointState:
     """A state: the values that decide, all others may be anything.
 
-    ``number_digits`` are the sums that decide, ``counted`` is how many of the universe's own
-    objects count.
+    ``number_digits`` are sums that decide, ``counted`` says how many of its own objects count.
     """
 
     values: Mapping[Subject, Value]

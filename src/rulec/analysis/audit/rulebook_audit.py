@@ -33,10 +33,7 @@ class AuditFinding:
 
 @dataclass(frozen=True, slots=True)
 class CitedArticle:
-    """A provision as rules cite it, and the rules that do.
-
-    ``book`` is the rulebook whose law it is in: that of the chain which cites it.
-    """
+    """A provision as rules cite it, the book of the chain that does, and the rules."""
 
     book: str
     cite: str
@@ -90,12 +87,9 @@ class AuditChanges:
 def audit(
     rulebook: Rulebook, inherited: BookLineage, failing: Sequence[tuple[str, str]] = ()
 ) -> Audit:
-    """The audit of a rulebook.
+    """The audit of a rulebook, with what became of everything in its chain on the same day.
 
-    Args:
-        rulebook: as meant.
-        inherited: what became of everything in its chain, for the same day.
-        failing: the examples that fail, if they were run: rule and label or number.
+    ``failing`` are the examples that fail, if they were run: rule and label or number.
     """
     articles = articles_of(rulebook.rules, inherited)
     used = used_declarations(rulebook)
@@ -144,10 +138,7 @@ def audit_changes(now: Audit, before: Audit) -> AuditChanges:
 
 
 def compare_audits(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str, AuditChanges]:
-    """Rulebook -> changes since its own, or the only, older audit.
-
-    To a rulebook that has no older audit everything is new.
-    """
+    """Rulebook -> changes since its own, or the only, older audit; without one all is new."""
     by_name = {saved.rulebook: saved for saved in older}
     only = older[0] if len(older) == 1 and len(audits) == 1 else None
     pairs = ((now, by_name.get(now.rulebook, only)) for now in audits)

@@ -19,11 +19,7 @@ class _File(msgspec.Struct):
 
 
 def read_audits(path: Path) -> tuple[Audit, ...]:
-    """Read the output of ``rulec audit --output-format json``.
-
-    Raises:
-        RulecError: R0701, or R0705 if it is something else.
-    """
+    """Read the output of ``rulec audit --output-format json``. Raises R0701 or R0705."""
     with opened(path) as stream:
         data = stream.read().removeprefix(codecs.BOM_UTF8)
     try:

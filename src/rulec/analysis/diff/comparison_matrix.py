@@ -40,10 +40,7 @@ class SharedRule:
     remarks: Mapping[str, Remark]
 
     def letter(self, book: str) -> str:
-        """The letter of a rulebook's law; empty without the rule.
-
-        ``A`` is the law of the first rulebook that has the rule, and so on.
-        """
+        """The letter of a rulebook's law, ``A`` for the first one; empty without the rule."""
         law = self.laws.get(book)
         if law is None:
             return ""
@@ -72,8 +69,7 @@ class ComparisonMatrix:
     def counts(self, first: str, second: str) -> Counter[str]:
         """The number of the first rulebook's rules by relation to the second's.
 
-        ``only`` are those that the second one does not have, ``silent`` those of them of which it
-        says why.
+        ``only`` are those that the second lacks, ``silent`` those of them of which it says why.
         """
         numbers: Counter[str] = Counter()
         for rule in self.rules:

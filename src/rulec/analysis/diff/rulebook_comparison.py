@@ -21,10 +21,7 @@ from rulec.value_display import Rows, short_repr
 
 @dataclass(frozen=True, slots=True)
 class RulePair:
-    """A rule of both rulebooks: its two versions and their comparison.
-
-    ``machines`` are the rules compiled.
-    """
+    """A rule of both rulebooks: its two versions, compiled, and their comparison."""
 
     __repr__ = short_repr
 
@@ -63,10 +60,7 @@ class OneSided:
 
 @dataclass(frozen=True, slots=True)
 class SettingPair:
-    """An option or parameter with a different value in each rulebook.
-
-    The values are given as written and as in force on the day.
-    """
+    """An option or parameter with a different value in each rulebook, as written."""
 
     kind: ConstantKind
     name: str
@@ -171,11 +165,9 @@ def diff_rulebooks(
         step_s: the step of the traces that rules with bounds in seconds are compared on; else one
             that divides the steps of their examples.
         tell: is told how many rules have been compared.
-        most: how many traces to look for, each for another reason, that one rule forbids and the
-            other allows.
+        most: how many traces to look for, each for another reason, either way.
 
-    Raises:
-        RulecError: if a rule cannot be compiled.
+    Raises RulecError if a rule cannot be compiled.
     """
     ours, theirs = (rules_matching(book, patterns) for book in (first, second))
     shared = [name for name in ours if name in theirs]

@@ -10,14 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path, PurePath
 
-from rulec.analysis.lineage.rule_lineage import (
-    BookHeader,
-    BookLineage,
-    ConstantHistory,
-    ConstantValue,
-    LineageStep,
-    RuleHistory,
-)
+from rulec.analysis.lineage import rule_lineage
 from rulec.rulebook.loader import Loaded, read_rulebook
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.names.referenced_names import names_used
@@ -28,14 +21,12 @@ from rulec.syntax.tree_printer import print_formula, print_parameters
 _Given = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
 
 
-def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:
-    """The lineage of rules and provisions in a chain of sound rulebooks.
+def book_lineage_of(chain: Sequence[tree.File], at: str) -> rule_lineage.BookLineage:
+    """The lineage of rules and provisions in a chain of sound rulebooks, most general first.
 
-    Args:
-        chain: their trees, the most general first.
-        at: the day (ISO) whose law it is; it decides which value of a parameter counts.
+    The day ``at`` (ISO) decides which value of a parameter counts.
     """
-    rules: dict[str, list[LineageStep]] = {}
+    rules: dict[str, list[rule_lineage.LineageStep]] = {}
     provisions: dict[str, list[tuple[_Given, str]]] = {}
     for file in chain:
         book = book_header(file).name
@@ -54,9 +45,9 @@ def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:
         names = set(names_used(unread.pop())) & provisions.keys()
         unread += [item for name in names - used for item, _ in provisions[name]]
         used |= names
-    return BookLineage(
+    return rule_lineage.BookLineage(
         tuple(map(book_header, chain)),
-        tuple(RuleHistory(name, tuple(steps)) for name, steps in rules.items()),
+        tuple(rule_lineage.RuleHistory(name, tuple(steps)) for name, steps in rules.items()),
         tuple(
             replace(_history(name, given, at), used=name in used)
             for name, given in provisions.items()
@@ -66,15 +57,15 @@ def book_lineage_of(chain: Sequence[tree.File], at: str) -> BookLineage:
 
 def read_with_lineage(
     reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
-) -> tuple[Loaded, BookLineage]:
+) -> tuple[Loaded, rule_lineage.BookLineage]:
     """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
     loaded = read_rulebook(reference, search_path, at)
     return loaded, book_lineage_of(loaded.books, loaded.rulebook.at)
 
 
-def book_header(file: tree.File) -> BookHeader:
+def book_header(file: tree.File) -> rule_lineage.BookHeader:
     """The head of a rulebook: name, title, law, file and base."""
-    return BookHeader(
+    return rule_lineage.BookHeader(
         file.name.text if file.name else "",
         title=file.title.text.value if file.title else "",
         law=file.law.text.value if file.law else "",
@@ -87,20 +78,20 @@ def book_header(file: tree.File) -> BookHeader:
 def _step(
     item: tree.RuleItem | tree.SoftenItem | tree.DropItem | tree.SilentItem,
     book: str,
-    earlier: Sequence[LineageStep],
-) -> LineageStep:
+    earlier: Sequence[rule_lineage.LineageStep],
+) -> rule_lineage.LineageStep:
     match item:
         case tree.DropItem(because=because):
-            return LineageStep(book, "dropped", None, (), because.value)
+            return rule_lineage.LineageStep(book, "dropped", None, (), because.value)
         case tree.SilentItem(because=because):
-            return LineageStep(book, "silent", None, (), because.value)
+            return rule_lineage.LineageStep(book, "silent", None, (), because.value)
         case tree.RuleItem(override=False):
-            return LineageStep(book, "declared", item)
+            return rule_lineage.LineageStep(book, "declared", item)
     before = earlier[-1].rule
     assert before is not None, "nobody changes a rule that is gone"
     if isinstance(item, tree.RuleItem):
         after = merged(before, item)
-        return LineageStep(book, "overridden", after, _changed_clauses(before, after))
+        return rule_lineage.LineageStep(book, "overridden", after, _changed_clauses(before, after))
     after = replace(
         before,
         strength="soft",
@@ -108,7 +99,7 @@ def _step(
         weight=item.weight or before.weight,
     )
     why = item.because.value if item.because else ""
-    return LineageStep(book, "softened", after, _changed_clauses(before, after), why)
+    return rule_lineage.LineageStep(book, "softened", after, _changed_clauses(before, after), why)
 
 
 HARDNESS = "hard or soft"
@@ -130,12 +121,14 @@ def _changed_clauses(before: tree.RuleItem, after: tree.RuleItem) -> tuple[str, 
     )
 
 
-def _history(name: str, given: Sequence[tuple[_Given, str]], at: str) -> ConstantHistory:
+def _history(
+    name: str, given: Sequence[tuple[_Given, str]], at: str
+) -> rule_lineage.ConstantHistory:
     """All that a chain, the most general book first, says of a provision."""
     dates: list[tree.InForce | None] = [getattr(item, "in_force", None) for item, _ in given]
     good = [index for index, own in enumerate(dates) if in_force(own, at)]
     settings = tuple(
-        ConstantValue(
+        rule_lineage.ConstantValue(
             book,
             _text(item),
             since=own.since if own else "",
@@ -147,12 +140,12 @@ def _history(name: str, given: Sequence[tuple[_Given, str]], at: str) -> Constan
     )
     match given[0][0]:
         case tree.OptionItem():
-            return ConstantHistory("option", name, name, settings)
+            return rule_lineage.ConstantHistory("option", name, name, settings)
         case tree.DefineItem(parameters=parameters):
             head = name + print_parameters(parameters)
-            return ConstantHistory("definition", name, head, settings)
+            return rule_lineage.ConstantHistory("definition", name, head, settings)
         case _:
-            return ConstantHistory("parameter", name, name, settings)
+            return rule_lineage.ConstantHistory("parameter", name, name, settings)
 
 
 def _text(item: _Given) -> str:

@@ -25,10 +25,7 @@ class Antecedent:
 
 
 def antecedents(rule: Rule) -> Iterator[Antecedent]:
-    """The antecedents of a rule: condition, exceptions, left sides, first phase.
-
-    What an option has switched off is not among them.
-    """
+    """The antecedents of a rule but for what an option has switched off."""
     for antecedent in _all(rule):
         if not has_constant(antecedent.formula):
             yield antecedent

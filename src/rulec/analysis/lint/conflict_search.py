@@ -22,10 +22,7 @@ from rulec.witnesses.undecided import UndecidedError
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """A trace after which each rule could be kept, but not all.
-
-    If it is None, the rules never hold together.
-    """
+    """A trace after which each rule could be kept, but not all; None if they never can."""
 
     trace: Trace | None
 

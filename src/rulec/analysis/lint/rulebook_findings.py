@@ -6,16 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from rulec.analysis.diff.rule_comparison import compare
+from rulec.analysis.lint import finding_messages
 from rulec.analysis.lint.antecedents import Antecedent, antecedents, has_constant, occurrence
 from rulec.analysis.lint.conflict_findings import conflicts
-from rulec.analysis.lint.finding_messages import (
-    ADDS_NOTHING,
-    CANNOT_BE_KEPT,
-    CANNOT_BE_VIOLATED,
-    NEVER_TRIGGERED,
-    WEAKER_THAN_BASE,
-    undecided_diagnostic,
-)
 from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
 from rulec.analysis.shared_compilation import AnalyzedRule, compile_shared
 from rulec.analysis.trace_display import trace_note
@@ -40,8 +33,7 @@ def rulebook_findings(
         extends: where it says so.
         tell: is told how many rules have been looked at.
 
-    Raises:
-        RulecError: if a rule cannot be compiled.
+    Raises RulecError if a rule cannot be compiled.
     """
     by_name = {rule.name: rule for rule in book.rules}
     conditions = {
@@ -88,10 +80,12 @@ def _idle(rule: Rule, occurring: Sequence[tuple[Antecedent, AnalyzedRule]]) -> I
         try:
             occurs = can_be_kept(side)
         except UndecidedError as problem:
-            yield undecided_diagnostic(rule, f"{what[trigger.kind]} can ever hold", problem)
+            yield finding_messages.undecided_diagnostic(
+                rule, f"{what[trigger.kind]} can ever hold", problem
+            )
             continue
         if not occurs:
-            yield NEVER_TRIGGERED.at(
+            yield finding_messages.NEVER_TRIGGERED.at(
                 rule.span,
                 f"{what[trigger.kind]} of rule `{rule.name}` never holds: "
                 f"`{formula_text(trigger.formula)}`",
@@ -105,20 +99,20 @@ def _alone(rule: Rule, side: AnalyzedRule) -> Iterator[Diagnostic]:
         if not can_be_violated(side):
             if has_constant(rule.formula):
                 return  # an option has switched it off
-            yield CANNOT_BE_VIOLATED.at(
+            yield finding_messages.CANNOT_BE_VIOLATED.at(
                 rule.span,
                 f"nothing can violate rule `{rule.name}`",
                 help="it holds in every trace that can be; say what it is to forbid",
                 severity="warning",
             )
         elif not can_be_kept(side):
-            yield CANNOT_BE_KEPT.at(
+            yield finding_messages.CANNOT_BE_KEPT.at(
                 rule.span,
                 f"nothing can keep rule `{rule.name}`",
                 help="every trace violates it; say what it is to allow",
             )
     except UndecidedError as problem:
-        yield undecided_diagnostic(rule, "it can be kept and violated", problem)
+        yield finding_messages.undecided_diagnostic(rule, "it can be kept and violated", problem)
 
 
 def _needless(
@@ -136,7 +130,9 @@ def _needless(
         try:
             premises = implied_by(sides[name], others)
         except UndecidedError as problem:
-            diagnostics.append(undecided_diagnostic(rules[name], "others imply it", problem))
+            diagnostics.append(
+                finding_messages.undecided_diagnostic(rules[name], "others imply it", problem)
+            )
             continue
         if premises:
             diagnostics.append(_implied(rules[name], [rules[one.rule.name] for one in premises]))
@@ -149,7 +145,7 @@ def _implied(rule: Rule, premises: Sequence[Rule]) -> Diagnostic:
     verb = "forbids" if len(premises) == 1 else "together forbid"
     names = " and ".join(f"`{premise.name}`" for premise in premises)
     label = "this is enough" if len(premises) == 1 else "this is part of it"
-    return ADDS_NOTHING.at(
+    return finding_messages.ADDS_NOTHING.at(
         rule.span,
         f"rule `{rule.name}` adds nothing: {names} {verb} all that it forbids",
         help="leave it out, unless its own provision is worth a rule",
@@ -174,7 +170,9 @@ def _weaker(
     comparison = compare(own, inherited)
     if comparison.undecided:
         problem = UndecidedError(comparison.undecided)
-        return undecided_diagnostic(rule, f"it is as strict as in `{base.name}`", problem)
+        return finding_messages.undecided_diagnostic(
+            rule, f"it is as strict as in `{base.name}`", problem
+        )
     softer = inherited.rule.strength == "hard" and rule.strength == "soft"
     if not comparison.second_forbids and not softer:
         return None
@@ -186,7 +184,7 @@ def _weaker(
         for trace in comparison.second_forbids
         for note in trace_note(f"`{base.name}` forbids", trace, (own, inherited))
     ]
-    return WEAKER_THAN_BASE.at(
+    return finding_messages.WEAKER_THAN_BASE.at(
         rule.span,
         f"rule `{rule.name}` is {how} than in `{base.name}`, which this rulebook extends",
         help="if the law has it so, nothing is to be done",

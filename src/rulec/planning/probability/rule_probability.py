@@ -47,10 +47,7 @@ class RuleProbability:
 
 @dataclass(frozen=True, slots=True)
 class RuleProbabilities:
-    """Probabilities of no collision, of all hard rules, of each rule.
-
-    ``hard`` is None if that of one of the hard rules is.
-    """
+    """Probabilities of no collision, of all hard rules (None if unknown), of each rule."""
 
     __repr__ = short_repr
 

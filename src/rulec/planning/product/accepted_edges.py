@@ -25,10 +25,7 @@ class AcceptedEdges:
 
 
 def accepted_edges(transformers: NodeTransformers, product: Product[Memory]) -> AcceptedEdges:
-    """Edges of a graph on accepted and on possible paths.
-
-    ``product`` has been explored from ``transformers``; it is trimmed backwards from its ends.
-    """
+    """Edges of a graph on accepted and on possible paths of the product explored from it."""
     nodes = [
         frozenset(i for i, there in enumerate(row) if there) for row in transformers.on_the_way
     ]

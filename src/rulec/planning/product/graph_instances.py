@@ -55,11 +55,9 @@ def instances(
 
     ``step_s`` is the graph's step where that is no decimal, a third of a second for one. Bindings
     of a rule that every node is the same to are one instance. Those that were settled in the
-    ``past`` are left out, the others go on where they stood.
-
-    Raises:
-        RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if one of
-            these rules was compiled for another step, R0508 if a state contradicts a fact.
+    ``past`` are left out, the others go on where they stood. Raises RulecError: R0502 to R0505 if
+    the graph does not supply what the rules read, R0507 if one of these rules was compiled for
+    another step, R0508 if a state contradicts a fact.
     """
     vocabulary = rulebook.vocabulary
     rules = [rule for rule in rulebook.rules if rule.strength in strengths]

@@ -112,11 +112,7 @@ def kept(transformers: Sequence[Effect], joint: Joint) -> Joint | None:
 
 
 def explore(transformers: NodeTransformers) -> Product[Joint]:
-    """Product of the paths that violate no rule, by the monitors' joint states.
-
-    Raises:
-        RulecError: R0616 if it would be too large.
-    """
+    """Product of the paths that violate no rule. Raises R0616 if it would be too large."""
     return explore_with(transformers, kept, transformers.waiting)
 
 
@@ -125,10 +121,8 @@ def explore_with(
 ) -> Product[Memory]:
     """Build the product forward from the graph's start.
 
-    ``start`` is the memory before the first node, ``enter`` that behind each further one.
-
-    Raises:
-        RulecError: R0616 if it would be too large.
+    ``start`` is the memory before the first node, ``enter`` that behind each further one. Raises
+    RulecError: R0616 if it would be too large.
     """
     graph = transformers.graph
     room = largest_product(graph)

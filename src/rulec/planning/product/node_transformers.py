@@ -80,7 +80,7 @@ def node_transformers(graph: TraceGraph, instances: Sequence[GraphInstance]) -> 
     known: dict[object, tuple[tuple[Effect, ...], ...]] = {}
     for p, alive in enumerate(on_the_way):
         rows = [layers[p] for _, layers in result]
-        key = tuple(map(Interned[object], (alive, *rows)))
+        key = tuple(map(Interned, (alive, *rows)))
         if key not in known:
             known[key] = tuple(
                 [tuple([row[i] for row in rows]) if there else () for i, there in enumerate(alive)]
@@ -169,7 +169,7 @@ def _merged(
         else:
             symbols = nobody[len(alive)]
             raw = waiting if p < instance.first else over
-        key = (symbols, *map(Interned[object], (raw, rows, later, alive)))
+        key = (symbols, *map(Interned, (raw, rows, later, alive)))
         if key not in known:
             seen = effects[Interned(raw)]
             layer: list[Effect] = []

@@ -17,9 +17,8 @@ from rulec.value_display import short_repr
 class Maneuver:
     """Path through a graph, with its cost and time margin.
 
-    ``nodes`` are indices, one a layer; ``cost`` is in 1/s, ``margin_s`` in s.
-
-    ``margin_s`` is the smallest margin of its changes of cell; None if it never changes.
+    ``nodes`` are indices, one a layer; ``cost`` is in 1/s. ``margin_s`` is the smallest margin of
+    its changes of cell; None if it never changes.
     """
 
     __repr__ = short_repr

@@ -15,23 +15,17 @@ from itertools import count
 from operator import add, getitem, gt
 
 from rulec.monitoring.verdict import Violation
-from rulec.planning.product.graph_product import (
-    Joint,
-    Product,
-    explore_with,
-    largest_product,
-    too_large,
-)
+from rulec.planning.product import graph_product
 from rulec.planning.product.node_transformers import LOST, SAFE, Effect, NodeTransformers
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, PenaltyRank
 from rulec.trace.interned import Interned
 from rulec.value_display import short_repr
 
-Paying = tuple[Joint, Penalty]
+Paying = tuple[graph_product.Joint, Penalty]
 """The machines' states, and what has been violated so far."""
 
-Place = tuple[int, int, Joint]
+Place = tuple[int, int, graph_product.Joint]
 """A layer, a node in it, and the machines' states behind it."""
 
 
@@ -74,8 +68,7 @@ def front(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penal
 def ranked(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tuple[int, Penalty]]:
     """Every penalty of some path, behind all that are lower.
 
-    With each comes its place: 1 for those of the front, else 1 more than the last one of the
-    places of lower penalties.
+    With each comes its place: 1 in the front, else 1 more than the last place of lower penalties.
     """
     passed: set[tuple[Place, Penalty]] = set()
 
@@ -94,7 +87,7 @@ def ranked(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tupl
 
 def with_penalty(
     transformers: NodeTransformers, ranks: PenaltyOrder, wanted: Penalty
-) -> Product[Paying]:
+) -> graph_product.Product[Paying]:
     """The product in which just the paths of one penalty are accepted."""
     fee = _fees(transformers, ranks)
 
@@ -104,7 +97,9 @@ def with_penalty(
         total = tuple(map(add, paid, due)) if due else paid
         return None if any(map(gt, total, wanted)) else (after, total)
 
-    product = explore_with(transformers, enter, (transformers.waiting, (0,) * len(ranks.ranks)))
+    product = graph_product.explore_with(
+        transformers, enter, (transformers.waiting, (0,) * len(ranks.ranks))
+    )
     ends = frozenset([end for end in product.ends if end[1][1] == wanted])
     return replace(product, ends=ends)
 
@@ -114,19 +109,19 @@ def _ascending(
 ) -> Iterator[Penalty]:
     """Penalties of paths in order; only those ``worth`` it are extended.
 
-    Of partial paths with one penalty the longer ones come first, so goals are soon found.
-
-    Raises:
-        RulecError: R0616 if there are too many partial paths worth it.
+    Of partial paths with one penalty the longer ones come first, so goals are soon found. Raises
+    R0616 if there are too many that are worth it.
     """
-    room = largest_product(transformers.graph)
+    room = graph_product.largest_product(transformers.graph)
     fee = _fees(transformers, ranks)
-    of_layer: dict[object, dict[tuple[int, Joint], tuple[Joint, Penalty]]] = {}
+    of_layer: dict[
+        object, dict[tuple[int, graph_product.Joint], tuple[graph_product.Joint, Penalty]]
+    ] = {}
     fees = [of_layer.setdefault(Interned(rows), {}) for rows in transformers.nodes]
-    queue: list[tuple[Penalty, int, int, int, Joint]] = []
+    queue: list[tuple[Penalty, int, int, int, graph_product.Joint]] = []
     numbers = count()
 
-    def reach(layer: int, node: int, joint: Joint, paid: Penalty) -> None:
+    def reach(layer: int, node: int, joint: graph_product.Joint, paid: Penalty) -> None:
         if (node, joint) not in fees[layer]:
             fees[layer][node, joint] = fee(transformers.nodes[layer][node], joint)
         after, due = fees[layer][node, joint]
@@ -141,7 +136,7 @@ def _ascending(
             continue
         room -= 1
         if room < 0:
-            raise too_large(transformers.graph)
+            raise graph_product.too_large(transformers.graph)
         if -earlier == len(transformers.steps):
             yield penalty
             continue
@@ -151,14 +146,16 @@ def _ascending(
 
 def _fees(
     transformers: NodeTransformers, ranks: PenaltyOrder
-) -> Callable[[Sequence[Effect], Joint], tuple[Joint, Penalty]]:
+) -> Callable[[Sequence[Effect], graph_product.Joint], tuple[graph_product.Joint, Penalty]]:
     """Next states of the monitors at a node, and their penalties."""
     prices = [
         (ranks.of(instance.rule), ranks.weight(instance.rule) * len(instance.bindings))
         for instance in transformers.instances
     ]
 
-    def fee(row: Sequence[Effect], joint: Joint) -> tuple[Joint, Penalty]:
+    def fee(
+        row: Sequence[Effect], joint: graph_product.Joint
+    ) -> tuple[graph_product.Joint, Penalty]:
         after = tuple(map(getitem, row, joint))
         if LOST not in after:
             return after, ()

@@ -59,10 +59,7 @@ def violating_alone(transformers: NodeTransformers) -> dict[str, Product[Blaming
 
 
 def _blaming(transformers: NodeTransformers, of: Sequence[int]) -> Product[Blaming]:
-    """Product of paths that violate at most one rule.
-
-    ``of`` gives the rule of each instance.
-    """
+    """Product of paths that violate at most one rule, which ``of`` gives by instance."""
 
     def enter(row: Sequence[Effect], memory: Blaming) -> Blaming | None:
         joint, blamed = memory
