@@ -17,7 +17,7 @@ from rulec.rulebook.rulebook_model import ExampleState
 from rulec.rulebook.rules.axioms import ExampleValues
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_functions import all_digits, counts_read, digits_of
-from rulec.witnesses.state_synthesis import numbers_near_thresholds, values_of
+from rulec.witnesses.state_synthesis import NumberDigits, numbers_near_thresholds, values_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +119,7 @@ def coverage_witness(
 
 
 def _choose(
-    numbers: Sequence[tuple[NumberRead, int]], vocabulary: Vocabulary
+    numbers: NumberDigits, vocabulary: Vocabulary
 ) -> tuple[dict[QuantityTerm, float], list[NumberRead]]:
     """Numbers with these digits, and the sums left without any."""
     chosen = numbers_near_thresholds(numbers, vocabulary)

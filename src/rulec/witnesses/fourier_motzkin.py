@@ -34,17 +34,11 @@ def solve(
     whole: Set[Term] = frozenset(),
     near_bounds: Set[Term] = frozenset(),
 ) -> dict[Term, Fraction] | None:
-    """Solve a system by numbers with short decimals.
+    """Solve a system by numbers with short decimals; None if there are none.
 
-    Args:
-        system: the inequalities.
-        unknowns: what is sought; the last one is given its number first.
-        preferred: the numbers to take where they fit; else zero, or one near a bound.
-        whole: the unknowns that are whole numbers; the rest of the system is not searched again if
-            the first whole numbers tried leave no room for it.
-        near_bounds: the unknowns for which a number near a bound is better than zero.
-
-    Returns None if there are no such numbers, or none that short decimals write.
+    The last of the ``unknowns`` is given its number first: the ``preferred`` one where it fits,
+    else zero, which for those in ``near_bounds`` is no better than others, or one near a bound. The
+    system is not searched again if the first numbers tried for ``whole`` unknowns leave no room.
     """
     stages: list[tuple[Term, list[LinearBound]]] = []
     rest = list(system)

@@ -24,7 +24,10 @@ Subject = tuple[str, tuple[str, ...]]
 
 Value = bool | str | float
 
-NumberDigits = tuple[tuple[NumberRead, int], ...]
+Digits = Sequence[tuple[Read | NumberRead, int]]
+"""Reads, each with the digit of its value."""
+
+NumberDigits = Sequence[tuple[NumberRead, int]]
 """Sums, and how many of its thresholds each of them passes."""
 
 
@@ -64,13 +67,11 @@ class JointState:
 
 
 def synthesize_state(
-    universe: ObjectUniverse,
-    digits: Sequence[tuple[Read | NumberRead, int]],
-    counted: tuple[tuple[Count, int], ...] = (),
+    universe: ObjectUniverse, digits: Digits, counted: tuple[tuple[Count, int], ...] = ()
 ) -> JointState | None:
     """Synthesise a state with a given digit for each read, or None."""
     vocabulary = universe.vocabulary
-    number_digits = tuple((read, digit) for read, digit in digits if isinstance(read, NumberRead))
+    number_digits = [(read, digit) for read, digit in digits if isinstance(read, NumberRead)]
     numbers = solve_numbers(number_digits, vocabulary, dict(counted)) if number_digits else {}
     if numbers is None:
         return None
@@ -81,9 +82,7 @@ def synthesize_state(
     return JointState(values, number_digits, counted)
 
 
-def values_of(
-    digits: Sequence[tuple[Read | NumberRead, int]], vocabulary: Vocabulary
-) -> dict[Subject, Value]:
+def values_of(digits: Digits, vocabulary: Vocabulary) -> dict[Subject, Value]:
     """The values of what is no number."""
     return {
         (read.name, read.variables): value_of(read, digit, vocabulary)
@@ -93,9 +92,7 @@ def values_of(
 
 
 def solve_numbers(
-    number_digits: Sequence[tuple[NumberRead, int]],
-    vocabulary: Vocabulary,
-    least: Mapping[Count, int],
+    number_digits: NumberDigits, vocabulary: Vocabulary, least: Mapping[Count, int]
 ) -> dict[Term, Fraction] | None:
     """Numbers with these digits, preferably defaults, and counts from ``least`` on."""
     system, quantities, counts = _linear_system(number_digits, least)
@@ -114,7 +111,7 @@ def solve_numbers(
 
 
 def numbers_near_thresholds(
-    number_digits: Sequence[tuple[NumberRead, int]], vocabulary: Vocabulary
+    number_digits: NumberDigits, vocabulary: Vocabulary
 ) -> dict[QuantityTerm, float] | None:
     """Numbers of quantities with these digits, close to the thresholds, for tests.
 
@@ -158,14 +155,14 @@ def required_counts(state: JointState, vocabulary: Vocabulary) -> dict[Count, in
     return {term: int(number) for term, number in numbers.items() if isinstance(term, Count)}
 
 
-def are_consistent(number_digits: Sequence[tuple[NumberRead, int]]) -> bool:
+def are_consistent(number_digits: NumberDigits) -> bool:
     """Tell whether numbers with these digits exist; counts are natural numbers."""
     system, quantities, counts = _linear_system(number_digits, {})
     return solve(system, [*quantities, *counts], {}, frozenset(counts)) is not None
 
 
 def _linear_system(
-    number_digits: Sequence[tuple[NumberRead, int]], least: Mapping[Count, int]
+    number_digits: NumberDigits, least: Mapping[Count, int]
 ) -> tuple[list[LinearBound], list[QuantityTerm], list[Count]]:
     """Inequalities for these digits and least counts, and their unknowns."""
     terms = list(dict.fromkeys(term for read, _ in number_digits for _, term in read.terms))

@@ -35,7 +35,7 @@ def cheapest(product: Product[Memory]) -> Iterator[Maneuver]:
     only ever extended towards a goal, and each next maneuver costs one walk through the layers.
     """
     graph = product.graph
-    to_come = _costs_to_come(product)
+    to_come = costs_to_come(product)
     queue: list[tuple[int, tuple[int, ...], int, ProductNode[Memory]]] = [
         (to_come[0][start], (start[0],), 0, start)
         for start in product.counts[0]
@@ -55,7 +55,7 @@ def cheapest(product: Product[Memory]) -> Iterator[Maneuver]:
                 heappush(queue, (total + rest, (*path, step[0]), total, step))
 
 
-def _costs_to_come(product: Product[Memory]) -> list[dict[ProductNode[Memory], int]]:
+def costs_to_come(product: Product[Memory]) -> list[dict[ProductNode[Memory], int]]:
     """Least cost from each product node to a goal, by layer."""
     costs = [dict.fromkeys(product.ends, 0)]
     for steps in reversed(product.steps):

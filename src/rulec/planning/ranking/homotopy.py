@@ -15,7 +15,7 @@ from operator import attrgetter
 from rulec.planning.product.graph_product import Joint, Memory, Product, explore_with, kept
 from rulec.planning.product.node_transformers import LOST, Effect, NodeTransformers
 from rulec.planning.ranking.cell_tracks import CellTracks, TrackProduct, track_product
-from rulec.planning.ranking.cheapest import Maneuver, maneuver
+from rulec.planning.ranking.cheapest import Maneuver, costs_to_come, maneuver
 from rulec.value_display import short_repr
 
 REJECTED: Joint = (LOST,)
@@ -105,7 +105,11 @@ def variants(product: Product[Memory], tracks: CellTracks) -> Iterator[Variant]:
     so a word is only ever made longer if a class needs it.
     """
     tracked = track_product(product, tracks)
-    to_come = _costs_to_come(tracked)
+    costs = costs_to_come(product)
+    every = [(layer, node) for layer, counts in enumerate(product.counts) for node in counts]
+    to_come = {
+        i: costs[layer][node] for i, (layer, node) in enumerate(every) if node in costs[layer]
+    }
     queue: list[tuple[int, tuple[int, ...], bool, _Ways]] = []
 
     def offer(word: tuple[int, ...], entered: _Ways) -> None:
@@ -131,20 +135,6 @@ def variants(product: Product[Memory], tracks: CellTracks) -> Iterator[Variant]:
                     _join(entered.setdefault(tracked.place[target], {}), target, cost, way)
         for place, those in entered.items():
             offer((*word, place), those)
-
-
-def _costs_to_come(tracked: TrackProduct) -> dict[int, int]:
-    """The least cost from every product node that leads to an end."""
-    costs = dict.fromkeys(tracked.ends, 0)
-    for node in reversed(range(len(tracked.nodes))):
-        rest = [
-            cost + costs[target]
-            for target, cost in (*tracked.stays[node], *tracked.leaves[node])
-            if target in costs
-        ]
-        if rest:
-            costs[node] = min(rest)
-    return costs
 
 
 def _join(ways: _Ways, target: int, cost: int, way: _Way) -> None:
