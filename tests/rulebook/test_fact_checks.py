@@ -1,5 +1,7 @@
 """Examples of states that cannot be, by what they say and the defaults of what the rule reads."""
 
+import pytest
+
 from rulec.diagnostics import RulecError
 from rulec.rulebook.loader import parse_rulebook
 
@@ -75,3 +77,13 @@ def test_facts_are_about_all_objects_of_an_example():
 def test_every_such_state_is_reported():
     said = "accept { q; p and not q; p } reject { p }"
     assert states_that_cannot_be("p implies q", "q", said) == ["p and not q", "p", "p"]
+
+
+def test_a_fact_that_grows_too_large_is_a_mistake():
+    steps = (f"define d{n} = d{n - 1} or d{n - 1}\n" for n in range(1, 12))
+    text = f"{BOOK}define d0 = p or p\n{''.join(steps)}fact d11 and d11 and d11\n"
+    with pytest.raises(RulecError) as caught:
+        parse_rulebook(f"{text}hard rule r {{ require p }}")
+    (mistake,) = caught.value.diagnostics
+    assert mistake.code == "R0323"
+    assert mistake.message.startswith("the fact `d11 and d11 and d11` has more than 20,000 parts")

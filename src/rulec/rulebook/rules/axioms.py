@@ -13,6 +13,7 @@ from rulec.logic.printing import formula_text
 from rulec.logic.renaming import rename_variables
 from rulec.logic.required_inputs import required_inputs
 from rulec.rulebook.elaborate.elaboration import truth
+from rulec.rulebook.elaborate.elaboration_messages import short
 from rulec.rulebook.elaborate.scope import SIDES, BoundVariable, Scope
 from rulec.rulebook.names.atom_messages import two_types
 from rulec.rulebook.names.referenced_names import parts_of
@@ -62,8 +63,9 @@ def _axiom(
     scope = Scope(
         symbols, constants, variables, mistakes, in_moment=True, taken=frozenset(variables)
     )
-    constants.begin()
-    holding = truth(formula, scope)
+    holding = None
+    with scope.within_limits("fact", tree.Name(short(formula), span=item.span)):
+        holding = truth(formula, scope)
     typed = tuple(
         Variable(name, variable.type) for name, variable in variables.items() if variable.type
     )
