@@ -125,7 +125,7 @@ def explore_with(
     RulecError: R0616 if it would be too large.
     """
     graph = transformers.graph
-    room = largest_product(graph)
+    remaining = largest_product(graph)
     first = transformers.nodes[0][graph.start] if transformers.starts else None
     memory = None if first is None else enter(first, start)
     counts = [{} if memory is None else {(graph.start, memory): 1}]
@@ -135,10 +135,10 @@ def explore_with(
     for rows, nodes in zip(transformers.steps, transformers.nodes[1:], strict=True):
         key, origins = (Interned(rows), Interned(nodes)), list(counts[-1])
         if key not in known or known[key].origins != origins:
-            known[key] = _ways(origins, rows, nodes, enter, room)
+            known[key] = _ways(origins, rows, nodes, enter, remaining)
         onward = known[key]
-        room -= len(onward.targets)
-        if room < 0:
+        remaining -= len(onward.targets)
+        if remaining < 0:
             raise too_large(graph)
         # One more, in which paths come together that are dropped.
         totals = [0] * (len(onward.targets) + 1)
@@ -155,7 +155,7 @@ def _ways(
     rows: Sequence[Sequence[Step]],
     nodes: Sequence[Sequence[Effect]],
     enter: Enter[Memory],
-    room: int,
+    remaining: int,
 ) -> ProductEdges[Memory]:
     """Edges from these product nodes, up to the limit."""
     targets: list[ProductNode[Memory]] = []
@@ -167,7 +167,7 @@ def _ways(
         known = entered.get(memory)
         if known is None:
             known = entered[memory] = {}
-        if len(targets) > room:
+        if len(targets) > remaining:
             break
         into: list[int] = []
         for target, _ in rows[node]:

@@ -86,7 +86,7 @@ def ranked(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tupl
 
 
 def with_penalty(
-    transformers: NodeTransformers, ranks: PenaltyOrder, wanted: Penalty
+    transformers: NodeTransformers, ranks: PenaltyOrder, penalty: Penalty
 ) -> graph_product.Product[Paying]:
     """The product in which just the paths of one penalty are accepted."""
     fee = _fees(transformers, ranks)
@@ -95,12 +95,12 @@ def with_penalty(
         joint, paid = memory
         after, due = fee(row, joint)
         total = tuple(map(add, paid, due)) if due else paid
-        return None if any(map(gt, total, wanted)) else (after, total)
+        return None if any(map(gt, total, penalty)) else (after, total)
 
     product = graph_product.explore_with(
         transformers, enter, (transformers.waiting, (0,) * len(ranks.ranks))
     )
-    ends = frozenset([end for end in product.ends if end[1][1] == wanted])
+    ends = frozenset([end for end in product.ends if end[1][1] == penalty])
     return replace(product, ends=ends)
 
 
@@ -112,7 +112,7 @@ def _ascending(
     Of partial paths with one penalty the longer ones come first, so goals are soon found. Raises
     R0616 if there are too many that are worth it.
     """
-    room = graph_product.largest_product(transformers.graph)
+    remaining = graph_product.largest_product(transformers.graph)
     fee = _fees(transformers, ranks)
     of_layer: dict[
         object, dict[tuple[int, graph_product.Joint], tuple[graph_product.Joint, Penalty]]
@@ -134,8 +134,8 @@ def _ascending(
         penalty, earlier, _, node, joint = heappop(queue)
         if not worth((-earlier, node, joint), penalty):
             continue
-        room -= 1
-        if room < 0:
+        remaining -= 1
+        if remaining < 0:
             raise graph_product.too_large(transformers.graph)
         if -earlier == len(transformers.steps):
             yield penalty
