@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from typing import Any, TypeVar
 
 from msgspec import UNSET, UnsetType
 
@@ -11,16 +12,22 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.monitoring.verdict import Violation
 from rulec.partition import AdjacencyName, ExtentName, NavigationGraph, PartitionName, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
-from rulec.planning.probability.rule_probability import RuleProbabilities
+from rulec.planning.probability.rule_probability import AlternativeCounts
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, plain_number
-from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers, horizon_s
-from rulec.report.maneuvers.probabilities import likeliest
-from rulec.report.maneuvers.scene_notes import derived_signals
+from rulec.report.maneuvers.maneuver_answers import (
+    ManeuverAnswers,
+    derived_signals,
+    horizon_s,
+    likeliest,
+)
 from rulec.rulebook.rulebook_model import Strength
 from rulec.scenario import Account
 from rulec.scenario.scenario_model import Surface
+
+Item = TypeVar("Item")
+Data = TypeVar("Data", bound=JsonPart)
 
 
 class DerivedSignal(JsonPart, frozen=True, kw_only=True):
@@ -206,19 +213,40 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             by_default=maneuvers.by_default,
             seconds=round(seconds, 6),
             scene=UNSET if scenario.account is None else _scene(maneuvers, scenario.account),
-            violated_before=_past(maneuvers.violated_before),
-            least_violating=_ranking(maneuvers, answers.best, answers),
-            ranked=_ranking(maneuvers, answers.ranked, answers),
-            maneuvers=_list(graph, answers),
+            violated_before=_each(
+                maneuvers.violated_before,
+                lambda violation: PastViolation(
+                    rule=violation.rule, binding=violation.binding, step=violation.step
+                ),
+            ),
+            least_violating=_each(answers.best, lambda best: _ranked(maneuvers, best, answers)),
+            ranked=_each(answers.ranked, lambda ranked: _ranked(maneuvers, ranked, answers)),
+            maneuvers=_each(
+                answers.listed,
+                lambda maneuver: _maneuver(graph, maneuver, chances=_chances(answers, maneuver)),
+            ),
             likeliest=likeliest(scenario)
             if any(obstacle.alternatives for obstacle in scenario.obstacles)
             else UNSET,
-            worlds=_worlds(answers),
-            rules=UNSET
-            if answers.prunings is None
-            else [_pruning(maneuvers, pruning) for pruning in answers.prunings],
+            worlds=_each(answers.worlds, _world),
+            rules=_each(answers.prunings, lambda pruning: _pruning(maneuvers, pruning)),
             classes=UNSET if answers.classes is None else _classes(maneuvers, *answers.classes),
         )
+    )
+
+
+def _each(items: Iterable[Item] | None, data: Callable[[Item], Data]) -> list[Data] | UnsetType:
+    """The items as JSON, if they were asked for."""
+    return UNSET if items is None else [data(item) for item in items]
+
+
+def _world(world: AlternativeCounts) -> WorldData:
+    return WorldData(
+        obstacle=world.obstacle,
+        prediction=world.number + 1,
+        weight=float(world.weight),
+        traces=world.traces,
+        satisfying=world.satisfying,
     )
 
 
@@ -236,69 +264,32 @@ def _scene(maneuvers: Maneuvers, account: Account) -> SceneData:
     )
 
 
-def _past(violations: Sequence[Violation] | None) -> Sequence[PastViolation] | UnsetType:
-    if violations is None:
-        return UNSET
-    return [
-        PastViolation(rule=violation.rule, binding=violation.binding, step=violation.step)
-        for violation in violations
-    ]
-
-
-def _ranking(
-    maneuvers: Maneuvers, ranking: Sequence[RankedManeuver] | None, answers: ManeuverAnswers
-) -> Sequence[ManeuverData] | UnsetType:
-    if ranking is None:
-        return UNSET
+def _ranked(maneuvers: Maneuvers, ranked: RankedManeuver, answers: ManeuverAnswers) -> ManeuverData:
     rules = {rule.name: rule for rule in maneuvers.rules.rules}
-    return [
-        _maneuver(
-            maneuvers.graph,
-            ranked.maneuver,
-            place=ranked.place,
-            penalty=[
-                LevelPenalty(
-                    strength=rank.strength,
-                    levels=[level or None for level in rank.levels],
-                    weight=plain_number(weight),
-                )
-                for rank, weight in ranked.penalty.items()
-            ],
-            members=ranked.members,
-            violations=[
-                _violation(maneuvers, violation, rules[violation.rule])
-                for violation in ranked.violations
-            ],
-            chances=_chances(answers, ranked.maneuver),
-        )
-        for ranked in ranking
-    ]
+    return _maneuver(
+        maneuvers.graph,
+        ranked.maneuver,
+        place=ranked.place,
+        penalty=[
+            LevelPenalty(
+                strength=rank.strength,
+                levels=[level or None for level in rank.levels],
+                weight=plain_number(weight),
+            )
+            for rank, weight in ranked.penalty.items()
+        ],
+        members=ranked.members,
+        violations=[
+            _violation(maneuvers, violation, rules[violation.rule])
+            for violation in ranked.violations
+        ],
+        chances=_chances(answers, ranked.maneuver),
+    )
 
 
-def _list(graph: NavigationGraph, answers: ManeuverAnswers) -> Sequence[ManeuverData] | UnsetType:
-    if answers.listed is None:
-        return UNSET
-    return [
-        _maneuver(graph, maneuver, chances=_chances(answers, maneuver))
-        for maneuver in answers.listed
-    ]
-
-
-def _maneuver(
-    graph: NavigationGraph,
-    maneuver: Maneuver,
-    *,
-    place: int | UnsetType = UNSET,
-    penalty: Sequence[LevelPenalty] | UnsetType = UNSET,
-    members: int | UnsetType = UNSET,
-    violations: Sequence[ManeuverViolation] | UnsetType = UNSET,
-    chances: ChancesData | UnsetType = UNSET,
-) -> ManeuverData:
+def _maneuver(graph: NavigationGraph, maneuver: Maneuver, **details: Any) -> ManeuverData:
     return ManeuverData(
-        place=place,
-        penalty=penalty,
-        members=members,
-        violations=violations,
+        **details,
         cost=maneuver.cost,
         margin_s=maneuver.margin_s,
         cells=[
@@ -319,7 +310,6 @@ def _maneuver(
             )
             for bounds in envelope(graph, maneuver.nodes)
         ],
-        chances=chances,
     )
 
 
@@ -337,7 +327,7 @@ def _violation(maneuvers: Maneuvers, violation: Violation, rule: CompiledRule) -
 
 
 def _chances(answers: ManeuverAnswers, maneuver: Maneuver) -> ChancesData | UnsetType:
-    chances: RuleProbabilities | None = answers.chances.get(maneuver.nodes)
+    chances = answers.chances.get(maneuver.nodes)
     if chances is None:
         return UNSET
     return ChancesData(
@@ -358,37 +348,17 @@ def _chances(answers: ManeuverAnswers, maneuver: Maneuver) -> ChancesData | Unse
     )
 
 
-def _worlds(answers: ManeuverAnswers) -> Sequence[WorldData] | UnsetType:
-    if answers.worlds is None:
-        return UNSET
-    return [
-        WorldData(
-            obstacle=world.obstacle,
-            prediction=world.number + 1,
-            weight=float(world.weight),
-            traces=world.traces,
-            satisfying=world.satisfying,
-        )
-        for world in answers.worlds
-    ]
-
-
 def _pruning(maneuvers: Maneuvers, pruning: RulePruning) -> PruningData:
-    example = None
-    if pruning.example is not None:
-        example = _maneuver(
-            maneuvers.graph,
-            pruning.example,
-            violations=[
-                _violation(maneuvers, violation, pruning.rule) for violation in pruning.violations
-            ],
-        )
+    rule = pruning.rule
+    violations = [_violation(maneuvers, violation, rule) for violation in pruning.violations]
     return PruningData(
-        rule=pruning.rule.name,
-        strength=pruning.rule.strength,
+        rule=rule.name,
+        strength=rule.strength,
         violating=pruning.violating,
         alone=pruning.alone,
-        example=example,
+        example=None
+        if pruning.example is None
+        else _maneuver(maneuvers.graph, pruning.example, violations=violations),
     )
 
 

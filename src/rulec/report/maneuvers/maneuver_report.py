@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from rulec.diagnostics import named
 from rulec.monitoring.verdict import Violation
 from rulec.planning import Maneuvers
+from rulec.planning.probability.rule_probability import AlternativeCounts
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.report.maneuvers import (
-    homotopy_classes,
-    probabilities,
-    pruning_table,
-    ranked_maneuvers,
-    scene_notes,
+from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
+from rulec.report.maneuvers import maneuver_blocks
+from rulec.report.maneuvers.maneuver_answers import (
+    ManeuverAnswers,
+    derived_signals,
+    horizon_s,
+    likeliest,
 )
-from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers, horizon_s
-from rulec.report.maneuvers.maneuver_lines import cell_lines, in_a_line
 from rulec.report.text.count_text import shown_count
 from rulec.report.text.terminal_text import styled, visible
+from rulec.scenario import Scenario
 
 MOST_VIOLATIONS = 6
 """So many of the past's are named in text; JSON has them all."""
@@ -42,42 +44,54 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         f"satisfying  {styled(shown_count(maneuvers.satisfying), 'bold')} by {by}",
         *_violated_before(maneuvers.violated_before or ()),
         *_by_default(maneuvers.by_default),
-        *probabilities.summary(graph.scenario),
-        *probabilities.world_lines(answers.worlds or ()),
+        *_predictions(graph.scenario),
+        *map(_world, answers.worlds or ()),
     ]
     if answers.classes is not None:
-        lines += homotopy_classes.count_lines(maneuvers, answers.classes[0])
+        lines += _class_counts(maneuvers, answers.classes[0])
     lines.append(f"computed in {seconds:.3f} s")
     for number, maneuver in enumerate(answers.listed or (), 1):
-        lines += ["", f"{number}. {in_a_line(maneuver)}", *cell_lines(graph, maneuver)]
-        lines += _chance_lines(answers, maneuver)
+        lines += maneuver_blocks.maneuver_block(graph, number, maneuver)
+        lines += _chances(answers, maneuver)
     if answers.best:
         lines += ["", "Every maneuver violates a hard rule. No other violates less than:"]
     for ranked_maneuver in (*(answers.best or ()), *(answers.ranked or ())):
-        lines += ranked_maneuvers.blocks(maneuvers, [ranked_maneuver])
-        lines += _chance_lines(answers, ranked_maneuver.maneuver)
+        lines += maneuver_blocks.ranked_block(maneuvers, ranked_maneuver)
+        lines += _chances(answers, ranked_maneuver.maneuver)
     if answers.prunings is not None:
-        lines += ["", *pruning_table.table(maneuvers, answers.prunings)]
+        lines += ["", *maneuver_blocks.pruning_lines(maneuvers, answers.prunings)]
     if answers.classes is not None:
-        lines += homotopy_classes.blocks(maneuvers, answers.classes[1])
+        for number, variant in enumerate(answers.classes[1], 1):
+            remark = f"; class of {_members(variant)}"
+            lines += maneuver_blocks.maneuver_block(graph, number, variant.cheapest, remark)
     return "\n".join(lines)
 
 
-def _chance_lines(answers: ManeuverAnswers, maneuver: Maneuver) -> list[str]:
-    told = answers.chances.get(maneuver.nodes)
-    return [] if told is None else probabilities.lines(told)
-
-
 def _scene(maneuvers: Maneuvers) -> Iterator[str]:
+    """Notes on a recorded scene: what was left out, continued and derived."""
     account = maneuvers.graph.scenario.account
-    return iter(()) if account is None else scene_notes.lines(maneuvers, account)
+    if account is None:
+        return
+    kept = account.recorded - account.left_out
+    out = f", {account.left_out} left out: not on this road" if account.left_out else ""
+    yield f"obstacles   {kept} on the road of lanelet {account.reference}{out}"
+    if float(len(maneuvers.graph.layers) * maneuvers.graph.step) > account.until_s:
+        yield (
+            f"recorded    until {max(account.until_s, 0):g} s; who is there then is taken to go on "
+            "at its last speed"
+        )
+    for name, (value, because) in derived_signals(maneuvers, account).items():
+        shown = str(value).lower() if isinstance(value, bool) else value
+        yield visible(f"derived     {name} = {shown}: {because}")
+    for remark in account.remarks:
+        yield visible(f"note        {remark}")
 
 
 def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
     """A line for each rule already violated by the past."""
     for violation in violations[:MOST_VIOLATIONS]:
-        where = ", ".join(f"{name} = {item}" for name, item in violation.binding.items())
-        about = f" for {where}" if where else ""
+        objects = maneuver_blocks.bound_objects(violation.binding)
+        about = f" for {objects}" if objects else ""
         yield visible(f"violated    {violation.rule}{about}, before, and not counted any more")
     if len(violations) > MOST_VIOLATIONS:
         yield f"            and {len(violations) - MOST_VIOLATIONS:,} more; --json has them all"
@@ -90,3 +104,45 @@ def _by_default(names: Sequence[str]) -> Iterator[str]:
     shown = ", ".join(names[:MOST_DEFAULTS])
     more = f" and {len(names) - MOST_DEFAULTS:,} more" if len(names) > MOST_DEFAULTS else ""
     yield visible(f"by default  {shown}{more}: the scenario does not say")
+
+
+def _predictions(scenario: Scenario) -> Iterator[str]:
+    """A line on what was counted, if obstacles have several predictions."""
+    several = [obstacle for obstacle in scenario.obstacles if obstacle.alternatives]
+    if several:
+        whose = "1 obstacle has" if len(several) == 1 else f"{len(several)} obstacles have"
+        how = f"the likeliest world is counted, with probability {likeliest(scenario):.4g}"
+        yield f"predictions {whose} several; {how}"
+
+
+def _world(world: AlternativeCounts) -> str:
+    """A line for a prediction that is not an obstacle's likeliest."""
+    return visible(
+        f"otherwise   {world.obstacle}, prediction {world.number + 1} "
+        f"({maneuver_blocks.shown_chance(world.weight)}): {shown_count(world.traces)} maneuvers, "
+        f"{shown_count(world.satisfying)} satisfying"
+    )
+
+
+def _class_counts(maneuvers: Maneuvers, classes: HomotopyClasses) -> Iterator[str]:
+    """Counts of homotopy classes, and reasons for different verdicts within one."""
+    satisfying, total = shown_count(classes.satisfying), shown_count(classes.total)
+    yield f"classes     {satisfying} of {total} satisfying"
+    if classes.divided:
+        counting = [rule.name for rule in maneuvers.counting_steps()]
+        why = f": {named(counting)} {'counts' if len(counting) == 1 else 'count'} steps"
+        yield (
+            f"            {shown_count(classes.divided)} of these depending on how long one stays"
+            f"{why if counting else ''}"
+        )
+
+
+def _members(variant: Variant) -> str:
+    if variant.members == 1:
+        return "1 member"
+    return f"{shown_count(variant.members)} satisfying members"
+
+
+def _chances(answers: ManeuverAnswers, maneuver: Maneuver) -> list[str]:
+    chances = answers.chances.get(maneuver.nodes)
+    return [] if chances is None else maneuver_blocks.chance_lines(chances)

@@ -1,0 +1,162 @@
+"""Single maneuvers as text: cells, violations, probabilities, and what prunes them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from fractions import Fraction
+from itertools import groupby
+from operator import itemgetter
+
+from rulec.logic.printing import number_in_words
+from rulec.monitoring.verdict import Violation
+from rulec.partition import Cell, NavigationGraph, envelope
+from rulec.planning import Maneuvers, RankedManeuver, RulePruning
+from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
+from rulec.planning.probability.violation_events import MOST_WORLDS
+from rulec.planning.ranking.cheapest import Maneuver
+from rulec.planning.ranking.penalties import PenaltyRank
+from rulec.report.text.count_text import shown_count
+from rulec.report.text.terminal_text import table_lines, visible
+
+# So many are shown in text; JSON has them all.
+MOST_BINDINGS = 3
+MOST_NAMED = 6
+MOST_VIOLATIONS = 20
+
+
+def maneuver_block(
+    graph: NavigationGraph,
+    number: int,
+    maneuver: Maneuver,
+    remark: str = "",
+    details: Sequence[str] = (),
+) -> list[str]:
+    """Its cost and margin with a remark, details, and its cells with their bounds."""
+    margin_s = maneuver.margin_s
+    margin = "never changes cell" if margin_s is None else f"margin {margin_s:g} s"
+    rows = [
+        (
+            f"{layer.start_s:g} s",
+            _label(layer.cells[index]),
+            f"s {bounds.s_min:g} … {bounds.s_max:g} m",
+            f"d {min(d for _, d in bounds.d_right):g} … {max(d for _, d in bounds.d_left):g} m",
+        )
+        for layer, index, bounds in zip(
+            graph.layers, maneuver.nodes, envelope(graph, maneuver.nodes), strict=True
+        )
+    ]
+    head = f"{number}. cost {maneuver.cost:.4g} 1/s, {margin}{remark}"
+    return ["", head, *details, *table_lines(rows, indent="   ")]
+
+
+def ranked_block(maneuvers: Maneuvers, ranked: RankedManeuver) -> list[str]:
+    """A maneuver at its place, with what it violates."""
+    same = f"; {shown_count(ranked.members)} violate the same" if ranked.members > 1 else ""
+    penalty = ", ".join(
+        f"{rank.strength} {_levels(rank)} {number_in_words(weight)}"
+        for rank, weight in ranked.penalty.items()
+    )
+    details = [f"   violates {penalty or 'no rule'}"]
+    details += [
+        f"     {_violation_line(maneuvers, violation)}"
+        for violation in ranked.violations[:MOST_VIOLATIONS]
+    ]
+    if len(ranked.violations) > MOST_VIOLATIONS:
+        details.append(f"     and {len(ranked.violations) - MOST_VIOLATIONS} more")
+    return maneuver_block(maneuvers.graph, ranked.place, ranked.maneuver, same, details)
+
+
+def _levels(rank: PenaltyRank) -> str:
+    return " = ".join(level or "(no level)" for level in rank.levels)
+
+
+def _violation_line(maneuvers: Maneuvers, violation: Violation) -> str:
+    """The violated rule with its article, its binding and its time."""
+    rule = next(rule for rule in maneuvers.rules.rules if rule.name == violation.rule)
+    cite = f" [{rule.cite}]" if rule.cite else ""
+    bound = f" for {bound_objects(violation.binding)}" if violation.binding else ""
+    return f"{rule.strength} rule {rule.name}{cite}{bound}: {_when_lost(maneuvers, violation)}"
+
+
+def bound_objects(binding: Mapping[str, str]) -> str:
+    """Variables of a rule, and the objects that they stand for."""
+    return ", ".join(f"{name} = {visible(item)}" for name, item in binding.items())
+
+
+def _when_lost(maneuvers: Maneuvers, violation: Violation) -> str:
+    """The time from which the rule cannot be kept any more."""
+    if violation.step is None:
+        return "by how it ends"
+    return f"cannot be kept any more from {maneuvers.graph.layers[violation.step].start_s:g} s on"
+
+
+def chance_lines(chances: RuleProbabilities) -> list[str]:
+    """The probabilities that are below 1, a line each."""
+    rows = [
+        ("nobody hits ego", shown_chance(chances.clear)),
+        ("every hard rule", shown_chance(chances.hard)),
+    ]
+    rows += [(rule.rule.name, _of_rule(rule)) for rule in chances.rules if rule.kept != 1]
+    return table_lines(rows, indent="   ")
+
+
+def _of_rule(rule_probability: RuleProbability) -> str:
+    if rule_probability.kept is None:
+        return f"not known: more than {MOST_WORLDS:,} worlds make a difference"
+    bindings = rule_probability.bindings
+    parts = [
+        f"{shown_chance(binding.kept)} for {bound_objects(binding.binding)}"
+        for binding in bindings[:MOST_BINDINGS]
+    ]
+    if len(bindings) > MOST_BINDINGS:
+        parts.append(f"and for {len(bindings) - MOST_BINDINGS:,} more")
+    return "; ".join([shown_chance(rule_probability.kept), *parts])
+
+
+def shown_chance(number: Fraction | None) -> str:
+    """A probability in text."""
+    return "not known" if number is None else f"{float(number):.4g}"
+
+
+def pruning_lines(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
+    """A table of the rules that prune maneuvers, and the names of the others."""
+    rows = [("rule", "violated by", "alone by", "for example")]
+    rows += [
+        (
+            pruning.rule.name,
+            shown_count(pruning.violating),
+            "soft" if pruning.alone is None else shown_count(pruning.alone),
+            _example(maneuvers, pruning),
+        )
+        for pruning in prunings
+        if pruning.violating
+    ]
+    lines = table_lines(rows, right=(1, 2)) if len(rows) > 1 else []
+    idle = [pruning.rule.name for pruning in prunings if not pruning.violating]
+    return [*lines, f"violated by none: {', '.join(idle)}"] if idle else lines
+
+
+def _example(maneuvers: Maneuvers, pruning: RulePruning) -> str:
+    """Times at which an example's relations to the objects, or its surface, change."""
+    assert pruning.example is not None, "something violates it"
+    first = pruning.violations[0]
+    labels = [
+        (f"{layer.start_s:g} s", _label(layer.cells[index], first.binding.values()))
+        for layer, index in zip(maneuvers.graph.layers, pruning.example.nodes, strict=True)
+    ]
+    changes = [next(group) for _, group in groupby(labels, key=itemgetter(1))]
+    return f"{', '.join(map(' '.join, changes))}; {_when_lost(maneuvers, first)}"
+
+
+def _label(cell: Cell, objects: Collection[str] | None = None) -> str:
+    """Surface, and relations to some objects, or to all."""
+    signature: Mapping[str, str | tuple[str, str]] = cell.signature
+    if objects is not None:
+        signature = {name: signature[name] for name in objects if name in signature}
+    named = [
+        f"{relation if isinstance(relation, str) else ' '.join(relation)}({visible(name)})"
+        for name, relation in list(signature.items())[:MOST_NAMED]
+    ]
+    if len(signature) > MOST_NAMED:
+        named.append(f"and {len(signature) - MOST_NAMED} more")
+    return " ".join([cell.surface, *named])
