@@ -11,8 +11,7 @@ import msgspec
 
 from rulec.automata.bundle.bundle_schema import BundleFile
 from rulec.monitoring.online.snapshot import SavedMonitor
-from rulec.report.findings.code_json import CodeData
-from rulec.report.findings.diagnostics_json import FindingData
+from rulec.report.findings.diagnostics_json import CodeData, FindingData
 from rulec.report.maneuvers.envelope_table import EnvelopeLine
 from rulec.report.maneuvers.maneuver_json import ManeuversDocument
 from rulec.report.rulebooks.audit_report import AuditDocument
@@ -22,8 +21,8 @@ from rulec.report.rulebooks.matrix_report import MatrixDocument
 from rulec.report.rulebooks.rule_json import RulesDocument
 from rulec.report.tests.example_json import ExamplesRun
 from rulec.report.text.listing import ListingDocument
-from rulec.report.verdicts.monitor_json import StateRefused, StateVerdict
 from rulec.report.verdicts.recording_json import NotDriven, RecordedNotJudged, RecordedVerdict
+from rulec.report.verdicts.running_verdicts import StateRefused, StateVerdict
 from rulec.report.verdicts.verdict_json import TraceNotJudged, TraceVerdict
 
 SCHEMAS: Mapping[str, tuple[Any, ...]] = {

@@ -15,7 +15,7 @@ from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.verify import verify
 from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
-from rulec.report.verdicts.explanation_json import explanation_data
+from rulec.report.verdicts.verdict_json import explanation_data
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace

@@ -36,9 +36,9 @@ def command(code: str | None, every: bool, output_format: str) -> None:
     match output_format:
         case "json":
             # Only this format needs msgspec, 8 of the 54 ms that the command takes.
-            from rulec.report.findings.code_json import as_json
+            from rulec.report.findings.diagnostics_json import codes_as_json
 
-            print_result(as_json(codes))
+            print_result(codes_as_json(codes))
         case "markdown" if named is not None:
             print_result(f"# {named.code}: {named.title}\n\n{code_pages.as_markdown(named)}")
         case "markdown":

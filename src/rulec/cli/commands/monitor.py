@@ -61,7 +61,7 @@ def command(
     # Monitors and the reader of states, 60 ms: not for --help.
     from rulec.monitoring.online import monitor_sources
     from rulec.monitoring.online.running_monitor import Monitor
-    from rulec.report.verdicts import monitor_json, monitor_lines
+    from rulec.report.verdicts import running_verdicts
     from rulec.trace.formats.live_states import read_live
 
     saved = None if restore is None else monitor_sources.read_saved(restore)
@@ -79,11 +79,10 @@ def command(
                 refused = True
                 complaints.add(result)
                 if json_output:
-                    print_result(monitor_json.refused_as_json(result))
+                    print_result(running_verdicts.refused_as_json(result))
             else:
-                print_result(
-                    monitor_json.as_json(result) if json_output else monitor_lines.as_text(result)
-                )
+                write = running_verdicts.as_json if json_output else running_verdicts.as_text
+                print_result(write(result))
         complaints.close()
     violated = {"violated"} if save is not None else {"violated", "pending"}
     return ExitStatus.after(answered=not refused, failed=monitor.so_far.verdict in violated)

@@ -8,31 +8,18 @@ from textwrap import fill, indent
 from rulec.diagnostics.code import Code, ExampleKind
 from rulec.report.findings.code_registry import STAGES, codes_of_stage
 
-_KINDS: dict[ExampleKind, str] = {
-    "rules": "to check",
-    "compiled": "to compile",
-    "analyzed": "to analyze",
-    "examples": "to test",
-    "maneuvers": "to judge the maneuvers of `s1` by",
-    "trace": "a trace, to judge by `esterle2019`",
-    "scenario": "a scenario, to build the graph of",
-    "command": "in a shell",
-    "python": "from Python",
-    "circumstance": "",
+_KINDS: dict[ExampleKind, tuple[str, str]] = {
+    "rules": ("to check", "rulec"),
+    "compiled": ("to compile", "rulec"),
+    "analyzed": ("to analyze", "rulec"),
+    "examples": ("to test", "rulec"),
+    "maneuvers": ("to judge the maneuvers of `s1` by", "rulec"),
+    "trace": ("a trace, to judge by `esterle2019`", "json"),
+    "scenario": ("a scenario, to build the graph of", "toml"),
+    "command": ("in a shell", "sh"),
+    "python": ("from Python", "python"),
 }
-
-_FENCES: dict[ExampleKind, str] = {
-    "rules": "rulec",
-    "compiled": "rulec",
-    "analyzed": "rulec",
-    "examples": "rulec",
-    "maneuvers": "rulec",
-    "trace": "json",
-    "scenario": "toml",
-    "command": "sh",
-    "python": "python",
-    "circumstance": "",
-}
+"""What an example is for, and its language."""
 
 _HEAD = """\
 # Codes
@@ -62,7 +49,7 @@ def as_markdown(code: Code) -> str:
     for head, example in _examples(code):
         # What follows the language's name keeps the samples of mistakes from being taken for good.
         parts.append(
-            f"{head}:\n\n```{_FENCES[code.kind]} {head.split()[0].lower()}\n{example}\n```"
+            f"{head}:\n\n```{_KINDS[code.kind][1]} {head.split()[0].lower()}\n{example}\n```"
         )
     return "\n\n".join(parts)
 
@@ -81,5 +68,5 @@ def as_page() -> str:
 
 def _examples(code: Code) -> Iterator[tuple[str, str]]:
     if code.kind != "circumstance":
-        yield f"Wrong ({_KINDS[code.kind]})", code.bad.rstrip("\n")
+        yield f"Wrong ({_KINDS[code.kind][0]})", code.bad.rstrip("\n")
         yield "Mended", code.good.rstrip("\n")

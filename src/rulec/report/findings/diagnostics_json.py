@@ -1,4 +1,4 @@
-"""Diagnostics as JSON, as docs/commands.md describes it."""
+"""Diagnostics and codes as JSON, as docs/commands.md describes it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Literal
 from msgspec import convert
 
 from rulec.diagnostics import Diagnostic, SourceLocation
+from rulec.diagnostics.code import Code, ExampleKind
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 
 
@@ -41,6 +42,17 @@ class FindingData(JsonDocument, frozen=True, kw_only=True):
     notes: Sequence[str]
 
 
+class CodeData(JsonDocument, frozen=True, kw_only=True):
+    """A message's code with its explanation; examples may be empty."""
+
+    code: str
+    title: str
+    why: str
+    kind: ExampleKind
+    bad: str
+    good: str
+
+
 def as_json(diagnostics: Iterable[Diagnostic]) -> str:
     """Write a list with an object for each diagnostic."""
     return as_indented(
@@ -51,3 +63,8 @@ def as_json(diagnostics: Iterable[Diagnostic]) -> str:
 def place_data(place: SourceLocation | None) -> PlaceData | None:
     """A place in numbers."""
     return convert(place, PlaceData | None, from_attributes=True)
+
+
+def codes_as_json(codes: Iterable[Code]) -> str:
+    """Write a list with an object for each code."""
+    return as_indented([convert(code, CodeData, from_attributes=True) for code in codes])

@@ -31,7 +31,7 @@ def render(diagnostics: Sequence[Diagnostic], wanted: str, *, color: bool, compl
             return as_json(diagnostics)
         case "github":
             # As above: for FORMATS alone nothing is imported.
-            from rulec.report.findings.github_annotations import as_annotations
+            from rulec.report.findings.one_line_diagnostics import as_annotations
 
             return as_annotations(diagnostics)
         case "sarif":

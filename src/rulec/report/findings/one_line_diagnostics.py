@@ -1,4 +1,4 @@
-"""Diagnostics as a line each, ``file:line:column: code message``, as editors read them."""
+"""Diagnostics as a line each, as editors and GitHub read them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rulec.report.text.terminal_text import visible
 
 
 def as_lines(diagnostics: Iterable[Diagnostic]) -> str:
-    """A line for each; what has no place has no prefix either."""
+    """``file:line:column: code message``; what has no place has no prefix either."""
     return "\n".join(
         visible(f"{_where(diagnostic)}{diagnostic.code} {diagnostic.message}")
         for diagnostic in diagnostics
@@ -22,3 +22,41 @@ def _where(diagnostic: Diagnostic) -> str:
         return ""
     parts = [place.file, place.line, place.column]
     return ":".join(str(part) for part in parts if part is not None) + ": "
+
+
+def as_annotations(diagnostics: Iterable[Diagnostic]) -> str:
+    """A workflow command of GitHub's for each, shown beside the lines of a change.
+
+    https://docs.github.com/en/actions/reference/workflows-and-actions/workflow-commands
+    """
+    return "\n".join(_command(diagnostic) for diagnostic in diagnostics)
+
+
+def _command(diagnostic: Diagnostic) -> str:
+    properties: dict[str, object] = {}
+    if diagnostic.place is not None:
+        place = diagnostic.place
+        properties = {"file": place.file, "line": place.line, "endLine": place.end_line}
+        # Of a place over several lines GitHub takes no columns.
+        if place.end_line in (None, place.line):
+            properties |= {"col": place.column, "endColumn": place.end_column}
+    properties["title"] = f"{diagnostic.code}: {diagnostic.message}"
+    written = ",".join(
+        f"{name}={_property(str(value))}" for name, value in properties.items() if value is not None
+    )
+    notes = (f"note: {note}" for note in diagnostic.notes)
+    lines = [
+        diagnostic.expected or diagnostic.message,
+        *([f"help: {diagnostic.help}"] if diagnostic.help else []),
+        *notes,
+    ]
+    message = "\n".join(visible(line) for line in lines)
+    return f"::{diagnostic.severity} {written}::{_data(message)}"
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(visible(text)).replace(":", "%3A").replace(",", "%2C")

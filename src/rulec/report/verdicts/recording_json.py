@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from msgspec import UNSET, UnsetType
 from msgspec.structs import replace
@@ -17,7 +18,7 @@ from rulec.report.verdicts.verdict_json import (
     TraceNotJudged,
     TraceVerdict,
     error_data,
-    violation_data,
+    violations_data,
 )
 
 
@@ -57,56 +58,31 @@ def as_json(
     result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
 ) -> str:
     """Write a vehicle's verdict with explanations of its first violations."""
-    return as_line(_document(result, verdicts, explained))
-
-
-def _document(
-    result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
-) -> JsonDocument:
-    name, mirrored = verdicts.recording.name, verdicts.mirrored
-    remarks = verdicts.recording.remarks or UNSET
+    recorded: dict[str, Any] = {
+        "recording": verdicts.recording.name,
+        "mirrored": verdicts.mirrored,
+        "remarks": verdicts.recording.remarks or UNSET,
+    }
     if isinstance(result, NoDrive):
-        return NotDriven(
-            trace=result.ego,
-            recording=name,
-            mirrored=mirrored,
-            remarks=remarks,
-            why_not=result.why,
-        )
+        return as_line(NotDriven(trace=result.ego, why_not=result.why, **recorded))
     drive, answer = result.drive, result.answer
-    by_default = defaulted_names(verdicts, drive.words)
+    recorded |= {
+        "start_s": drive.start_s,
+        "step_s": drive.trace.step_s,
+        "by_default": defaulted_names(verdicts, drive.words),
+    }
     if isinstance(answer, NotJudged):
-        return RecordedNotJudged(
-            trace=answer.trace,
-            error=error_data(answer.error),
-            recording=name,
-            mirrored=mirrored,
-            remarks=remarks,
-            start_s=drive.start_s,
-            step_s=drive.trace.step_s,
-            by_default=by_default,
-        )
-    rules = {rule.name: rule for rule in verdicts.rules.rules}
+        error = error_data(answer.error)
+        return as_line(RecordedNotJudged(trace=answer.trace, error=error, **recorded))
     by_rule = verdicts.by_default(drive.words)
-    return RecordedVerdict(
-        trace=answer.trace,
-        satisfied=answer.satisfied,
-        violations=[
-            replace(
-                violation_data(
-                    violation,
-                    rules[violation.rule],
-                    explained[number] if number < len(explained) else None,
-                ),
-                time_s=drive.time_s(violation.step),
-                by_default=by_rule[violation.rule],
-            )
-            for number, violation in enumerate(answer.violations)
-        ],
-        recording=name,
-        mirrored=mirrored,
-        remarks=remarks,
-        start_s=drive.start_s,
-        step_s=drive.trace.step_s,
-        by_default=by_default,
+    violations = [
+        replace(data, time_s=drive.time_s(violation.step), by_default=by_rule[violation.rule])
+        for violation, data in zip(
+            answer.violations, violations_data(answer, verdicts.rules, explained), strict=True
+        )
+    ]
+    return as_line(
+        RecordedVerdict(
+            trace=answer.trace, satisfied=answer.satisfied, violations=violations, **recorded
+        )
     )

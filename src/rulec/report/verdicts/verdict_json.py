@@ -1,18 +1,65 @@
-"""Verdicts on traces as JSON, a line for each (see docs/traces.md)."""
+"""Verdicts on traces with their explanations as JSON, a line for each (see docs/traces.md)."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import zip_longest
 from typing import Literal
 
 from msgspec import UNSET, UnsetType
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.explain.explanation import Explanation
-from rulec.monitoring.verdict import NotJudged, Verdict, Violation
+from rulec.monitoring.explain.explanation import Explanation, Observation
+from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, plain_number
-from rulec.report.verdicts.explanation_json import ExplanationData, explanation_data
+from rulec.report.verdicts.violation_table import repaired_states
+
+Value = bool | int | float | str
+
+
+class FactData(JsonPart, frozen=True, kw_only=True):
+    """Something that the rule reads, and its value in each state.
+
+    ``unit`` is a quantity's; ``objects`` are, for a count, those that counted in each state.
+    """
+
+    reads: str
+    values: Sequence[Value]
+    changed: bool
+    decides: bool
+    unit: str | UnsetType = UNSET
+    objects: Sequence[Sequence[str]] | UnsetType = UNSET
+
+
+class FormulaPart(JsonPart, frozen=True, kw_only=True):
+    """A part ``depth`` operators inside the rule's formula, with its truth values."""
+
+    formula: str
+    depth: int
+    values: Sequence[bool]
+    changed: bool
+    decides: bool
+
+
+class RepairData(JsonPart, frozen=True, kw_only=True):
+    """A state to be changed for the rule to be kept."""
+
+    state: int
+    says: str
+
+
+class ExplanationData(JsonPart, frozen=True, kw_only=True):
+    """Explanation of a violation; null ``repair``: no equally long trace complies."""
+
+    book: str
+    cite: str
+    says: str
+    states: Sequence[int]
+    decisive: int
+    facts: Sequence[FactData]
+    parts: Sequence[FormulaPart]
+    repair: Sequence[RepairData] | None
 
 
 class ErrorData(JsonPart, frozen=True, kw_only=True):
@@ -61,15 +108,7 @@ def as_json(
     verdict: Verdict, rulebook: CompiledRulebook, explained: Sequence[Explanation] = ()
 ) -> str:
     """Write a verdict; ``explained`` are explanations of its first violations."""
-    rules = {rule.name: rule for rule in rulebook.rules}
-    violations = [
-        violation_data(
-            violation,
-            rules[violation.rule],
-            explained[number] if number < len(explained) else None,
-        )
-        for number, violation in enumerate(verdict.violations)
-    ]
+    violations = violations_data(verdict, rulebook, explained)
     return as_line(
         TraceVerdict(trace=verdict.trace, satisfied=verdict.satisfied, violations=violations)
     )
@@ -80,19 +119,23 @@ def not_judged_as_json(answer: NotJudged) -> str:
     return as_line(TraceNotJudged(trace=answer.trace, error=error_data(answer.error)))
 
 
-def violation_data(
-    violation: Violation, rule: CompiledRule, explanation: Explanation | None
-) -> ViolationData:
-    """A violation with what its rule says of its weight."""
-    return ViolationData(
-        rule=violation.rule,
-        binding=violation.binding,
-        step=violation.step,
-        strength=violation.strength,
-        level=rule.level or None,
-        weight=plain_number(rule.weight),
-        explanation=UNSET if explanation is None else explanation_data(explanation),
-    )
+def violations_data(
+    verdict: Verdict, rulebook: CompiledRulebook, explained: Sequence[Explanation]
+) -> list[ViolationData]:
+    """The violations, each with what its rule says of its weight."""
+    rules = {rule.name: rule for rule in rulebook.rules}
+    return [
+        ViolationData(
+            rule=violation.rule,
+            binding=violation.binding,
+            step=violation.step,
+            strength=violation.strength,
+            level=rules[violation.rule].level or None,
+            weight=plain_number(rules[violation.rule].weight),
+            explanation=UNSET if explanation is None else explanation_data(explanation),
+        )
+        for violation, explanation in zip_longest(verdict.violations, explained)
+    ]
 
 
 def error_data(error: RulecError) -> ErrorData:
@@ -104,4 +147,41 @@ def error_data(error: RulecError) -> ErrorData:
         message=diagnostic.message,
         file=place.file if place else None,
         line=place.line if place else None,
+    )
+
+
+def explanation_data(explanation: Explanation) -> ExplanationData:
+    """The explanation with all its facts, parts and states."""
+    rule = explanation.rule
+    return ExplanationData(
+        book=rule.book,
+        cite=rule.cite,
+        says=rule.says,
+        states=explanation.states,
+        decisive=explanation.decisive,
+        facts=[_fact(observation) for observation in explanation.facts],
+        parts=[
+            FormulaPart(
+                formula=part.text,
+                depth=part.depth,
+                values=part.values,
+                changed=part.changed,
+                decides=part.decides,
+            )
+            for part in explanation.parts
+        ],
+        repair=None
+        if explanation.repair is None
+        else [RepairData(state=number, says=says) for number, says in repaired_states(explanation)],
+    )
+
+
+def _fact(observation: Observation) -> FactData:
+    return FactData(
+        reads=observation.text,
+        values=observation.values,
+        changed=observation.changed,
+        decides=observation.decides,
+        unit=observation.unit or UNSET,
+        objects=UNSET if observation.objects is None else observation.objects,
     )
