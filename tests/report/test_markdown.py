@@ -6,8 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 
-from rulec.report.text.heading_anchors import anchors
-from rulec.report.text.markdown import Heading, code, escaped, fenced, linked, table, written
+from rulec.report.text.markdown import (
+    Heading,
+    anchors,
+    code,
+    escaped,
+    fenced,
+    linked,
+    table,
+    written,
+)
 from rulec.report.text.terminal_text import visible
 
 READER = MarkdownIt("commonmark", {"html": False}).enable("table")

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-from rulec.diagnostics.source_text import SourceLocation, Span
+from rulec.diagnostics.source_text import SourceLocation, Span, address
 from rulec.value_display import Rows, short_repr
 
 Severity: TypeAlias = Literal["error", "warning"]
@@ -83,9 +83,5 @@ class RulecError(Rows, Exception):
 
 
 def _one_line(diagnostic: Diagnostic) -> str:
-    place = diagnostic.place
-    where = ""
-    if place is not None:
-        parts = [place.file, place.line, place.column]
-        where = ":".join(str(part) for part in parts if part is not None) + ": "
+    where = "" if diagnostic.place is None else f"{address(diagnostic.place)}: "
     return f"{where}{diagnostic.message} [{diagnostic.code}]"

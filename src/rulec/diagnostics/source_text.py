@@ -27,6 +27,12 @@ class SourceLocation:
         return self.line or 0, self.column or 0
 
 
+def address(place: SourceLocation) -> str:
+    """``file:line:column``, as far as it is known."""
+    parts = [place.file, place.line, place.column]
+    return ":".join(str(part) for part in parts if part is not None)
+
+
 @dataclass(frozen=True, slots=True)
 class Source:
     """A text with the name of the file it came from."""

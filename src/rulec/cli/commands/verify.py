@@ -164,7 +164,7 @@ class _Run:
         from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
         from rulec.monitoring.explain.explanation import explain
         from rulec.monitoring.verdict import NotJudged, Verdict
-        from rulec.report.verdicts import recording_json
+        from rulec.report.verdicts import recording_json, verdict_report
         from rulec.report.verdicts import recording_table as report
 
         try:
@@ -187,11 +187,10 @@ class _Run:
                         explain(violation, answer.drive.trace, judged.rules) for violation in chosen
                     ]
                     if explained:
-                        blocks.append(
-                            report.drive_details(
-                                answer, judged, explained, every_part=self.every_part
-                            )
+                        details = verdict_report.as_text(
+                            answer.answer, judged.rules, explained, every_part=self.every_part
                         )
+                        blocks.append(f"\n{details}")
                 elif isinstance(answer, DriveVerdict) and isinstance(answer.answer, NotJudged):
                     self.complaints.add(answer.answer.error)
                     self.not_answered = True

@@ -9,7 +9,7 @@ from functools import partial
 from itertools import groupby
 
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.diagnostics.source_text import SourceLocation
+from rulec.diagnostics.source_text import address
 from rulec.report.findings.source_excerpt import Underline, excerpt_lines
 from rulec.report.text.console import print_aside
 from rulec.report.text.terminal_text import styled, visible, wants_color
@@ -80,9 +80,9 @@ def _block(diagnostic: Diagnostic, paint: _Paint) -> Iterator[str]:
     yield f"{head}{paint(f': {visible(diagnostic.message)}', 'bold')}"
     width = _number_width(diagnostic)
     gutter = " " * width
-    for position, (file, marks) in enumerate(_by_file(diagnostic)):
+    for position, marks in enumerate(_by_file(diagnostic)):
         arrow = "-->" if position == 0 else ":::"
-        yield f"{gutter}{paint(arrow, _FRAME)} {visible(_address(file, marks[0]))}"
+        yield f"{gutter}{paint(arrow, _FRAME)} {visible(address(marks[0].place))}"
         shown = [mark for mark in marks if mark.place.line is not None and _worth_showing(mark)]
         if not shown:
             continue
@@ -105,20 +105,14 @@ def _worth_showing(mark: Underline) -> bool:
     return bool(mark.place.excerpt.strip()) or bool(mark.words)
 
 
-def _by_file(diagnostic: Diagnostic) -> list[tuple[str, list[Underline]]]:
+def _by_file(diagnostic: Diagnostic) -> list[list[Underline]]:
     """The marks of a diagnostic by file, the primary place's file first."""
     marks = (
         [] if diagnostic.place is None else [Underline(diagnostic.place, diagnostic.expected, "^")]
     )
     marks += [Underline(label.place, label.message, "-") for label in diagnostic.labels]
     files = list(dict.fromkeys(mark.place.file for mark in marks))
-    return [(file, [mark for mark in marks if mark.place.file == file]) for file in files]
-
-
-def _address(file: str, mark: Underline) -> str:
-    place: SourceLocation = mark.place
-    parts = [file, place.line, place.column]
-    return ":".join(str(part) for part in parts if part is not None)
+    return [[mark for mark in marks if mark.place.file == file] for file in files]
 
 
 def _number_width(diagnostic: Diagnostic) -> int:

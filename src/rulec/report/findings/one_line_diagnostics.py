@@ -5,23 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rulec.diagnostics import Diagnostic
+from rulec.diagnostics.source_text import address
 from rulec.report.text.terminal_text import visible
 
 
 def as_lines(diagnostics: Iterable[Diagnostic]) -> str:
     """``file:line:column: code message``; what has no place has no prefix either."""
     return "\n".join(
-        visible(f"{_where(diagnostic)}{diagnostic.code} {diagnostic.message}")
+        visible(f"{_address(diagnostic)}{diagnostic.code} {diagnostic.message}")
         for diagnostic in diagnostics
     )
 
 
-def _where(diagnostic: Diagnostic) -> str:
-    place = diagnostic.place
-    if place is None:
-        return ""
-    parts = [place.file, place.line, place.column]
-    return ":".join(str(part) for part in parts if part is not None) + ": "
+def _address(diagnostic: Diagnostic) -> str:
+    return "" if diagnostic.place is None else f"{address(diagnostic.place)}: "
 
 
 def as_annotations(diagnostics: Iterable[Diagnostic]) -> str:

@@ -17,7 +17,7 @@ from rulec.report.maneuvers.maneuver_answers import (
     horizon_s,
     likeliest,
 )
-from rulec.report.text.count_text import shown_count
+from rulec.report.text.count_text import first_of, shown_count
 from rulec.report.text.terminal_text import styled, visible
 from rulec.scenario import Scenario
 
@@ -99,11 +99,8 @@ def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
 
 def _by_default(names: Sequence[str]) -> Iterator[str]:
     """A line for the inputs without information, taken at their defaults."""
-    if not names:
-        return
-    shown = ", ".join(names[:MOST_DEFAULTS])
-    more = f" and {len(names) - MOST_DEFAULTS:,} more" if len(names) > MOST_DEFAULTS else ""
-    yield visible(f"by default  {shown}{more}: the scenario does not say")
+    if names:
+        yield visible(f"by default  {first_of(names, MOST_DEFAULTS)}: the scenario does not say")
 
 
 def _predictions(scenario: Scenario) -> Iterator[str]:

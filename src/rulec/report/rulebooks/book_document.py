@@ -9,8 +9,7 @@ from rulec.analysis.audit.rulebook_audit import articles_of
 from rulec.analysis.lineage.rule_lineage import BookLineage
 from rulec.report.rulebooks import book_sections
 from rulec.report.rulebooks.book_rule import rule_heading, rule_section
-from rulec.report.text.heading_anchors import anchors
-from rulec.report.text.markdown import Block, Heading, code, escaped, table, written
+from rulec.report.text.markdown import Block, Heading, anchors, code, escaped, table, written
 from rulec.rulebook.loader import Loaded
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.version import __version__

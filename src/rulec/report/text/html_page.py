@@ -14,7 +14,7 @@ from pygments.formatters import HtmlFormatter
 from pygments.lexer import Lexer
 from pygments.lexers.diff import DiffLexer
 
-from rulec.report.text.heading_anchors import anchors
+from rulec.report.text.markdown import anchors
 from rulec.report.text.pygments_lexer import RulecLexer
 
 _STYLE = Path(__file__).with_name("html_page.css")

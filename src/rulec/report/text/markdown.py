@@ -59,6 +59,21 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
+def anchors(headings: Sequence[str]) -> list[str]:
+    """A distinct anchor for each plain-text heading of a page, as most viewers make them."""
+    taken: set[str] = set()
+    names = []
+    for heading in headings:
+        plain = re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+        name, number = plain, 0
+        while name in taken:
+            number += 1
+            name = f"{plain}-{number}"
+        taken.add(name)
+        names.append(name)
+    return names
+
+
 @dataclass(frozen=True, slots=True)
 class Heading:
     """A heading; ``text`` is plain."""

@@ -7,9 +7,8 @@ from textwrap import shorten
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
-from rulec.monitoring.explain.explanation import Explanation
-from rulec.monitoring.verdict import Verdict
+from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
+from rulec.report.text.count_text import first_of
 from rulec.report.text.terminal_text import table_lines, visible
 from rulec.report.verdicts import verdict_report
 
@@ -35,7 +34,7 @@ def as_text(judged: RecordingVerdicts, tally: ViolationTally) -> str:
         )
     defaults = defaulted_names(judged, tally.words or frozenset())
     if defaults:
-        lines.append(f"by default  {_some(defaults)}: the recording does not say")
+        lines.append(f"by default  {first_of(defaults, MOST_DEFAULTS)}: the recording does not say")
     lines += [f"note        {remark}" for remark in recording.remarks]
     lines += _table(judged, tally)
     return "\n".join(visible(line) for line in lines)
@@ -50,13 +49,7 @@ def _not_judged(no_drives: Sequence[NoDrive]) -> Iterator[str]:
     for no_drive in no_drives:
         reasons.setdefault(no_drive.why, []).append(no_drive.ego)
     for why, egos in reasons.items():
-        yield f"not judged  {_vehicles(egos)}: {why}"
-
-
-def _vehicles(egos: Sequence[str]) -> str:
-    if len(egos) <= MOST_VEHICLES:
-        return ", ".join(egos)
-    return f"{', '.join(egos[:MOST_VEHICLES])} and {len(egos) - MOST_VEHICLES} more"
+        yield f"not judged  {first_of(egos, MOST_VEHICLES)}: {why}"
 
 
 def defaulted_names(judged: RecordingVerdicts, words: frozenset[str]) -> list[str]:
@@ -75,40 +68,18 @@ def _table(judged: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
     for rule, title in zip(rules, titles, strict=True):
         times = tally.first_s[rule.name]
         who = sorted(times, key=lambda ego: times[ego])
-        share = f"{len(times)}/{tally.judged}"
-        rows.append((title, rule.strength, share, f"{min(times.values()):g} s", _vehicles(who)))
+        share, first = f"{len(times)}/{tally.judged}", f"{min(times.values()):g} s"
+        rows.append((title, rule.strength, share, first, first_of(who, MOST_VEHICLES)))
     heads, *lines = table_lines(rows, right=(2, 3))
     yield from ("", heads)
     for rule, line in zip(rules, lines, strict=True):
         yield line
         if defaults[rule.name]:
-            yield f"  by default: {_some(defaults[rule.name])}"
+            yield f"  by default: {first_of(defaults[rule.name], MOST_DEFAULTS)}"
 
 
 def _title(rule: CompiledRule) -> str:
     return f"{rule.name} [{rule.cite}]" if rule.cite else rule.name
-
-
-def _some(names: Sequence[str]) -> str:
-    shown = ", ".join(names[:MOST_DEFAULTS])
-    more = f" and {len(names) - MOST_DEFAULTS} more" if len(names) > MOST_DEFAULTS else ""
-    return f"{shown}{more}"
-
-
-def drive_details(
-    drive_verdict: DriveVerdict,
-    judged: RecordingVerdicts,
-    explained: Sequence[Explanation],
-    *,
-    every_part: bool,
-) -> str:
-    """The verdict on one drive, with explanations of its first violations."""
-    if not isinstance(drive_verdict.answer, Verdict):
-        return ""
-    text = verdict_report.as_text(
-        drive_verdict.answer, judged.rules, explained, every_part=every_part
-    )
-    return f"\n{text}"
 
 
 def summary(tally: ViolationTally) -> str:
