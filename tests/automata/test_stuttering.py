@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from rulec.automata.alphabet import count_letters, reads_of
 from rulec.automata.compiler import compile_rulebook
-from rulec.automata.mealy_monitor import IMPOSSIBLE
+from rulec.automata.mealy_monitor import IMPOSSIBLE, stutter_invariant
 from rulec.automata.spot_bridge import explore, translate
-from rulec.automata.stutter_invariance import stutter_invariant
 from rulec.automata.tables import build_machine
 from rulec.monitoring.verify import run
 from rulec.rulebook.loader import load_rulebook, parse_rulebook

@@ -6,7 +6,7 @@ from math import comb
 
 from hypothesis import given
 
-from rulec.automata.stutter_invariance import stutter_invariant
+from rulec.automata.mealy_monitor import stutter_invariant
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers

@@ -9,6 +9,7 @@ from collections.abc import Container, Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations, count, pairwise
 from math import ceil, floor, prod
+from operator import itemgetter
 
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic import formula as ltl
@@ -22,19 +23,21 @@ def propositions_of(formula: ltl.Formula) -> tuple[ltl.Proposition, ...]:
     return tuple(dict.fromkeys(ltl.atoms_of(formula)))
 
 
+def subject_of(proposition: ltl.Proposition) -> object:
+    """The thing whose value makes a proposition true or false."""
+    if isinstance(proposition, ltl.Comparison):
+        return proposition.terms
+    return proposition.name, proposition.arguments
+
+
 def reads_of(formula: ltl.Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRead, ...]:
     """Reads of a formula, in order of first mention.
 
     Comparisons of the same terms read one number.
     """
-    used: dict[tuple[object, ...], list[ltl.Proposition]] = {}
+    used: dict[object, list[ltl.Proposition]] = {}
     for proposition in propositions_of(formula):
-        key = (
-            proposition.terms
-            if isinstance(proposition, ltl.Comparison)
-            else (proposition.name, proposition.arguments)
-        )
-        used.setdefault(key, []).append(proposition)
+        used.setdefault(subject_of(proposition), []).append(proposition)
     return tuple(_read(together, vocabulary) for together in used.values())
 
 
@@ -42,13 +45,8 @@ def _read(together: Sequence[ltl.Proposition], vocabulary: Vocabulary) -> Read |
     """The read of propositions about one thing."""
     first = together[0]
     if isinstance(first, ltl.Comparison):
-        passed = {
-            threshold
-            for comparison in together
-            if isinstance(comparison, ltl.Comparison)
-            for threshold in _sides(comparison)
-            if threshold is not None
-        }
+        comparisons = (each for each in together if isinstance(each, ltl.Comparison))
+        passed = {side for each in comparisons for side in _sides(each) if side is not None}
         return NumberRead(first.terms, tuple(sorted(passed, key=_position)))
     declaration = vocabulary.declarations[first.name]
     if not isinstance(declaration, Enumeration):
@@ -69,8 +67,7 @@ def _sides(comparison: ltl.Comparison) -> tuple[Threshold | None, ...]:
     by themselves; None is a threshold that every count passes.
     """
     limit = comparison.limit
-    at, above = Threshold(limit, inclusive=True), Threshold(limit, inclusive=False)
-    both: list[Threshold | None] = [at, above]
+    both: list[Threshold | None] = [Threshold(limit, inclusive) for inclusive in (True, False)]
     if len(comparison.terms) == 1 and isinstance(comparison.terms[0][1], ltl.Count):
         whole = (ceil(limit), floor(limit) + 1)
         both = [Threshold(Fraction(n), inclusive=True) if n > 0 else None for n in whole]
@@ -83,23 +80,20 @@ def _sides(comparison: ltl.Comparison) -> tuple[Threshold | None, ...]:
             return tuple(both)
 
 
-def _digits(comparison: ltl.Comparison, read: NumberRead) -> Iterator[int]:
+def _digits(comparison: ltl.Comparison, read: NumberRead) -> Sequence[int]:
     """The digits of numbers for which the comparison holds."""
     # A number has passed as many thresholds as its digit says.
-    needed = [0 if side is None else read.thresholds.index(side) + 1 for side in _sides(comparison)]
-    for digit in range(read.size):
-        passed = [digit >= least for least in needed]
-        match comparison.relation:
-            case ">=" | ">":
-                holds = passed[0]
-            case "<" | "<=":
-                holds = not passed[0]
-            case "=":
-                holds = passed[0] and not passed[1]
-            case "!=":
-                holds = not passed[0] or passed[1]
-        if holds:
-            yield digit
+    sides = _sides(comparison)
+    passed = [0 if side is None else read.thresholds.index(side) + 1 for side in sides]
+    match comparison.relation:
+        case ">=" | ">":
+            return range(passed[0], read.size)
+        case "<" | "<=":
+            return range(passed[0])
+        case "=":
+            return range(*passed)
+        case "!=":
+            return [*range(passed[0]), *range(passed[1], read.size)]
 
 
 def count_letters(reads: Iterable[Read | NumberRead]) -> int:
@@ -114,7 +108,7 @@ def letters_with(
 
     ``reads`` are what a formula of these propositions reads.
     """
-    total = count_letters(reads)
+    everything = (1 << count_letters(reads)) - 1
     about: dict[object, tuple[Read | NumberRead, int]] = {}
     stride = 1
     for read in reads:
@@ -123,31 +117,22 @@ def letters_with(
         stride *= read.size
     sets: dict[ltl.Proposition, int] = {}
     for proposition in propositions:
-        key = (
-            proposition.terms
-            if isinstance(proposition, ltl.Comparison)
-            else (proposition.name, proposition.arguments)
-        )
-        read, stride = about[key]
-        repeated = _repeat((1 << stride) - 1, stride * read.size, total)
+        read, stride = about[subject_of(proposition)]
+        # The letters whose digit is 0 come in runs, as long as the stride.
+        zeros = ((1 << stride) - 1) * (everything // ((1 << stride * read.size) - 1))
         sets[proposition] = sum(
-            repeated << (digit * stride) for digit in _digits_with(proposition, read)
+            zeros << (digit * stride) for digit in _digits_with(proposition, read)
         )
     return sets
 
 
-def _digits_with(proposition: ltl.Proposition, read: Read | NumberRead) -> tuple[int, ...]:
+def _digits_with(proposition: ltl.Proposition, read: Read | NumberRead) -> Sequence[int]:
     match proposition, read:
         case ltl.Comparison(), NumberRead():
-            return tuple(_digits(proposition, read))
+            return _digits(proposition, read)
         case ltl.Atom(value=str(value)), Read():
             return (read.values.index(value),)
     return (1,)
-
-
-def _repeat(pattern: int, period: int, total: int) -> int:
-    """Repeat a bit pattern every ``period`` bits, up to ``total`` bits."""
-    return pattern * (((1 << total) - 1) // ((1 << period) - 1))
 
 
 def knowledge(
@@ -158,24 +143,16 @@ def knowledge(
     Of an enumeration's values exactly one is true; of comparisons of one number those that it
     passes.
     """
+    comparisons = [each for each in propositions if isinstance(each, ltl.Comparison)]
     axioms: list[ltl.Formula] = []
     for read in reads:
         if isinstance(read, NumberRead):
-            about = [
-                proposition
-                for proposition in propositions
-                if isinstance(proposition, ltl.Comparison)
-            ]
             axioms += _number_facts(
-                read, [comparison for comparison in about if comparison.terms == read.terms]
+                read, [each for each in comparisons if each.terms == read.terms]
             )
             continue
-        atoms: list[ltl.Formula] = [
-            ltl.Atom(read.name, read.variables, value) for value in read.values
-        ]
-        axioms += [
-            ltl.Unary(NOT, ltl.Binary(AND, one, other)) for one, other in combinations(atoms, 2)
-        ]
+        atoms = [ltl.Atom(read.name, read.variables, value) for value in read.values]
+        axioms += [ltl.Unary(NOT, ltl.Binary(AND, *pair)) for pair in combinations(atoms, 2)]
         if atoms and not read.others:
             axioms.append(joined(OR, atoms))
     return joined(AND, axioms) if axioms else ltl.Constant(True)
@@ -191,7 +168,7 @@ def _number_facts(read: NumberRead, comparisons: Sequence[ltl.Comparison]) -> It
         (side,) = _sides(comparison)
         passed = comparison if comparison.relation in (">=", ">") else ltl.Unary(NOT, comparison)
         passing.append((-1 if side is None else read.thresholds.index(side), passed))
-    passing.sort(key=lambda each: each[0])
+    passing.sort(key=itemgetter(0))
     yield from (passed for place, passed in passing if place < 0)
     for (place, earlier), (next_place, later) in pairwise(passing):
         if place >= 0:
@@ -201,19 +178,19 @@ def _number_facts(read: NumberRead, comparisons: Sequence[ltl.Comparison]) -> It
 
 def _each_digit(read: NumberRead, comparisons: Sequence[ltl.Comparison]) -> Iterator[ltl.Formula]:
     """One of the digits, with all that holds there."""
-    true_at = [set(_digits(comparison, read)) for comparison in comparisons]
-    cases: dict[tuple[bool, ...], ltl.Formula] = {}
-    for digit in range(read.size):
-        values = tuple(digit in digits for digits in true_at)
-        cases[values] = joined(
-            AND,
+    true_at = [_digits(comparison, read) for comparison in comparisons]
+    cases = dict.fromkeys(
+        tuple(digit in digits for digits in true_at) for digit in range(read.size)
+    )
+    if len(cases) < 1 << len(comparisons):
+        signed = [(ltl.Unary(NOT, comparison), comparison) for comparison in comparisons]
+        yield joined(
+            OR,
             [
-                comparison if value else ltl.Unary(NOT, comparison)
-                for comparison, value in zip(comparisons, values, strict=True)
+                joined(AND, [pair[holds] for pair, holds in zip(signed, case, strict=True)])
+                for case in cases
             ],
         )
-    if len(cases) < 1 << len(comparisons):
-        yield joined(OR, list(cases.values()))
 
 
 def joined(operator: ltl.BinaryOperator, formulas: Sequence[ltl.Formula]) -> ltl.Formula:

@@ -19,6 +19,7 @@ from rulec.automata.alphabet import (
     letters_with,
     propositions_of,
     reads_of,
+    subject_of,
 )
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
@@ -45,15 +46,16 @@ def axiom_instances(
     Facts without variables are said once, facts that count are left out.
     """
     types = {variable.name: variable.type for variable in variables}
-    return tuple(
-        AxiomInstance(
-            fact, chosen, rename_variables(fact.formula, dict(zip(own, chosen, strict=True)))
-        )
-        for fact in axioms
-        if not counts(fact.formula)
-        for own in [[variable.name for variable in fact.variables]]
-        for chosen in choices([variable.type for variable in fact.variables], types, vocabulary)
-    )
+    instances = []
+    for fact in axioms:
+        if counts(fact.formula):
+            continue
+        own = [variable.name for variable in fact.variables]
+        for chosen in choices([variable.type for variable in fact.variables], types, vocabulary):
+            renaming = dict(zip(own, chosen, strict=True))
+            formula = rename_variables(fact.formula, renaming)
+            instances.append(AxiomInstance(fact, chosen, formula))
+    return tuple(instances)
 
 
 def counts(formula: ltl.Formula) -> bool:
@@ -70,8 +72,7 @@ def counts(formula: ltl.Formula) -> bool:
 class AxiomGroup:
     """Instances of facts that have to do with each other.
 
-    ``natural`` is what is known, besides, of all that they speak of, in their propositions and
-    those of a rule.
+    ``natural`` is what is known besides of all that they speak of, in theirs and a rule's words.
     """
 
     natural: ltl.Formula
@@ -93,20 +94,11 @@ def axiom_groups(
     groups = []
     for group in linked(instances):
         about = _subjects(group)
-        touched = [proposition for proposition in every if _subject(proposition) in about]
-        natural = _natural(
-            [*touched, *(axiom_instance.formula for axiom_instance in group)], vocabulary
-        )
+        touched = [proposition for proposition in every if subject_of(proposition) in about]
+        whole = joined(AND, [*touched, *(instance.formula for instance in group)])
+        natural = knowledge(reads_of(whole, vocabulary), propositions_of(whole))
         groups.append(AxiomGroup(natural, group))
     return tuple(groups)
-
-
-def _natural(formulas: Sequence[ltl.Formula], vocabulary: Vocabulary) -> ltl.Formula:
-    """Knowledge about all propositions of some formulas, without any axioms."""
-    if not formulas:
-        return ltl.Constant(True)
-    spoken = joined(AND, formulas)
-    return knowledge(reads_of(spoken, vocabulary), propositions_of(spoken))
 
 
 def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, ...]]:
@@ -123,17 +115,10 @@ def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, 
         yield tuple(members)
 
 
-def possible_letters(reads: Sequence[Read | NumberRead], known: Sequence[ltl.Formula]) -> int:
-    """Bit set of the letters in which all known formulas hold.
-
-    ``known`` speaks of what is read and of one state, without temporal operators.
-    """
-    everything = (1 << count_letters(reads)) - 1
-    sets = letters_with(reads, {atom for one in known for atom in ltl.atoms_of(one)})
-    letters = everything
-    for one in known:
-        letters &= _letters_where(one, sets, everything)
-    return letters
+def possible_letters(reads: Sequence[Read | NumberRead], known: ltl.Formula) -> int:
+    """Bit set of the letters in which a formula without operators of time holds."""
+    sets = letters_with(reads, propositions_of(known))
+    return _letters_where(known, sets, everything=(1 << count_letters(reads)) - 1)
 
 
 def _letters_where(
@@ -157,13 +142,4 @@ def _letters_where(
 
 
 def _subjects(instances: Iterable[AxiomInstance]) -> set[object]:
-    return {_subject(atom) for instance in instances for atom in ltl.atoms_of(instance.formula)}
-
-
-def _subject(proposition: ltl.Proposition) -> object:
-    """The thing whose value makes a proposition true or false."""
-    return (
-        proposition.terms
-        if isinstance(proposition, ltl.Comparison)
-        else (proposition.name, proposition.arguments)
-    )
+    return {subject_of(atom) for instance in instances for atom in ltl.atoms_of(instance.formula)}

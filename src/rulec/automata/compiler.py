@@ -16,7 +16,12 @@ from fractions import Fraction
 
 from rulec.automata.alphabet import propositions_of, reads_of
 from rulec.automata.axiom_instances import axiom_groups, axiom_instances
-from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import (
+    CompiledAxiom,
+    CompiledRule,
+    CompiledRulebook,
+    alike,
+)
 from rulec.automata.compiler_messages import no_machine, no_spot
 from rulec.automata.spot_worker import Done, Failed, Job, WorkerGreeting
 from rulec.diagnostics import Diagnostic, RulecError
@@ -72,7 +77,9 @@ def lower(
     formulas: list[RuleFormula] = []
     problems: list[Diagnostic] = []
     for rule in rulebook.rules:
-        step = _step(rule, step_s)
+        step: Fraction | None = rule.step_s if step_s is None else step_s
+        if not has_seconds(rule.formula):
+            step = None  # any fits
         if any_step and step is not None and not rule.examples:
             step = fitting_step(rule.formula, step)
         try:
@@ -110,46 +117,35 @@ def build_all(
     """
     compiled: list[CompiledRule] = []
     problems = list(formulas.problems)
-    waiting = [
-        (lowered.rule, lowered.step_s, _job(rulebook, lowered, cpu_limit_s))
-        for lowered in formulas.rules
-    ]
+    waiting = list(formulas.rules)
     spot = ""
     while waiting or not spot:
         # A worker lives until it is done or a rule has killed it; the next one takes the rest.
         with _worker() as (process, spot):
             while waiting:
-                rule, step, job = waiting.pop(0)
-                answer = _ask(process, job)
+                lowered = waiting.pop(0)
+                answer = _ask(process, _job(rulebook, lowered, cpu_limit_s))
                 if isinstance(answer, Done):
-                    compiled.append(_compiled(rule, step, answer))
+                    compiled.append(_compiled(lowered.rule, lowered.step_s, answer))
                 else:
-                    problems.append(no_machine(rule, answer, cpu_limit_s))
+                    problems.append(no_machine(lowered.rule, answer, cpu_limit_s))
                 if answer is None:
                     break
     if problems:
         # Facts that contradict each other do so in every rule.
         raise RulecError(dict.fromkeys(problems))
     return CompiledRulebook(
-        name=rulebook.name,
+        **alike(Rulebook, rulebook),
         vocabulary=rulebook.vocabulary,
         rules=tuple(compiled),
-        title=rulebook.title,
-        law=rulebook.law,
-        as_of=rulebook.as_of,
         sources=rulebook.sources,
         rulec=__version__,
         spot=spot,
-        semantics=rulebook.semantics,
-        traffic=rulebook.traffic,
         axioms=tuple(
             CompiledAxiom(axiom.variables, axiom.formula, at(axiom.span))
             for axiom in rulebook.axioms
         ),
-        levels=rulebook.levels,
         priorities=rulebook.priorities,
-        extends=rulebook.extends,
-        at=rulebook.at,
         source=rulebook,
     )
 
@@ -192,13 +188,6 @@ def _ask(process: subprocess.Popen[bytes], job: Job) -> Done | Failed | None:
     return answer
 
 
-def _step(rule: Rule, step_s: Fraction | None) -> Fraction | None:
-    """Step (s) that a rule is compiled for; None if any fits."""
-    if not has_seconds(rule.formula):
-        return None
-    return rule.step_s if step_s is None else step_s
-
-
 def _job(rulebook: Rulebook, lowered: RuleFormula, cpu_limit_s: int) -> Job:
     """The question to the worker."""
     rule, formula, step = lowered.rule, lowered.formula, lowered.step_s
@@ -210,34 +199,25 @@ def _job(rulebook: Rulebook, lowered: RuleFormula, cpu_limit_s: int) -> Job:
     if step is not None:
         remarks.append(f"one letter is {time_in_words(step, 's')}")
     vocabulary = rulebook.vocabulary
-    reads = reads_of(formula, vocabulary)
     instances = axiom_instances(rule.variables, rulebook.axioms, vocabulary)
-    groups = axiom_groups(propositions_of(formula), instances, vocabulary)
     return Job(
         name=rule.name,
         formula=formula,
-        reads=reads,
+        reads=reads_of(formula, vocabulary),
         remarks=tuple(remarks),
         semantics=rulebook.semantics,
-        groups=groups,
+        groups=axiom_groups(propositions_of(formula), instances, vocabulary),
         cpu_s=cpu_limit_s,
     )
 
 
 def _compiled(rule: Rule, step: Fraction | None, done: Done) -> CompiledRule:
     return CompiledRule(
-        name=rule.name,
-        strength=rule.strength,
+        **alike(Rule, rule),
         variables=rule.variables,
-        cite=rule.cite,
-        says=rule.says,
         formula=rule.formula,
         machine=done.machine,
         hoa=done.hoa,
         step_s=step,
-        level=rule.level,
         weight=rule.weight,
-        source=rule.source,
-        certainty=rule.certainty,
-        book=rule.book,
     )

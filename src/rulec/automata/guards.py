@@ -9,7 +9,9 @@ optimization" (1987), greedily.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import reduce
+from operator import or_
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 
@@ -64,11 +66,14 @@ def _with_otherwise(leaving: Sequence[GuardedEdge], sizes: Sequence[int]) -> Ite
     longest = lengths.index(max(lengths))
     for number, edge in enumerate(leaving):
         last_resort = number == longest and len(leaving) > 1 and lengths[number] > 1
-        yield GuardedEdge(edge.source, edge.target, edge.accepted, edge.cubes, last_resort)
+        yield replace(edge, otherwise=last_resort)
 
 
 class _Covers:
-    """Bit sets of a monitor's letters, and small covers of them."""
+    """Bit sets of a monitor's letters, and small covers of them.
+
+    ``of_class`` are the letters of each class; no matter whether those of ``_free`` are covered.
+    """
 
     def __init__(self, machine: MealyMonitor) -> None:
         self.sizes = [read.size for read in machine.reads]
@@ -80,14 +85,10 @@ class _Covers:
             ones = ((1 << stride) - 1) * (self._everything // ((1 << (stride * size)) - 1))
             self._digits.append([ones << (digit * stride) for digit in range(size)])
             stride *= size
-        n_classes = len(machine.successors[0])
-        members: list[list[int]] = [[] for _ in range(n_classes)]
-        impossible: list[int] = []
+        rows = [bytearray(total // 8 + 1) for _ in [*machine.successors[0], IMPOSSIBLE]]
         for letter, symbol in enumerate(machine.letters):
-            (impossible if symbol == IMPOSSIBLE else members[symbol]).append(letter)
-        self.of_class = [_bits(letters, total) for letters in members]
-        self._free = _bits(impossible, total)
-        """No matter whether these are covered."""
+            rows[symbol][letter // 8] |= 1 << letter % 8  # those of IMPOSSIBLE, -1, are the last
+        *self.of_class, self._free = [int.from_bytes(row, "little") for row in rows]
         self._known: dict[int, tuple[Cube, ...]] = {}
         places = list(range(len(self.sizes)))
         turns = [places[n:] + places[:n] for n in places] or [places]
@@ -104,7 +105,7 @@ class _Covers:
                 best = max(primes, key=lambda cube: self._worth(cube, remaining))
                 chosen[best] = self._letters(best)
                 remaining &= ~chosen[best]
-            self._known[onset] = tuple(_needed(chosen, onset))
+            self._known[onset] = _needed(chosen, onset)
         return self._known[onset]
 
     def _worth(self, cube: Cube, remaining: int) -> tuple[int, int, list[list[int]]]:
@@ -120,10 +121,7 @@ class _Covers:
     def _allowed(self, cube: Sequence[frozenset[int]], place: int) -> int:
         if len(cube[place]) == self.sizes[place]:
             return self._everything
-        letters = 0
-        for digit in cube[place]:
-            letters |= self._digits[place][digit]
-        return letters
+        return reduce(or_, (self._digits[place][digit] for digit in cube[place]))
 
     def _prime(self, letter: int, onset: int, order: Sequence[int]) -> Cube:
         """Largest cube in ``onset`` around a letter, widened in ``order``."""
@@ -144,21 +142,11 @@ class _Covers:
         return tuple(cube)
 
 
-def _bits(letters: Sequence[int], total: int) -> int:
-    row = bytearray(total // 8 + 1)
-    for letter in letters:
-        row[letter // 8] |= 1 << (letter % 8)
-    return int.from_bytes(row, "little")
-
-
-def _needed(chosen: dict[Cube, int], onset: int) -> Iterator[Cube]:
+def _needed(chosen: dict[Cube, int], onset: int) -> tuple[Cube, ...]:
     """Drop cubes that the other cubes cover, last chosen first."""
     kept = dict(chosen)
-    for cube in reversed(chosen):
-        others = 0
-        for other, letters in kept.items():
-            if other != cube:
-                others |= letters
-        if not chosen[cube] & onset & ~others:
+    for cube, letters in reversed(chosen.items()):
+        others = reduce(or_, (kept[other] for other in kept if other != cube), 0)
+        if not letters & onset & ~others:
             del kept[cube]
-    yield from kept
+    return tuple(kept)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from itertools import repeat
 
 from rulec.automata.alphabet import letters_with, propositions_of
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 from rulec.logic.bounds import operations_of, range_of
-from rulec.logic.formula import Formula, Proposition
+from rulec.logic.formula import Formula
 from rulec.logic.semantics import Semantics, holds
 
 MOST_WORDS, FEWEST_WORDS = 300, 40
@@ -30,8 +31,8 @@ def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> boo
     n_words = max(FEWEST_WORDS, min(MOST_WORDS, affordable))
     for _ in range(n_words):
         numbers = list(_word(chance, possible, bounds))
-        word: list[frozenset[Proposition]] = [
-            frozenset(one for one, letters in sets.items() if letters >> number & 1)
+        word = [
+            frozenset(proposition for proposition, letters in sets.items() if letters >> number & 1)
             for number in numbers
         ]
         if verdict(machine, numbers) != holds(formula, word, semantics):
@@ -52,8 +53,7 @@ def _word(chance: random.Random, letters: list[int], bounds: list[int]) -> Itera
     for _ in range(chance.randint(1, 8)):
         number = chance.choice(some)
         times = chance.choice(bounds) if bounds and chance.random() < 0.5 else 1
-        for _ in range(times):
-            yield number
+        yield from repeat(number, times)
 
 
 def verdict(machine: MealyMonitor, numbers: list[int]) -> bool:

@@ -13,7 +13,7 @@ import traceback
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from rulec.automata.alphabet import count_letters, propositions_of
+from rulec.automata.alphabet import AND, count_letters, joined, propositions_of
 from rulec.automata.axiom_instances import AxiomGroup, AxiomInstance, possible_letters
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.automata.random_words import agrees
@@ -107,15 +107,15 @@ def _answer(job: Job) -> Done | Failed:
         return Failed("letters")
     axioms = []
     for group in job.groups:
-        said = spot_bridge.projected(group.known, propositions_of(job.formula))
-        if said == Constant(False):
+        axiom = spot_bridge.projected(group.known, propositions_of(job.formula))
+        if axiom == Constant(False):
             return Failed("facts", contradiction=_contradiction(group))
-        axioms += [said] if said != Constant(True) else []
+        axioms += [axiom] if axiom != Constant(True) else []
     try:
         translation = spot_bridge.translate(job.formula, job.reads, job.semantics, axioms)
     except spot_bridge.CheckError:
         return Failed("check")
-    possible = possible_letters(job.reads, axioms) if axioms else None
+    possible = possible_letters(job.reads, joined(AND, axioms)) if axioms else None
     automaton = spot_bridge.explore(translation, job.reads)
     machine = build_machine(automaton, job.reads, n_letters, possible)
     if not translation.is_checked and not agrees(machine, job.formula, job.semantics):
@@ -132,9 +132,7 @@ def _contradiction(group: AxiomGroup) -> tuple[AxiomInstance, ...]:
 
     needed = group
     for instance in group.instances:
-        without = tuple(
-            axiom_instance for axiom_instance in needed.instances if axiom_instance is not instance
-        )
+        without = tuple(other for other in needed.instances if other is not instance)
         fewer = replace(needed, instances=without)
         if spot_bridge.projected(fewer.known, ()) == Constant(False):
             needed = fewer

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import or_
 from typing import TypeVar
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, sink_of
@@ -54,8 +56,7 @@ def build_machine(
     """
     met = (1 << n_letters) - 1 if possible is None else possible
     classes = sorted(_letter_classes(automaton, met), key=lambda members: members & -members)
-    successors, outputs = _tables(automaton, classes)
-    successors, outputs = minimise(successors, outputs, automaton.initial)
+    successors, outputs = minimise(*_tables(automaton, classes), automaton.initial)
     columns = list(zip(*successors, *outputs, strict=True))
     merged = {column: index for index, column in enumerate(dict.fromkeys(columns))}
     kept = [columns.index(column) for column in merged]
@@ -89,26 +90,23 @@ def _letter_classes(automaton: DeterministicAutomaton, met: int) -> list[int]:
 
 def _tables(
     automaton: DeterministicAutomaton, classes: Sequence[int]
-) -> tuple[list[list[int]], list[list[bool]]]:
-    successors = [[0] * len(classes) for _ in automaton.edges]
-    outputs = [[False] * len(classes) for _ in automaton.edges]
+) -> tuple[list[tuple[int, ...]], list[tuple[bool, ...]]]:
+    targets: list[list[int]] = []
+    verdicts: list[list[bool]] = []
     over = automaton.after_the_end
     ends_well = None if over is None else _loop_verdicts(over, automaton)
-    for column, members in enumerate(classes):
+    for members in classes:
         letter = members & -members
-        taken = [_edge_on(edges, letter) for edges in automaton.edges]
+        taken = [
+            next((edge.target, edge.colours) for edge in edges if edge.letters & letter)
+            for edges in automaton.edges
+        ]
+        targets.append([target for target, _ in taken])
         if ends_well is None:
-            verdicts = _loop_verdicts([(edge.target, edge.colours) for edge in taken], automaton)
+            verdicts.append(_loop_verdicts(taken, automaton))
         else:
-            verdicts = [ends_well[edge.target] for edge in taken]
-        for state, edge in enumerate(taken):
-            successors[state][column] = edge.target
-            outputs[state][column] = verdicts[state]
-    return successors, outputs
-
-
-def _edge_on(edges: Sequence[TableEdge], letter: int) -> TableEdge:
-    return next(edge for edge in edges if edge.letters & letter)
+            verdicts.append([ends_well[target] for target, _ in taken])
+    return list(zip(*targets, strict=True)), list(zip(*verdicts, strict=True))
 
 
 def _loop_verdicts(
@@ -123,17 +121,15 @@ def _loop_verdicts(
             path[state] = len(path)
             state = step[state][0]
         if state in path:
-            colours = 0
-            for member in list(path)[path[state] :]:
-                colours |= step[member][1]
-            verdicts[state] = automaton.accepts(colours)
+            cycle = list(path)[path[state] :]
+            verdicts[state] = automaton.accepts(reduce(or_, (step[member][1] for member in cycle)))
         verdicts.update(dict.fromkeys(path, verdicts[state]))
     return [verdicts[state] for state in range(len(step))]
 
 
 def minimise(
-    successors: list[list[int]], outputs: list[list[Output]], initial: int
-) -> tuple[list[list[int]], list[list[Output]]]:
+    successors: Sequence[Sequence[int]], outputs: Sequence[Sequence[Output]], initial: int
+) -> tuple[list[list[int]], list[Sequence[Output]]]:
     """Merge equivalent states; number the rest in breadth-first order from ``initial``.
 
     Moore's partition refinement, with the outputs (verdicts) as what tells apart.

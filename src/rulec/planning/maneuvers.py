@@ -10,7 +10,7 @@ from itertools import chain, islice, starmap
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.stutter_invariance import stutter_invariant
+from rulec.automata.mealy_monitor import stutter_invariant
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verdict import Violation
 from rulec.planning.product.graph_instances import HARD, SOFT, violations

@@ -9,36 +9,32 @@ from math import prod
 
 from msgspec.structs import astuple
 
+from rulec.automata import mealy_monitor as monitors
 from rulec.automata.alphabet import reads_of
 from rulec.automata.bundle import bundle_schema as schema
-from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
-from rulec.automata.bundle.formula_check import problem_in
-from rulec.automata.mealy_monitor import (
-    IMPOSSIBLE,
-    MealyMonitor,
-    NumberRead,
-    Read,
-    Threshold,
-    sink_of,
+from rulec.automata.bundle.compiled_rulebook import (
+    CompiledAxiom,
+    CompiledRule,
+    CompiledRulebook,
+    alike,
 )
+from rulec.automata.bundle.formula_check import problem_in
 from rulec.diagnostics import SourceLocation
 from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
 from rulec.logic.formula import Formula
 from rulec.logic.printing import formula_text
-from rulec.rulebook.rulebook_model import SourceFile, Variable
-from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
+from rulec.rulebook.rulebook_model import Rule, Rulebook, SourceFile, Variable
+from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
 
 
 def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
     """Compiled rulebook of a sound file; ValueError for any other."""
+    kind_of = {entry: kind for kind, entry in schema.ENTRY_OF.items()}
     vocabulary = Vocabulary(
         read.vocabulary.name,
         {name: ObjectType(name, parent) for name, parent in read.vocabulary.types.items()},
-        {
-            item.name: _DECLARATIONS[type(item)](*astuple(item))
-            for item in read.vocabulary.declarations
-        },
+        {item.name: kind_of[type(item)](*astuple(item)) for item in read.vocabulary.declarations},
     )
     _check_vocabulary(vocabulary)
     names = [rule.name for rule in read.rules]
@@ -48,7 +44,9 @@ def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
         _require(bool(plain), f"`{name}` is not a name")
     _require(len(set(names)) == len(names), "two rules have the same name")
     return CompiledRulebook(
-        **{name: getattr(read, name) for name in schema.RULEBOOK_FIELDS},
+        **alike(Rulebook, read),
+        rulec=read.rulec,
+        spot=read.spot,
         vocabulary=vocabulary,
         rules=tuple(_rule(rule, vocabulary, read.levels) for rule in read.rules),
         sources=tuple(SourceFile(source.name, source.sha256) for source in read.sources),
@@ -70,13 +68,6 @@ def _priorities(read: schema.BundleFile) -> frozenset[tuple[str, str]]:
     closed = all(below[lower] <= below[higher] for higher, lower in pairs)
     _require(closed, "the priorities leave out what follows from them")
     return pairs
-
-
-_DECLARATIONS: dict[type, type[Enumeration | Signal | Quantity]] = {
-    schema.EnumerationEntry: Enumeration,
-    schema.SignalEntry: Signal,
-    schema.QuantityEntry: Quantity,
-}
 
 
 def _check_vocabulary(vocabulary: Vocabulary) -> None:
@@ -135,7 +126,8 @@ def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str
     weight = number_from_data(rule.weight)
     _require(weight > 0, f"rule `{rule.name}` has no weight")
     return CompiledRule(
-        **{name: getattr(rule, name) for name in schema.RULE_FIELDS},
+        **alike(Rule, rule),
+        hoa=rule.hoa,
         variables=variables,
         formula=formula,
         machine=machine,
@@ -155,34 +147,40 @@ def _step(rule: schema.BundleRule, formula: Formula) -> Fraction | None:
     return step
 
 
-def _machine(read: schema.MachineEntry, rule: str) -> MealyMonitor:
+def _machine(read: schema.MachineEntry, rule: str) -> monitors.MealyMonitor:
     reads = tuple(_read(item) for item in read.reads)
     n_states = len(read.successors)
     n_classes = len(read.successors[0]) if read.successors else 0
     fits: list[bool] = [
         n_states > 0,
         len(read.letters) == prod(item.size for item in reads),
-        all(IMPOSSIBLE <= letter < n_classes for letter in read.letters),
+        all(monitors.IMPOSSIBLE <= letter < n_classes for letter in read.letters),
         all(len(row) == n_classes for row in read.successors),
         all(len(row) == n_classes for row in read.outputs),
         len(read.outputs) == n_states,
         all(0 <= state < n_states for state in chain.from_iterable(read.successors)),
     ]
     _require(all(fits), f"the table of rule `{rule}` has a row or number that does not fit")
-    traps = [sink_of(read.successors, read.outputs, verdict=verdict) for verdict in (False, True)]
+    traps = [
+        monitors.sink_of(read.successors, read.outputs, verdict=verdict)
+        for verdict in (False, True)
+    ]
     _require(
         traps == [read.rejecting_sink, read.accepting_sink],
         f"rule `{rule}` names a wrong dead or safe state",
     )
-    return MealyMonitor(reads, *astuple(read)[1:])
+    return monitors.MealyMonitor(reads, *astuple(read)[1:])
 
 
-def _read(read: schema.ReadEntry | schema.NumberReadEntry) -> Read | NumberRead:
+def _read(read: schema.ReadEntry | schema.NumberReadEntry) -> monitors.Read | monitors.NumberRead:
     if isinstance(read, schema.ReadEntry):
-        return Read(*astuple(read))
-    return NumberRead(
+        return monitors.Read(*astuple(read))
+    return monitors.NumberRead(
         terms_from_data(read.terms),
-        tuple(Threshold(number_from_data(item.limit), item.inclusive) for item in read.thresholds),
+        tuple(
+            monitors.Threshold(number_from_data(item.limit), item.inclusive)
+            for item in read.thresholds
+        ),
     )
 
 

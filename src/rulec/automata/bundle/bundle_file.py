@@ -15,28 +15,37 @@ import msgspec
 from rulec.automata.bundle import bundle_schema as schema
 from rulec.automata.bundle.bundle_check import rulebook_of
 from rulec.automata.bundle.bundle_messages import DAMAGED_BUNDLE
-from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import (
+    CompiledAxiom,
+    CompiledRule,
+    CompiledRulebook,
+    alike,
+)
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.files import make_folder, opened, written_whole
 from rulec.logic.codec import terms_to_data, to_data
 from rulec.logic.printing import formula_text
-from rulec.rulebook.rulebook_model import Variable
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
+from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
 
 
 def to_json(rulebook: CompiledRulebook) -> str:
     """Text of a compiled rulebook's file, one row of numbers per line."""
     vocabulary = rulebook.vocabulary
     file = schema.BundleFile(
-        **{name: getattr(rulebook, name) for name in schema.RULEBOOK_FIELDS},
+        **alike(Rulebook, rulebook),
+        rulec=rulebook.rulec,
+        spot=rulebook.spot,
         sources=[schema.SourceEntry(source.name, source.sha256) for source in rulebook.sources],
         priorities=sorted(rulebook.priorities),
         vocabulary=schema.VocabularyEntry(
             vocabulary.name,
             {item.name: item.parent for item in vocabulary.types.values()},
-            [_declaration(item) for item in vocabulary.declarations.values()],
+            [
+                msgspec.convert(item, schema.ENTRY_OF[type(item)], from_attributes=True)
+                for item in vocabulary.declarations.values()
+            ],
         ),
         facts=[_axiom(axiom) for axiom in rulebook.axioms],
         rules=[_rule(rule) for rule in rulebook.rules],
@@ -51,18 +60,6 @@ _STRING_OR_ROW = re.compile(r'"(?:[^"\\]|\\.)*"|\[\s[^\[\]{}"]*\]')
 
 def _on_one_line(match_: re.Match[str]) -> str:
     return match_[0] if match_[0].startswith('"') else re.sub(r"\s+", " ", match_[0])
-
-
-def _declaration(
-    item: Declaration,
-) -> schema.EnumerationEntry | schema.SignalEntry | schema.QuantityEntry:
-    match item:
-        case Enumeration():
-            return schema.EnumerationEntry(item.name, item.parameters, item.values, item.default)
-        case Signal():
-            return schema.SignalEntry(item.name, item.parameters, item.default)
-        case Quantity():
-            return schema.QuantityEntry(item.name, item.parameters, item.unit, item.default)
 
 
 def _axiom(axiom: CompiledAxiom) -> schema.AxiomEntry:
@@ -84,7 +81,8 @@ def _variables(variables: Iterable[Variable]) -> list[tuple[str, str]]:
 def _rule(rule: CompiledRule) -> schema.BundleRule:
     machine = rule.machine
     return schema.BundleRule(
-        **{name: getattr(rule, name) for name in schema.RULE_FIELDS},
+        **alike(Rule, rule),
+        hoa=rule.hoa,
         weight=str(rule.weight),
         variables=_variables(rule.variables),
         step_s=None if rule.step_s is None else str(rule.step_s),

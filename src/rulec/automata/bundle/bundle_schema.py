@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 
 from rulec.rulebook.rulebook_model import Certainty, Semantics, Strength, Traffic
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 FORMAT = "rulec compiled rulebook"
 VERSION = 3
@@ -47,6 +48,13 @@ class QuantityEntry(_Strict, tag="quantity", tag_field="kind"):
     parameters: tuple[str, ...]
     unit: str
     default: float | None
+
+
+ENTRY_OF: dict[type[Declaration], type[EnumerationEntry | SignalEntry | QuantityEntry]] = {
+    Enumeration: EnumerationEntry,
+    Signal: SignalEntry,
+    Quantity: QuantityEntry,
+}
 
 
 class VocabularyEntry(_Strict):
@@ -158,13 +166,3 @@ class BundleFile(_Strict, kw_only=True):
     vocabulary: VocabularyEntry
     facts: list[AxiomEntry]
     rules: list[BundleRule]
-
-
-RULEBOOK_FIELDS = (
-    *("name", "title", "law", "as_of", "rulec", "spot", "semantics", "levels", "extends", "at"),
-    "traffic",
-)
-"""Fields of a compiled rulebook that the file has as they are."""
-
-RULE_FIELDS = ("name", "strength", "cite", "says", "hoa", "level", "source", "certainty", "book")
-"""Fields of a compiled rule that the file has as they are."""

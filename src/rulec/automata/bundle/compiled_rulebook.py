@@ -15,6 +15,7 @@ from rulec.logic.formula import Formula
 from rulec.logic.printing import number_in_words
 from rulec.rulebook.rulebook_model import (
     Certainty,
+    Rule,
     Rulebook,
     Semantics,
     SourceFile,
@@ -133,6 +134,18 @@ class CompiledRulebook(Rows):
             }
             for rule in self.rules
         ]
+
+
+_ALIKE = {
+    Rulebook: ("name", "title", "law", "as_of", "semantics", "levels", "extends", "at", "traffic"),
+    Rule: ("name", "strength", "cite", "says", "level", "source", "certainty", "book"),
+}
+"""Fields that both have alike, and their compiled forms, and the entries of these in the file."""
+
+
+def alike(kind: type[Rulebook | Rule], source: object) -> dict[str, Any]:
+    """Fields of a rulebook or rule that its other forms have as they are."""
+    return {name: getattr(source, name) for name in _ALIKE[kind]}
 
 
 def check_step(

@@ -14,11 +14,12 @@ from typing import Any, NamedTuple, TypeAlias
 
 import spot
 
+from rulec.logic import formula as ltl
+
 import buddy  # isort: skip - only once spot has been imported
 
 from rulec.automata.alphabet import fresh_name
 from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
-from rulec.logic import formula as ltl
 from rulec.logic.bounds import Range, range_of
 from rulec.logic.fold import Algebra, fold
 
@@ -163,9 +164,8 @@ class Obligations:
                 there = self._unfolded(_obligation._replace(span=Range(distance, distance)))
                 asked = asked | there if strong else asked & there
             return asked
-        ends_here = low == 0 and high == 0
         now = self._now(right, True) if low == 0 else buddy.bddfalse if strong else buddy.bddtrue
-        if ends_here:
+        if low == 0 and high == 0:
             return now
         rest = Range(max(low - 1, 0), None if high is None else high - 1)
         later = self._variable(_obligation._replace(span=rest))
@@ -196,18 +196,15 @@ class Obligations:
 
 def _weak_until(left: ltl.Formula, right: ltl.Formula, span: Range) -> ltl.Formula:
     """A bounded ``weak until`` by other operators and the unbounded one."""
+
+    def steps(first: int, last: int) -> ltl.Bound:
+        return ltl.Bound(Fraction(first), Fraction(last), "steps")
+
     low, high = span
     if high is not None:
-        bound = ltl.Bound(Fraction(low), Fraction(high), "steps")
-        lasting = ltl.Unary(
-            ltl.UnaryOperator.ALWAYS, left, ltl.Bound(Fraction(0), Fraction(high), "steps")
-        )
-        return ltl.Binary(_OR, ltl.Binary(ltl.BinaryOperator.UNTIL, left, right, bound), lasting)
-    first = ltl.Bound(Fraction(0), Fraction(low - 1), "steps")
-    then = ltl.Bound(Fraction(low), Fraction(low), "steps")
+        lasting = ltl.Unary(ltl.UnaryOperator.ALWAYS, left, steps(0, high))
+        until = ltl.Binary(ltl.BinaryOperator.UNTIL, left, right, steps(low, high))
+        return ltl.Binary(_OR, until, lasting)
+    first = ltl.Unary(ltl.UnaryOperator.ALWAYS, left, steps(0, low - 1))
     weak = ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, left, right)
-    return ltl.Binary(
-        _AND,
-        ltl.Unary(ltl.UnaryOperator.ALWAYS, left, first),
-        ltl.Unary(ltl.UnaryOperator.WEAK_NEXT, weak, then),
-    )
+    return ltl.Binary(_AND, first, ltl.Unary(ltl.UnaryOperator.WEAK_NEXT, weak, steps(low, low)))

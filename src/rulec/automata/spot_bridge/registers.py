@@ -72,12 +72,7 @@ class _Operands:
             )
 
         self._registers = [
-            (
-                register,
-                condition(register.left),
-                condition(register.right),
-                condition(register.atom),
-            )
+            (register, *map(condition, (register.left, register.right, register.atom)))
             for register in registers
         ]
         self.nothing = buddy.bddtrue
@@ -95,10 +90,7 @@ class _Operands:
                     (letters & more, said & (atom if later & 1 else -atom), (*others, later))
                     for letters, said, others in result
                     for later, more in _steps(
-                        register,
-                        value,
-                        buddy.bdd_restrict(left, said),
-                        buddy.bdd_restrict(right, said),
+                        register, value, *(buddy.bdd_restrict(side, said) for side in (left, right))
                     ).items()
                     if (letters & more) != buddy.bddfalse
                 ]

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import spot
 
+import buddy  # isort: skip - only once spot has been imported
+
+from rulec.automata.alphabet import AND, NOT, OR, joined, names_of, propositions_of
 from rulec.logic.bounds import Range
 from rulec.logic.fold import Algebra, fold, temporal_operation
-from rulec.logic.formula import Formula, Proposition
+from rulec.logic.formula import Constant, Formula, Proposition, Unary
 
 F = spot.formula
 _STRONG_NEXT = F("X[!]p").kind()
@@ -73,12 +76,9 @@ class SpotFormulas:
         left, (low, high) = F.tt() if left is None else left, span
         if high is not None and high < low:
             return F.ff()
-        now = right
-        if high is None:
-            now = F.U(left, right)
-        else:
-            for _ in range(high - low):
-                now = F.Or([right, F.And([left, self._next(now)])])
+        now = F.U(left, right) if high is None else right
+        for _ in range(0 if high is None else high - low):
+            now = F.Or([right, F.And([left, self._next(now)])])
         for _ in range(low):
             now = F.And([left, self._next(now)])
         return now
@@ -87,12 +87,9 @@ class SpotFormulas:
         left, (low, high) = F.ff() if left is None else left, span
         if high is not None and high < low:
             return F.tt()
-        now = right
-        if high is None:
-            now = F.R(left, right)
-        else:
-            for _ in range(high - low):
-                now = F.And([right, F.Or([left, F.X(now)])])
+        now = F.R(left, right) if high is None else right
+        for _ in range(0 if high is None else high - low):
+            now = F.And([right, F.Or([left, F.X(now)])])
         for _ in range(low):
             now = F.Or([left, F.X(now)])
         return now
@@ -111,3 +108,35 @@ class SpotFormulas:
 
     def _next(self, inner: Any) -> Any:
         return F.X(inner) if self.alive is None else F.unop(_STRONG_NEXT, inner)
+
+
+def projected(known: Formula, propositions: Sequence[Proposition]) -> Formula:
+    """Exact projection of ``known``, without temporal operators, onto these propositions.
+
+    It holds for their values if ``known`` does for some values of all others. False if ``known``
+    cannot hold, true if it says nothing of them.
+    """
+    every = propositions_of(known)
+    names = names_of([*propositions, *every])
+    spot_formulas = SpotFormulas(names, None)
+    owner = spot.make_twa_graph(spot_formulas.dictionary)
+    condition = spot.formula_to_bdd(
+        spot_formulas.formula_of(known), spot_formulas.dictionary, owner
+    )
+    others = buddy.bddtrue
+    for one in set(every) - set(propositions):
+        others &= buddy.bdd_ithvar(owner.register_ap(names[one]))
+    result = spot.bdd_to_formula(buddy.bdd_exist(condition, others), spot_formulas.dictionary)
+    return _read_back(result, {name: one for one, name in names.items()})
+
+
+def _read_back(formula: Any, named: dict[str, Proposition]) -> Formula:
+    """A Boolean formula of Spot's, a disjunction of conjunctions, as one of ours."""
+    if formula.is_tt() or formula.is_ff():
+        return Constant(bool(formula.is_tt()))
+    if formula._is(spot.op_ap):
+        return named[formula.ap_name()]
+    parts = [_read_back(part, named) for part in formula]
+    if formula._is(spot.op_Not):
+        return Unary(NOT, parts[0])
+    return joined(AND if formula._is(spot.op_And) else OR, parts)

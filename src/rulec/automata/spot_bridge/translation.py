@@ -58,26 +58,22 @@ def translate(
     """
     propositions = propositions_of(formula)
     past = eliminate_past(formula)
-    fresh = [
-        *(register.atom for register in past.registers),
-        *(memory.atom for memory in past.memories),
-    ]
-    names = names_of([*propositions, *fresh])
+    fresh = [register.atom for register in past.registers]
+    names = names_of([*propositions, *fresh, *(memory.atom for memory in past.memories)])
     alive = fresh_name("alive", set(names.values())) if semantics == "finite" else None
     spot_formulas = SpotFormulas(names, alive)
     known = knowledge(reads, propositions)
     for fact in axioms:
         known = fact if known == ltl.Constant(True) else ltl.Binary(_AND, known, fact)
-    meant = past.present
+    whole = past.present
     if known != ltl.Constant(True):
-        meant = ltl.Binary(_AND, meant, ltl.Unary(ltl.UnaryOperator.ALWAYS, known))
-    steps = total_bound(meant)
+        whole = ltl.Binary(_AND, whole, ltl.Unary(ltl.UnaryOperator.ALWAYS, known))
     if past.memories:
-        automaton = _guessed(meant, past.memories, spot_formulas)
+        automaton = _guessed(whole, past.memories, spot_formulas)
     else:
-        automaton = _combined(meant, True, spot_formulas)
-    is_small = steps <= _SMALL or bool(past.memories)
-    check(automaton, meant, spot_formulas, past.memories, None if is_small else _CHECK_CPU_S)
+        automaton = _combined(whole, True, spot_formulas)
+    is_small = total_bound(whole) <= _SMALL or bool(past.memories)
+    check(automaton, whole, spot_formulas, past.memories, None if is_small else _CHECK_CPU_S)
     if past.registers:
         automaton = _shaped(with_registers(automaton, past.registers, spot_formulas))
     return Translation(
@@ -113,17 +109,14 @@ def _guessed(formula: ltl.Formula, memories: Sequence[Memory], spot_formulas: Sp
 def _combined(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
     """Automaton of a formula or its negation; bounded ones by parts."""
     if total_bound(formula) == 0:
-        return _by_spot(formula, wanted, spot_formulas)
+        return spot_formulas.translate(_language(formula, wanted, spot_formulas), *_SHAPE)
     match formula:
         case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             return _combined(operand, not wanted, spot_formulas)
         case ltl.Binary(ltl.BinaryOperator.AND | ltl.BinaryOperator.OR as operator, left, right):
-            one, other = (
-                _combined(left, wanted, spot_formulas),
-                _combined(right, wanted, spot_formulas),
-            )
             join = spot.product if (operator is _AND) is wanted else spot.product_or
-            return _shaped(join(one, other))
+            parts = [_combined(part, wanted, spot_formulas) for part in (left, right)]
+            return _shaped(join(*parts))
         case ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right):
             return _combined(ltl.Binary(_OR, ltl.Unary(_NOT, left), right), wanted, spot_formulas)
         case ltl.Binary(ltl.BinaryOperator.IFF | ltl.BinaryOperator.XOR as operator, left, right):
@@ -136,11 +129,9 @@ def _combined(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -
             no = ltl.Binary(_AND, ltl.Unary(_NOT, left), ltl.Unary(_NOT, other))
             return _combined(ltl.Binary(_OR, yes, no), True, spot_formulas)
     whole = _by_progression(formula, wanted, spot_formulas)
-    return (
-        _by_trial(_language(formula, wanted, spot_formulas), spot_formulas)
-        if whole is None
-        else whole
-    )
+    if whole is not None:
+        return whole
+    return _by_trial(_language(formula, wanted, spot_formulas), spot_formulas)
 
 
 def _by_progression(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any | None:
@@ -151,10 +142,6 @@ def _by_progression(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormu
     if progression.is_decided:
         return _shaped(progression.infinite())
     return None
-
-
-def _by_spot(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
-    return spot_formulas.translate(_language(formula, wanted, spot_formulas), *_SHAPE)
 
 
 def _language(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
