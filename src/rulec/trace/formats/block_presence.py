@@ -63,9 +63,8 @@ def outlined(block: Block) -> BlockPresence:
     is_first = np.zeros(n_rows, dtype=bool)
     is_first[starts[:-1]] = True
     onward = np.diff(step, prepend=0)
-    if (names.codes < 0).any() or step[is_first].any():
-        raise OddTableError
-    if not np.isin(onward[~is_first], (0, 1)).all():
+    in_order = not step[is_first].any() and np.isin(onward[~is_first], (0, 1)).all()
+    if (names.codes < 0).any() or not in_order:
         raise OddTableError
     length = step[starts[1:] - 1] + 1
 
@@ -78,36 +77,35 @@ def outlined(block: Block) -> BlockPresence:
         raise OddTableError
     rows = np.flatnonzero(is_about)
     keys = trace[rows] * max(len(items.values), 1) + items.codes[rows]
-    distinct, first_row, which = np.unique(keys, return_index=True, return_inverse=True)
-    order = np.argsort(first_row)
-    rank = np.empty(len(order), dtype=np.int64)
-    rank[order] = np.arange(len(order))
-    owner = trace[rows[first_row[order]]]
+    known, first, which = np.unique(keys, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.argsort(order)
+    first_row = rows[first[order]]
+    owner = trace[first_row]
     starts_of_objects = np.searchsorted(owner, np.arange(len(block) + 1))
 
     numbers = rank[which]
     item = np.full(n_rows, NOBODY)
     item[rows] = numbers - starts_of_objects[trace[rows]]
-    kind = types.codes[rows[first_row[order]]]
-    kind_of_row = types.codes[rows]
-    if (kind < 0).any() or ((kind_of_row != kind[numbers]) & (kind_of_row >= 0)).any():
+    kind, given = types.codes[first_row], types.codes[rows]
+    if (kind < 0).any() or ((given != kind[numbers]) & (given >= 0)).any():
         raise OddTableError
     # Rows are in the order of steps.
     last_row = np.zeros(len(order), dtype=np.int64)
     last_row[numbers] = rows
-    stretches = np.stack([step[rows[first_row[order]]], step[last_row]], axis=1)
+    stretches = np.stack([step[first_row], step[last_row]], axis=1)
     is_always = (stretches[:, 0] == 0) & (stretches[:, 1] == length[owner] - 1)
     stretches[is_always] = NOBODY
     return BlockPresence(
         trace=trace,
         step=step,
         item=item,
-        other=_others(others, items, trace, (distinct, rank), starts_of_objects),
+        other=_others(others, items, trace, (known, rank), starts_of_objects),
         names=[names.values[code] for code in names.codes[starts[:-1]].tolist()],
         length=length,
         step_s=_step_s(block.columns.get(STEP_S), trace, starts),
         starts=starts_of_objects,
-        objects=[items.values[code] for code in items.codes[rows[first_row[order]]].tolist()],
+        objects=[items.values[code] for code in items.codes[first_row].tolist()],
         types=[types.values[code] for code in kind.tolist()],
         stretches=stretches,
     )
@@ -161,10 +159,10 @@ def _step_s(column: Column | None, trace: Rows, starts: NDArray[np.int64]) -> ND
         raise OddTableError
     if isinstance(column, Numbers):
         seconds = column.numbers
-    else:
-        if not {type(value) for value in column.values} <= {int, float}:
-            raise OddTableError
+    elif {type(value) for value in column.values} <= {int, float}:
         seconds = np.array(column.values, dtype=np.float64).take(column.codes)
+    else:
+        raise OddTableError
     result = seconds[starts[:-1]]
     if not ((result > 0) & np.isfinite(result)).all() or (seconds != result[trace]).any():
         raise OddTableError

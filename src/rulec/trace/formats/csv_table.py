@@ -33,11 +33,9 @@ _BOOLEANS = {"true": True, "false": False}
 
 
 def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
-    """Read the traces of a CSV file.
+    """Read the traces of a CSV file, of a large one in blocks, if Arrow is installed.
 
     In place of a bad one stands the RulecError (R0509) that says why.
-
-    A large file is read in blocks, if Arrow is installed.
     """
     error = _no_table(stream, file)
     if error is not None:
@@ -70,10 +68,7 @@ def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
 
 
 def _columns_if_large(stream: IO[bytes]) -> list[str] | None:
-    """Columns of a large file, left behind its first line.
-
-    None if it is not large, or its first line is not plain; then nothing has been read.
-    """
+    """Columns of a large file, left behind its first line; None of others, left as they were."""
     if not stream.seekable() or find_spec("pyarrow") is None:
         return None
     start = stream.tell()
@@ -105,13 +100,10 @@ def _traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
 
 def _check_separator(columns: Sequence[str], place: SourceLocation) -> None:
     """Raises RulecError R0509."""
-    if len(columns) == 1:
-        for name, mark in (("semicolons", ";"), ("tabs", "\t"), ("bars", "|")):
-            if TRACE in columns[0].split(mark) and mark in columns[0]:
-                message = f"the columns' names are separated by {name}"
-                raise problem(
-                    message, place, "separate the cells by commas, and decimals by points"
-                )
+    for name, mark in (("semicolons", ";"), ("tabs", "\t"), ("bars", "|")):
+        if len(columns) == 1 and mark in columns[0] and TRACE in columns[0].split(mark):
+            message = f"the columns' names are separated by {name}"
+            raise problem(message, place, "separate the cells by commas, and decimals by points")
 
 
 def _table(columns: Sequence[str], file: str) -> Table:
@@ -119,10 +111,7 @@ def _table(columns: Sequence[str], file: str) -> Table:
 
 
 def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[Row]:
-    """Rows from line ``number`` on, the header included.
-
-    Raises RulecError R0509.
-    """
+    """Rows from line ``number`` on, the header included. Raises RulecError R0509."""
     text = io.TextIOWrapper(stream, "utf-8-sig" if number == 1 else "utf-8", newline="")
     lines = csv.reader(_without_null(text), strict=True)
     before = number - 1
@@ -159,10 +148,7 @@ def _without_null(text: Iterable[str]) -> Iterator[str]:
 
 
 def _not_utf8(stream: IO[bytes], place: SourceLocation, reason: UnicodeDecodeError) -> RulecError:
-    """Location of the first byte that is no UTF-8.
-
-    Of a pipe, which cannot be read again, the place behind which it is.
-    """
+    """The first byte that is no UTF-8; of a pipe, which is read once, the place before it."""
     byte, where = reason.object[reason.start], "here or further on "
     if stream.seekable():
         stream.seek(0)
@@ -177,9 +163,8 @@ def _not_utf8(stream: IO[bytes], place: SourceLocation, reason: UnicodeDecodeErr
 
 
 def _value(cell: str) -> Value:
-    truth = _BOOLEANS.get(cell)
-    if truth is not None:
-        return truth
+    if cell in _BOOLEANS:
+        return _BOOLEANS[cell]
     return float(cell) if _NUMBER.fullmatch(cell) else cell
 
 

@@ -58,7 +58,7 @@ class Kind(Generic[Record]):
             return self._refused(problem, line, place)
 
     def bad(self, message: str, place: SourceLocation, help_text: str = "") -> RulecError:
-        """The line at this place is none (R0501)."""
+        """Error R0501: the line at this place is none."""
         return NOT_A_TRACE.error(place, message, help=help_text or self.example)
 
     def _refused(self, problem: Exception, line: bytes, place: SourceLocation) -> RulecError:

@@ -62,13 +62,14 @@ class Foreign(NamedTuple):
     help: str
 
 
+_UTF16 = Foreign("text in UTF-16", "save it in UTF-8")
 _BEGINNINGS = {
     b"\x1f\x8b": Foreign("data compressed with gzip", "unpack it with `gunzip`"),
     b"\x28\xb5\x2f\xfd": Foreign("data compressed with Zstandard", "unpack it with `unzstd`"),
     b"PK\x03\x04": Foreign("a ZIP archive", "unpack it with `unzip`"),
     b"PAR1": Foreign("Parquet", "add `--format parquet`"),
-    b"\xff\xfe": Foreign("text in UTF-16", "save it in UTF-8"),
-    b"\xfe\xff": Foreign("text in UTF-16", "save it in UTF-8"),
+    b"\xff\xfe": _UTF16,
+    b"\xfe\xff": _UTF16,
 }
 
 _TEXT = frozenset(b"\t\n\r\f")
@@ -80,19 +81,14 @@ def packed(beginning: bytes) -> Foreign | None:
 
 
 def foreign(beginning: bytes) -> Foreign | None:
-    """Kind of file that this beginning is, if no UTF-8 text.
-
-    The beginning is some bytes, or the first line.
-    """
-    result = packed(beginning)
-    if result is not None:
-        return result
+    """Kind of file with this beginning, some bytes or the first line, if no UTF-8 text."""
     some = beginning[:1000]
-    if _is_utf16(some):
-        return Foreign("text in UTF-16", "save it in UTF-8")
-    if any(byte < 32 and byte not in _TEXT for byte in some):
+    kind = packed(beginning)
+    if kind is None and _is_utf16(some):
+        return _UTF16
+    if kind is None and any(byte < 32 and byte not in _TEXT for byte in some):
         return Foreign("something that is no text", "give traces as JSON Lines, CSV or Parquet")
-    return None
+    return kind
 
 
 def _is_utf16(some: bytes) -> bool:

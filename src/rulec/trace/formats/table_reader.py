@@ -1,13 +1,11 @@
-"""Traces as rows of a table, one a state and object.
-
-See docs/traces.md.
-"""
+"""Traces as rows of a table, one a state and object; see docs/traces.md."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import groupby
 from typing import Any
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
@@ -85,33 +83,24 @@ def problem(message: str, place: SourceLocation, help_text: str = "") -> RulecEr
 def traces_in(
     rows: Iterable[Row], table: Table, file: SourceLocation
 ) -> Iterator[Trace | RulecError]:
-    """Read the traces of a table.
-
-    In place of one whose rows are wrong stands the first RulecError (R0509).
+    """Read the traces of a table; for one whose rows are wrong there is the first RulecError.
 
     If ``rows`` raise a RulecError, it takes the place of the trace that they were about. A table
-    without any trace gives one RulecError, about the ``file``.
+    without any trace gives one RulecError (R0509), about the ``file``.
     """
-    building: _Building | None = None
     known: dict[object, State] = {}
-    trace_at = table.at.get(TRACE, 0)
+    at = table.at.get(TRACE, 0)
+    is_empty_table = True
     try:
-        for number, cells in rows:
-            name = cells[trace_at] if trace_at < len(cells) else None
-            if building is None or building.name != name:
-                if building is not None:
-                    yield building.finished()
-                building = _Building(name, table, table.place(number), known)
-            building.add(number, cells)
+        for name, group in groupby(rows, lambda row: row[1][at] if at < len(row[1]) else None):
+            is_empty_table = False
+            yield _Building(name, table, known).read(list(group))
     except RulecError as error:
         # Who knows what else there was about the last trace.
         yield error
         return
-    yield (
-        problem("there is no trace in this file", file, _FORM)
-        if building is None
-        else building.finished()
-    )
+    if is_empty_table:
+        yield problem("there is no trace in this file", file, _FORM)
 
 
 @dataclass(slots=True)
@@ -120,59 +109,41 @@ class _Building:
 
     name: Any
     table: Table
-    place: SourceLocation
     known: dict[object, State]
     states: list[State] = field(default_factory=list)
     objects: dict[str, str] = field(default_factory=dict)
-    first: dict[str, int] = field(default_factory=dict)
-    last: dict[str, int] = field(default_factory=dict)
+    spans: dict[str, tuple[int, int]] = field(default_factory=dict)
     step_s: float | None = None
     now: list[Row] = field(default_factory=list)
-    error: RulecError | None = None
 
-    def add(self, number: int, cells: Sequence[Any]) -> None:
-        """Read a row, unless one before it was wrong."""
-        if self.error is not None:
-            return
+    def read(self, rows: Sequence[Row]) -> Trace | RulecError:
+        """The trace of these rows, or what is wrong with the first that is."""
         try:
-            self._add(number, cells)
+            for number, cells in rows:
+                self._add(number, cells)
+            self._end_state()
         except RulecError as error:
-            self.error = error
-
-    def finished(self) -> Trace | RulecError:
-        """The trace, or what is wrong with it."""
-        try:
-            if self.error is None:
-                self._end_state()
-        except RulecError as error:
-            self.error = error
-        if self.error is not None:
-            return self.error
-        last = len(self.states) - 1
-        present = {
-            name: (first, self.last[name])
-            for name, first in self.first.items()
-            if (first, self.last[name]) != (0, last)
-        }
-        step_s = 1.0 if self.step_s is None else self.step_s
-        name = str(self.name)
+            return error
+        always = (0, len(self.states) - 1)
         return Trace(
-            id=name,
-            step_s=step_s,
+            id=str(self.name),
+            step_s=1.0 if self.step_s is None else self.step_s,
             objects=self.objects,
             states=tuple(self.states),
-            present=present,
-            place=self.place,
+            present={name: span for name, span in self.spans.items() if span != always},
+            place=self.table.place(rows[0][0]),
         )
 
     def _add(self, number: int, cells: Sequence[Any]) -> None:
         table = self.table
         if len(cells) != len(table.columns):
-            result = f"{len(cells)} cells; there are {len(table.columns)} columns"
             few = "there is a cell for every column; has the file been cut short?"
             many = "a text with a comma in it stands in quotes"
-            help_text = few if len(cells) < len(table.columns) else many
-            raise self._problem(f"this row has {result}", number, help_text)
+            raise self._problem(
+                f"this row has {len(cells)} cells; there are {len(table.columns)} columns",
+                number,
+                few if len(cells) < len(table.columns) else many,
+            )
         if is_empty(self.name):
             raise self._problem("this row does not say of which trace it is", number)
         self._go_to(cells[table.at[STEP]], number)
@@ -182,16 +153,17 @@ class _Building:
         self.now.append((number, cells))
 
     def _go_to(self, step: Any, number: int) -> None:
-        result = whole(step)
         current = len(self.states) if self.now else -1
-        if result == current + 1:
-            if self.now:
-                self._end_state()
-        elif result is None or result != current:
-            wanted = "0" if current < 0 else f"{current} or {current + 1}"
-            message = f"the step is {_shown(step)}; here it is {wanted}"
-            help_text = "the rows of a trace stand together, in the order of its steps, from 0 on"
-            raise self._problem(message, number, help_text)
+        step_number = whole(step)
+        if step_number is None or step_number not in (current, current + 1):
+            expected = "0" if current < 0 else f"{current} or {current + 1}"
+            raise self._problem(
+                f"the step is {_shown(step)}; here it is {expected}",
+                number,
+                "the rows of a trace stand together, in the order of its steps, from 0 on",
+            )
+        if self.now and step_number > current:
+            self._end_state()
 
     def _last(self, step_s: Any, number: int) -> None:
         if is_empty(step_s):
@@ -212,24 +184,20 @@ class _Building:
                 if not is_empty(cell(cells, column)):
                     raise self._problem(f"this row has a `{column}`, but no `object`", number)
             return
-        name = str(item)
+        name, step = str(item), len(self.states)
         if name not in self.objects:
             if is_empty(kind):
                 message = f"the first row of object `{name}` does not say its `type`"
                 raise self._problem(message, number)
             self.objects[name] = str(kind)
-            self.first[name] = len(self.states)
         elif not is_empty(kind) and str(kind) != self.objects[name]:
             message = f"object `{name}` is of type `{kind}`; before it is of `{self.objects[name]}`"
             raise self._problem(message, number)
-        self.last[name] = len(self.states)
+        self.spans[name] = (self.spans.get(name, (step, step))[0], step)
 
     def _end_state(self) -> None:
-        columns = [
-            self.table.at[name]
-            for name in (OBJECT, OTHER, *self.table.names)
-            if name in self.table.at
-        ]
+        at = self.table.at
+        columns = [at[name] for name in (OBJECT, OTHER, *self.table.names) if name in at]
         key = tuple([tuple([cells[column] for column in columns]) for _, cells in self.now])
         state = self.known.get(key)
         if state is None:

@@ -33,11 +33,9 @@ def format_of(file: str) -> Format:
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
-    """Read the traces of a file one by one.
+    """Read the traces of a file one by one, in the format that the end of its name says.
 
     In place of a bad one stands the RulecError that says why.
-
-    The end of its name says its format: `.csv`, `.parquet`, anything else is JSON Lines.
     """
     with opened(Path(path)) as stream:
         for chunk in read_chunks(stream, str(path), format_of(str(path))):
@@ -47,21 +45,13 @@ def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
 def read_chunks(
     stream: IO[bytes], file: str, form: Format
 ) -> Iterator[Sequence[Trace | RulecError]]:
-    """Read the traces of a stream in chunks.
+    """Read the traces of a stream in chunks, those of a table perhaps each a ``Block``.
 
-    In place of a bad one stands the RulecError that says why.
-
-    Of a table they may be a ``Block``.
-
-    Raises RulecError R0706 for Parquet that cannot be read here.
+    In place of a bad one stands the RulecError that says why. Raises RulecError R0706 for Parquet
+    that cannot be read here.
     """
-    if form == "jsonl":
-        yield from json_lines.read_chunks(stream, file)
-        return
-    if form == "parquet":
-        yield from read_parquet(stream, file)
-        return
-    yield from read_csv(stream, file)
+    readers = {"jsonl": json_lines.read_chunks, "csv": read_csv, "parquet": read_parquet}
+    yield from readers[form](stream, file)
 
 
 def write_traces(
@@ -105,10 +95,7 @@ def _leaves(value: Any) -> Iterator[Value]:
 
 
 def columns_for(kinds: Kinds) -> list[str]:
-    """Columns of a table for these names.
-
-    ValueError if two columns have one name.
-    """
+    """Columns of a table for these names. ValueError if two columns have one name."""
     taken = [name for name in kinds if name in OWN]
     if taken:
         raise ValueError(f"`{taken[0]}` is a column of its own and cannot be a name")

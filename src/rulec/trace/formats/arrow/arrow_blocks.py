@@ -69,11 +69,8 @@ def _last_start(waiting: Sequence[Piece], piece: Piece, table: Table) -> int | N
     """Start of the last trace of a piece; None if earlier."""
     at = table.at[TRACE]
     start = int(trace_starts(coded(piece.column(at)))[-1])
-    if start:
-        return start
-    if not waiting or waiting[-1].column(at)[-1] == piece.column(at)[0]:
-        return None
-    return 0
+    goes_on = not waiting or waiting[-1].column(at)[-1] == piece.column(at)[0]
+    return None if start == 0 and goes_on else start
 
 
 def _block(

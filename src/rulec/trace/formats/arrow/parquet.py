@@ -25,9 +25,7 @@ _AGAIN = "write or copy the file again"
 
 
 def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
-    """Read the traces of a Parquet file.
-
-    In place of a bad one stands the RulecError (R0509) that says why.
+    """Read the traces of a Parquet file; for a bad one there is the RulecError that says why.
 
     Raises:
         RulecError: R0706 if pyarrow is missing, or the stream is a pipe.
@@ -107,15 +105,8 @@ def _check_types(schema: Any, pyarrow: Any, file: str) -> None:
     types = pyarrow.types
     for name, kind in zip(schema.names, schema.types, strict=True):
         value = kind.value_type if types.is_dictionary(kind) else kind
-        tests = (
-            types.is_boolean,
-            types.is_integer,
-            types.is_float64,
-            types.is_string,
-            types.is_large_string,
-            types.is_null,
-        )
-        if not any(test(value) for test in tests):
+        known = ("boolean", "integer", "float64", "string", "large_string", "null")
+        if not any(getattr(types, f"is_{type_name}")(value) for type_name in known):
             message = f"the column `{name}` is of type {kind}"
             help_text = "types are bool, integers, double (float64), and string"
             raise problem(message, SourceLocation(file), help_text)
@@ -127,25 +118,18 @@ def write_parquet(
     stream: IO[bytes],
     file: str,
 ) -> None:
-    """Write a table; ``types`` gives each column's type by name.
+    """Write a table; ``types`` gives each column's, ``bool``, ``int``, ``float`` or ``str``.
 
-    Each is ``bool``, ``int``, ``float`` or ``str``. Raises RulecError R0706 without pyarrow.
+    Raises RulecError R0706 without pyarrow.
     """
     pyarrow, parquet = arrow(file)
-    kinds = {
-        bool: pyarrow.bool_(),
-        int: pyarrow.int64(),
-        float: pyarrow.float64(),
-        str: pyarrow.string(),
-    }
+    kinds = {bool: "bool", int: "int64", float: "float64", str: "string"}
     schema = pyarrow.schema([(name, kinds[kind]) for name, kind in types])
     waiting = iter(rows)
     with parquet.ParquetWriter(stream, schema) as writer:
         while chunk := list(islice(waiting, _ROWS_AT_ONCE)):
-            arrays = [
-                pyarrow.array(column, field.type)
-                for column, field in zip(zip(*chunk, strict=True), schema, strict=True)
-            ]
+            columns = zip(zip(*chunk, strict=True), schema.types, strict=True)
+            arrays = [pyarrow.array(column, kind) for column, kind in columns]
             writer.write_batch(pyarrow.record_batch(arrays, schema=schema))
 
 
