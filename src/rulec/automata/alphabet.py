@@ -31,10 +31,7 @@ def subject_of(proposition: ltl.Proposition) -> object:
 
 
 def reads_of(formula: ltl.Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRead, ...]:
-    """Reads of a formula, in order of first mention.
-
-    Comparisons of the same terms read one number.
-    """
+    """Reads of a formula, in order of first mention, one for each subject."""
     used: dict[object, list[ltl.Proposition]] = {}
     for proposition in propositions_of(formula):
         used.setdefault(subject_of(proposition), []).append(proposition)

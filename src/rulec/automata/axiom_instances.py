@@ -116,7 +116,7 @@ def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, 
 
 
 def possible_letters(reads: Sequence[Read | NumberRead], known: ltl.Formula) -> int:
-    """Bit set of the letters in which a formula without operators of time holds."""
+    """Bit set of letters in which a formula without time operators holds."""
     sets = letters_with(reads, propositions_of(known))
     return _letters_where(known, sets, everything=(1 << count_letters(reads)) - 1)
 

@@ -61,10 +61,7 @@ CONTRADICTORY_AXIOMS = Code(
 
 
 def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
-    """Error R0401, R0402 or R0409; ``failed`` is None if Spot's process ended.
-
-    Raises RuntimeError for a bug.
-    """
+    """R0401, R0402 or R0409; None if Spot's process ended. RuntimeError for bugs."""
     if failed is not None and failed.why == "bug":
         raise RuntimeError(f"while compiling rule {rule.name}:\n{failed.traceback}")
     if failed is not None and failed.why == "check":

@@ -1,4 +1,4 @@
-"""The navigation graph as data: layers of cells, their edges, and its other forms."""
+"""The navigation graph as data, and as a trace graph."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class NavigationGraph:
         return sum(len(followers) for layer in self.successors for followers in layer)
 
     def at_times(self, names: Mapping[str, str]) -> dict[str, tuple[int, int]]:
-        """First and last layers of those not always present, under their new names."""
+        """First and last layers of who is not always there, renamed."""
         always = (0, len(self.layers) - 1)
         spans = {new: self.present[name] for name, new in names.items()}
         return {new: span for new, span in spans.items() if span != always}
@@ -145,7 +145,7 @@ class NavigationGraph:
 
 
 def valuation(cell: Cell, names: Sequence[str], code: bytes) -> State:
-    """Surface and relations of a cell; ``code`` has a byte for each of ``names``."""
+    """Surface and relations of a cell; ``code``: a byte for each name."""
     if cell.partition == "paper":
         return {
             "position": dict(zip(names, code.decode("ascii"), strict=False)),

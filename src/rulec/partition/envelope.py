@@ -35,10 +35,9 @@ class Envelope:
 
 
 def envelope(graph: NavigationGraph, path: Sequence[int]) -> tuple[Envelope, ...]:
-    """Envelope of a path, layer by layer; ``path[p]`` is the index of its cell in layer p.
+    """Envelope of a path, layer by layer; ``path[p]`` is a cell's index.
 
-    Raises:
-        RulecError: R0609 if ``path`` does not follow the graph from its first layer.
+    Raises RulecError R0609 if ``path`` does not follow the graph from its first layer.
     """
     if len(path) > len(graph.layers):
         expected = f"at most {len(graph.layers)}, one a layer"

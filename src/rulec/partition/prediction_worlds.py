@@ -92,7 +92,7 @@ def _told_apart(graph: NavigationGraph, cells: Sequence[Cell]) -> dict[str, dict
 
 
 def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
-    """Paths without a collision in a world, with their valuations; None if there are none.
+    """Paths without a collision in a world; None if there are none.
 
     Obstacles have the names that they have in the scenario, whatever they do.
     """
@@ -118,7 +118,7 @@ def named_in(graph: NavigationGraph, world: World) -> dict[str, Obstacle]:
 
 
 def _in_world(graph: NavigationGraph, world: World) -> tuple[dict[str, Predicted], dict[str, str]]:
-    """Names in the graph and in the world of obstacles on the road."""
+    """Obstacles in a world by the graph's names, and the world's names."""
     who = {
         name: prediction
         for name, prediction in _predictions(graph).items()

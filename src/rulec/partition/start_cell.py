@@ -28,10 +28,9 @@ def start_cell(
     partition: PartitionName,
     extent: ExtentName,
 ) -> int:
-    """Cell of the ``first`` layer with ego's centre; on a border the one left and ahead.
+    """Cell of ego's centre; on a border the one left and ahead.
 
-    Raises:
-        RulecError: R0607 if an obstacle sweeps that place within the first interval.
+    Raises RulecError R0607 if an obstacle sweeps that place within the first interval.
     """
     s, d = places.s[scenario.ego.s], places.d[scenario.ego.d]
     cells = list(first.cells_at(s, d))

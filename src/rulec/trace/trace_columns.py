@@ -68,10 +68,7 @@ class Layout:
 
 
 def layout_of(lengths: Sequence[int] | NDArray[Any]) -> Layout:
-    """Layout of traces of these lengths.
-
-    ValueError unless they descend and end above 0.
-    """
+    """Layout of traces of these lengths, descending; ValueError for others."""
     result = np.asarray(lengths, dtype=np.int64)
     if result.ndim != 1 or (len(result) and result[-1] < 1) or (np.diff(result) > 0).any():
         raise ValueError("lengths of traces descend, and each is at least 1")

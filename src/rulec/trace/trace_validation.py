@@ -10,7 +10,7 @@ from rulec.trace.trace_model import Trace
 
 
 def check_trace(trace: Trace) -> None:
-    """Check states, step, and presence. Raises RulecError R0501, R0505 or R0506, with its place."""
+    """Check states, step, and presence. Raises R0501, R0505, R0506."""
     check_frame(trace)
     for number, state in enumerate(trace.states):
         # Asking for a mapping takes far longer than asking for a dictionary.

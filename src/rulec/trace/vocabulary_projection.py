@@ -40,7 +40,7 @@ def known_types(objects: Mapping[str, Sequence[str]], vocabulary: Vocabulary) ->
 
 
 def is_about(declaration: Declaration, own_type: str | None, vocabulary: Vocabulary) -> bool:
-    """Test whether objects of a type, None if undeclared, may be the first parameter."""
+    """Test whether objects of a type may be the first parameter."""
     if own_type is None or own_type not in vocabulary.types:
         return False
     return not declaration.parameters or vocabulary.is_subtype(own_type, declaration.parameters[0])
@@ -118,10 +118,10 @@ class _StateProjection:
         return kept
 
     def _value(self, name: str, value: _Signal) -> _Signal | None:
-        """Value without objects that its name is not about; None to leave it out."""
+        """Value without objects that its name is not about, or None."""
         declaration = self._vocabulary.declarations.get(name)
         by_partition = name in self._supplied
-        if not by_partition and not self._recorded:
+        if not (by_partition or self._recorded):
             return value
         if declaration is None or not (by_partition or _fits(name, value, declaration)):
             return None

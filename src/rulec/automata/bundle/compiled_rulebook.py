@@ -144,17 +144,14 @@ _ALIKE = {
 
 
 def alike(kind: type[Rulebook | Rule], source: object) -> dict[str, Any]:
-    """Fields of a rulebook or rule that its other forms have as they are."""
+    """Fields that a rulebook's or rule's other forms have alike."""
     return {name: getattr(source, name) for name in _ALIKE[kind]}
 
 
 def check_step(
     rule: CompiledRule, step_s: Fraction, what: str = "this", place: SourceLocation | None = None
 ) -> None:
-    """Refuse a step other than the one a rule was compiled for.
-
-    Raises RulecError R0507; ``what`` names in it whose step this is.
-    """
+    """Refuse (R0507) another step than a rule's; ``what`` has it."""
     if rule.step_s is None or rule.step_s == step_s:
         return
     step = number_in_words(step_s)

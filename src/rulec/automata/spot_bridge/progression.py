@@ -88,10 +88,7 @@ class Progression:
         return states, table
 
     def infinite(self) -> Any:
-        """The deterministic, complete, weak Büchi automaton of the formula on infinite words.
-
-        It must be decided.
-        """
+        """Deterministic, complete, weak Büchi automaton of a decided formula."""
         states, table = self._table()
         automaton = self._empty(len(states))
         for number, (state, edges) in enumerate(zip(states, table, strict=True)):

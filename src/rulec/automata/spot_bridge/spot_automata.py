@@ -1,4 +1,4 @@
-"""Spot's automata as HOA files, and as edges over sets of letters for tables."""
+"""Spot's automata as HOA files, and as edges for tables."""
 
 from __future__ import annotations
 

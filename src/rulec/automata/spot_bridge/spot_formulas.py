@@ -131,7 +131,7 @@ def projected(known: Formula, propositions: Sequence[Proposition]) -> Formula:
 
 
 def _read_back(formula: Any, named: dict[str, Proposition]) -> Formula:
-    """A Boolean formula of Spot's, a disjunction of conjunctions, as one of ours."""
+    """A disjunction of conjunctions, as Spot has it, as our formula."""
     if formula.is_tt() or formula.is_ff():
         return Constant(bool(formula.is_tt()))
     if formula._is(spot.op_ap):

@@ -1,4 +1,4 @@
-"""Adjacency of the cells of a plane, and their continuation in the next layer.
+"""Adjacency of a plane's cells, and their continuation in the next layer.
 
 Adjacent are cells by one of three definitions:
 
@@ -43,7 +43,7 @@ def neighbours(plane: Plane, adjacency: AdjacencyName) -> tuple[tuple[int, ...],
 
 
 def _side_by_side(row: Row, other: Row, *, corners: bool = False) -> Iterator[tuple[int, int]]:
-    """Cells of two rows' runs that share a stretch of ``s``, or with ``corners`` one place."""
+    """Cells of runs that share a stretch, with ``corners`` a point, of ``s``."""
     start = 0
     for run in row.runs:
         while start < len(other.runs) and other.runs[start].s_max < run.s_min:

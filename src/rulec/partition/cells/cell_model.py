@@ -42,7 +42,7 @@ class Cell:
 
     @property
     def signature(self) -> Signature:
-        """Relation to every object by its name: a letter, or (station, lateral) if ``fine``."""
+        """Relation to every object: a letter, or (station, lateral) if ``fine``."""
         if self.partition == "paper":
             return dict(zip(self.objects, self.code.decode("ascii"), strict=False))
         return {
@@ -84,13 +84,13 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """Road cut into cells for an interval or instant, its rows from right to left."""
+    """Road cut into cells at some time, its rows from right to left."""
 
     rows: tuple[Row, ...]
     cells: tuple[Cell, ...]
 
     def cells_at(self, s: float, d: float) -> Iterator[int]:
-        """Cells whose closure holds a point, first those to its right, and behind it."""
+        """Cells whose closure holds a point, those right and behind first."""
         for row in self.rows:
             if row.d_min <= d <= row.d_max:
                 for run in row.runs:

@@ -26,7 +26,7 @@ _Piece = tuple[int, int, bytes]
 def plane(
     roadway: Roadway, regions: Sequence[Region], partition: PartitionName, names: Sequence[str]
 ) -> Plane:
-    """Cut the road by the regions of obstacles, which have these ``names``, in their order."""
+    """Cut the road by regions of the obstacles with these ``names``."""
     s_cuts, d_cuts = _cuts(roadway, regions)
     rows = [list(_pieces(roadway, regions, s_cuts, bounds)) for bounds in pairwise(d_cuts)]
     numbers = _connected(rows)

@@ -140,7 +140,7 @@ def _wider(body: Box, half: float) -> Box:
 
 
 def _narrower(outline: Box, half: float, start: float) -> Box:
-    """The road on which ego's width stays, or is as close to the edge as at the start."""
+    """Road for ego's centre, as close to its edges as at start."""
     return Box(
         outline.s_min,
         outline.s_max,

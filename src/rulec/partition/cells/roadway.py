@@ -20,10 +20,7 @@ Snap = dict[float, float]
 
 
 def snap_table(fixed: Iterable[float], moving: Iterable[float]) -> Snap:
-    """Representative of every coordinate, a ``fixed`` one where possible.
-
-    Those of the road are fixed.
-    """
+    """Representative of every coordinate, one of the road's, ``fixed``, where possible."""
     ranked = sorted({*((value, 0) for value in fixed), *((value, 1) for value in moving)})
     table: Snap = {}
     group: list[tuple[float, int]] = []

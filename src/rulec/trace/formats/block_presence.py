@@ -52,10 +52,7 @@ class BlockPresence:
 
 
 def outlined(block: Block) -> BlockPresence:
-    """Objects and presence of a block.
-
-    Raises OddTableError where rows have to be looked at.
-    """
+    """Objects and presence of a block. Raises OddTableError."""
     starts, n_rows = block.starts, int(block.starts[-1])
     names = _names(block.columns[TRACE])
     trace = np.repeat(np.arange(len(block)), np.diff(starts))

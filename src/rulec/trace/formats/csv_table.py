@@ -33,9 +33,9 @@ _BOOLEANS = {"true": True, "false": False}
 
 
 def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
-    """Read the traces of a CSV file, of a large one in blocks, if Arrow is installed.
+    """Read the traces of a CSV file, or why they are bad (R0509).
 
-    In place of a bad one stands the RulecError (R0509) that says why.
+    A large file is read in blocks, if Arrow is installed.
     """
     error = _no_table(stream, file)
     if error is not None:
@@ -68,7 +68,7 @@ def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
 
 
 def _columns_if_large(stream: IO[bytes]) -> list[str] | None:
-    """Columns of a large file, left behind its first line; None of others, left as they were."""
+    """Columns of a large plain file, which are read; None of others."""
     if not stream.seekable() or find_spec("pyarrow") is None:
         return None
     start = stream.tell()
@@ -148,7 +148,7 @@ def _without_null(text: Iterable[str]) -> Iterator[str]:
 
 
 def _not_utf8(stream: IO[bytes], place: SourceLocation, reason: UnicodeDecodeError) -> RulecError:
-    """The first byte that is no UTF-8; of a pipe, which is read once, the place before it."""
+    """The first byte that is no UTF-8, in a pipe about where."""
     byte, where = reason.object[reason.start], "here or further on "
     if stream.seekable():
         stream.seek(0)

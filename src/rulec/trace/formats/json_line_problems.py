@@ -1,4 +1,4 @@
-"""Lines of JSON, each a trace or a state, and diagnostics for those that are refused."""
+"""Lines of JSON, decoded, and diagnostics for those refused."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Kind(Generic[Record]):
         return msgspec.json.Decoder(self.structure)
 
     def read(self, line: bytes, place: SourceLocation) -> Record | RulecError:
-        """What the line has, or the RulecError (R0501) that says why it is refused."""
+        """Decode a line, or say why it is refused (R0501)."""
         if len(line) > LONGEST_LINE_BYTES:
             return self.bad(f"the line is longer than {LONGEST_LINE_BYTES >> 20} MiB", place)
         try:
@@ -109,7 +109,7 @@ def _is_truncated(line: bytes) -> bool:
 
 
 def middle_of(line: bytes) -> str:
-    """Place at which a trace is cut off, such as ``state 6 of trace `t1` ``."""
+    """Where a trace is cut off, such as ``state 6 of trace `t1` ``."""
     open_: list[int | bytes | None] = []
     """For every list that has begun the place in it, for every object the key, if it has one."""
     called = b""

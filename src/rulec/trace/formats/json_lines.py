@@ -45,12 +45,12 @@ _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
 
 def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecError]]:
-    """Read traces, one a line, in chunks: a block of the stream, of a pipe what has arrived.
+    """Read traces, one a line, a block of the stream at a time.
 
-    For every line that is not blank there is a Trace, or the RulecError (R0501) that says why it is
-    none; for a stream without any trace one RulecError (R0501). The stream is called ``file`` in
-    messages. States that are written alike are the same object, as far as there is room to remember
-    them.
+    Of a pipe that is what has arrived. For every line that is not blank there is a Trace, or the
+    RulecError (R0501) that says why it is none; for a stream without any trace one RulecError
+    (R0501). The stream is called ``file`` in messages. States that are written alike are the same
+    object, as far as there is room to remember them.
     """
     number = result = 0
     read_state = _StateReader()

@@ -37,10 +37,10 @@ _STATE = Kind(
 
 
 def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
-    """Read the states of a stream as their lines arrive; blank lines are skipped.
+    """Read the states of a stream as their lines arrive.
 
-    For every line there is a LiveState, or the RulecError (R0501) that says why it is none; the
-    stream is called ``file`` in messages.
+    For every line that is not blank there is a LiveState, or the RulecError (R0501) that says why
+    it is none; the stream is called ``file`` in messages.
     """
     lines = chain.from_iterable(lines_as_they_come(stream, LONGEST_LINE_BYTES))
     for number, line in enumerate(lines, 1):

@@ -1,4 +1,4 @@
-"""Lines of a stream as they arrive, their locations, and files that are no traces."""
+"""Lines of a stream, their locations, and files without any traces."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def packed(beginning: bytes) -> Foreign | None:
 
 
 def foreign(beginning: bytes) -> Foreign | None:
-    """Kind of file with this beginning, some bytes or the first line, if no UTF-8 text."""
+    """Kind of file with this beginning; None for UTF-8 text."""
     some = beginning[:1000]
     kind = packed(beginning)
     if kind is None and _is_utf16(some):

@@ -1,4 +1,4 @@
-"""Traces as rows of a table, one a state and object; see docs/traces.md."""
+"""Traces as rows, one a state and object (docs/traces.md)."""
 
 from __future__ import annotations
 
@@ -57,10 +57,7 @@ class Table:
 
 
 def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
-    """Check that columns are named, distinct, with trace and step.
-
-    Raises RulecError R0509.
-    """
+    """Check (R0509) that columns are named, distinct, with trace and step."""
     for name in columns:
         if not name:
             raise problem("a column has no name", place)
@@ -83,7 +80,7 @@ def problem(message: str, place: SourceLocation, help_text: str = "") -> RulecEr
 def traces_in(
     rows: Iterable[Row], table: Table, file: SourceLocation
 ) -> Iterator[Trace | RulecError]:
-    """Read the traces of a table; for one whose rows are wrong there is the first RulecError.
+    """Read the traces of a table, or each one's first mistake.
 
     If ``rows`` raise a RulecError, it takes the place of the trace that they were about. A table
     without any trace gives one RulecError (R0509), about the ``file``.
@@ -117,7 +114,7 @@ class _Building:
     now: list[Row] = field(default_factory=list)
 
     def read(self, rows: Sequence[Row]) -> Trace | RulecError:
-        """The trace of these rows, or what is wrong with the first that is."""
+        """The trace of these rows, or their first mistake."""
         try:
             for number, cells in rows:
                 self._add(number, cells)

@@ -33,7 +33,7 @@ def format_of(file: str) -> Format:
 
 
 def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
-    """Read the traces of a file one by one, in the format that the end of its name says.
+    """Read the traces of a file, whose name's ending says its format.
 
     In place of a bad one stands the RulecError that says why.
     """
@@ -45,7 +45,7 @@ def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
 def read_chunks(
     stream: IO[bytes], file: str, form: Format
 ) -> Iterator[Sequence[Trace | RulecError]]:
-    """Read the traces of a stream in chunks, those of a table perhaps each a ``Block``.
+    """Read the traces of a stream in chunks; of a table perhaps a ``Block``.
 
     In place of a bad one stands the RulecError that says why. Raises RulecError R0706 for Parquet
     that cannot be read here.
@@ -95,7 +95,7 @@ def _leaves(value: Any) -> Iterator[Value]:
 
 
 def columns_for(kinds: Kinds) -> list[str]:
-    """Columns of a table for these names. ValueError if two columns have one name."""
+    """Columns of a table for these names; ValueError if one is double."""
     taken = [name for name in kinds if name in OWN]
     if taken:
         raise ValueError(f"`{taken[0]}` is a column of its own and cannot be a name")

@@ -1,4 +1,4 @@
-"""Tables that come in pieces, cut where traces end, with their columns as arrays."""
+"""Tables in pieces, cut where traces end, with columns as arrays."""
 
 from __future__ import annotations
 

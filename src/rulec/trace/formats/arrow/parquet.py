@@ -25,10 +25,9 @@ _AGAIN = "write or copy the file again"
 
 
 def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
-    """Read the traces of a Parquet file; for a bad one there is the RulecError that says why.
+    """Read the traces of a Parquet file, or why they are bad (R0509).
 
-    Raises:
-        RulecError: R0706 if pyarrow is missing, or the stream is a pipe.
+    Raises RulecError R0706 if pyarrow is missing, or the stream is a pipe.
     """
     if not stream.seekable():
         message = "Parquet has its table of contents at the end, so it cannot be read from a pipe"
@@ -118,10 +117,7 @@ def write_parquet(
     stream: IO[bytes],
     file: str,
 ) -> None:
-    """Write a table; ``types`` gives each column's, ``bool``, ``int``, ``float`` or ``str``.
-
-    Raises RulecError R0706 without pyarrow.
-    """
+    """Write a table; ``types`` has each column's. Raises RulecError R0706."""
     pyarrow, parquet = arrow(file)
     kinds = {bool: "bool", int: "int64", float: "float64", str: "string"}
     schema = pyarrow.schema([(name, kinds[kind]) for name, kind in types])
@@ -134,10 +130,7 @@ def write_parquet(
 
 
 def arrow(file: str) -> tuple[Any, Any]:
-    """Import Arrow and its Parquet module.
-
-    Raises RulecError R0706 if it is not installed.
-    """
+    """Arrow and its Parquet module, or RulecError R0706."""
     try:
         import pyarrow  # an extra, and 0.1 s
         from pyarrow import parquet  # an extra, and 0.1 s
