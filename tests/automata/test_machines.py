@@ -4,7 +4,7 @@ import pytest
 import spot
 from hypothesis import given
 
-from rulec.automata.alphabet import count_letters, reads_of
+from rulec.automata.alphabet import reads_of
 from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import (
@@ -23,7 +23,7 @@ from support.oracles.past_in_spot import spot_automaton
 
 def machine_of(formula):
     reads = reads_of(formula, VOCABULARY)
-    return build_machine(explore(translate(formula, reads), reads), reads, count_letters(reads))
+    return build_machine(explore(translate(formula, reads), reads), reads)
 
 
 P = Atom("p")

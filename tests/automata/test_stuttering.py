@@ -7,7 +7,7 @@ import spot
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.automata.alphabet import count_letters, reads_of
+from rulec.automata.alphabet import reads_of
 from rulec.automata.compiler import compile_rulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, stutter_invariant
 from rulec.automata.spot_bridge import explore, translate
@@ -20,7 +20,7 @@ from support.oracles.past_in_spot import in_spot, spot_automaton
 
 def machine_of(formula):
     reads = reads_of(formula, VOCABULARY)
-    return build_machine(explore(translate(formula, reads), reads), reads, count_letters(reads))
+    return build_machine(explore(translate(formula, reads), reads), reads)
 
 
 def one_of(*atoms):

@@ -5,7 +5,7 @@ import spot
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rulec.automata.alphabet import count_letters, knowledge, propositions_of, reads_of
+from rulec.automata.alphabet import knowledge, propositions_of, reads_of
 from rulec.automata.random_words import agrees, verdict
 from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
@@ -25,7 +25,7 @@ both_semantics = st.sampled_from(["stutter", "finite"])
 def machine_of(formula, semantics):
     reads = reads_of(formula, TIMED_VOCABULARY)
     found = translate(formula, reads, semantics)
-    return build_machine(explore(found, reads), reads, count_letters(reads))
+    return build_machine(explore(found, reads), reads)
 
 
 P, Q = Atom("p"), Atom("q")
@@ -147,7 +147,7 @@ def test_a_signal_called_alive_is_no_end_of_the_word(semantics):
     ]:
         found = translate(formula, reads, semantics)
         assert found.alive == ("alive (2)" if semantics == "finite" else None)
-        machine = build_machine(explore(found, reads), reads, 2)
+        machine = build_machine(explore(found, reads), reads)
         assert [verdict(machine, word) for word in ([1, 1], [1, 0], [0, 0])] == verdicts
 
 

@@ -14,7 +14,7 @@ from program import run
 from spot import gen
 from timing import children_ms, in_turns, processor_time
 
-from rulec.automata.alphabet import count_letters, reads_of
+from rulec.automata.alphabet import reads_of
 from rulec.automata.compiler import compile_rulebook
 from rulec.automata.random_words import agrees
 from rulec.automata.spot_bridge import explore, in_hoa, translate
@@ -95,7 +95,7 @@ def compiled(formulas: list[Formula]) -> Callable[[], None]:
         for formula in formulas:
             reads = reads_of(formula, vocabulary)
             found = translate(formula, reads)
-            machine = build_machine(explore(found, reads), reads, count_letters(reads))
+            machine = build_machine(explore(found, reads), reads)
             if not found.is_checked and not agrees(machine, formula, "stutter"):
                 raise RuntimeError(f"a machine is wrong: {formula}")
             in_hoa(found.automaton, "pattern", [])

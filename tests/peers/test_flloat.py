@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from rulec.automata.alphabet import count_letters, propositions_of, reads_of
+from rulec.automata.alphabet import propositions_of, reads_of
 from rulec.automata.random_words import verdict
 from rulec.automata.spot_bridge import explore, translate
 from rulec.automata.tables import build_machine
@@ -85,7 +85,7 @@ def in_flloat(formula, names):
 def by_machine(formula, words):
     reads = reads_of(formula, TIMED_VOCABULARY)
     found = translate(formula, reads, "finite")
-    machine = build_machine(explore(found, reads), reads, count_letters(reads))
+    machine = build_machine(explore(found, reads), reads)
     return [verdict(machine, [letter_number(reads, state) for state in word]) for word in words]
 
 

@@ -62,53 +62,48 @@ CONTRADICTORY_AXIOMS = Code(
 
 def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
     """R0401, R0402 or R0409; None if Spot's process ended. RuntimeError for bugs."""
-    if failed is not None and failed.why == "bug":
-        raise RuntimeError(f"while compiling rule {rule.name}:\n{failed.traceback}")
-    if failed is not None and failed.why == "check":
-        return FAILED_CHECK.at(
-            rule.span,
-            f"the automaton of rule `{rule.name}` is not equivalent to its formula",
-            help="this is a bug in Spot or rulec, not in the rulebook: please report the rule",
-        )
-    if failed is not None and failed.why == "facts":
-        return _contradiction(rule, failed.contradiction)
-    why = (
-        "it reads too many signals, enumerations and numbers at once"
-        if failed is not None and failed.why == "letters"
-        else f"it takes more than {cpu_limit_s} s or 2 GiB to build"
-    )
+    why = f"it takes more than {cpu_limit_s} s or 2 GiB to build"
+    match failed:
+        case Failed("bug", traceback):
+            raise RuntimeError(f"while compiling rule {rule.name}:\n{traceback}")
+        case Failed("check"):
+            return FAILED_CHECK.at(
+                rule.span,
+                f"the automaton of rule `{rule.name}` is not equivalent to its formula",
+                help="this is a bug in Spot or rulec, not in the rulebook: please report the rule",
+            )
+        case Failed("facts", contradiction=instances):
+            return _contradiction(rule, instances)
+        case Failed("letters"):
+            why = "it reads too many signals, enumerations and numbers at once"
+    # Seconds or steps, it is the number of them that makes it large.
+    has_bounds = any(operation.bound is not None for operation in operations_of(rule.formula))
+    more = "; each bound takes as many states as it has steps" if has_bounds else ""
     return AUTOMATON_TOO_LARGE.at(
         rule.span,
         f"the automaton of rule `{rule.name}` would be too large: {why}",
         help="say each of its demands in a rule of its own: rules joined by `and` multiply, "
-        "rules beside each other do not" + _bounds_help(rule),
+        "rules beside each other do not" + more,
     )
 
 
 def _contradiction(rule: Rule, instances: tuple[AxiomInstance, ...]) -> Diagnostic:
     axioms = list(dict.fromkeys(instance.fact for instance in instances))
     first, *others = axioms
-    said = ", ".join(f"`{formula_text(axiom.formula)}`" for axiom in axioms)
+    facts = ", ".join(f"`{formula_text(axiom.formula)}`" for axiom in axioms)
     types = {variable.name: variable.type for variable in rule.variables}
     who = sorted({f"a `{types[name]}`" for instance in instances for name in instance.variables})
     return CONTRADICTORY_AXIOMS.at(
         first.span,
-        f"these facts contradict each other: {said}" if others else f"{said} can never be a fact",
+        f"these facts contradict each other: {facts}" if others else f"{facts} can never be a fact",
         expected="no state can be so",
-        help="a fact is what holds in every state: correct or remove one of them"
-        if others
-        else "a fact is what holds in every state: correct or remove it",
+        help="a fact is what holds in every state: correct or remove "
+        + ("one of them" if others else "it"),
         labels=tuple(
             Label(axiom.span.place, "and so") for axiom in others if axiom.span is not None
         ),
         notes=(f"there would be no state with {' and '.join(who)}",) if who else (),
     )
-
-
-def _bounds_help(rule: Rule) -> str:
-    # Seconds or steps, it is the number of them that makes it large.
-    has_bounds = any(operation.bound is not None for operation in operations_of(rule.formula))
-    return "; each bound takes as many states as it has steps" if has_bounds else ""
 
 
 def no_spot(problem: str) -> Diagnostic:

@@ -117,9 +117,9 @@ def stutter_invariant(machine: MealyMonitor) -> bool:
     becomes of any word that goes on. In a minimal machine no two states have the same future, so
     that is seen in the table.
     """
+    successors, outputs = machine.successors, machine.outputs
     return all(
         successors[after][symbol] == after and outputs[after][symbol] == verdicts[symbol]
-        for successors, outputs in [(machine.successors, machine.outputs)]
         for row, verdicts in zip(successors, outputs, strict=True)
         for symbol, after in enumerate(row)
     )

@@ -102,8 +102,7 @@ def main() -> None:
 def _answer(job: Job) -> Done | Failed:
     from rulec.automata import spot_bridge  # Spot is loaded in the worker alone
 
-    n_letters = count_letters(job.reads)
-    if n_letters > MOST_LETTERS:
+    if count_letters(job.reads) > MOST_LETTERS:
         return Failed("letters")
     axioms = []
     for group in job.groups:
@@ -117,7 +116,7 @@ def _answer(job: Job) -> Done | Failed:
         return Failed("check")
     possible = possible_letters(job.reads, joined(AND, axioms)) if axioms else None
     automaton = spot_bridge.explore(translation, job.reads)
-    machine = build_machine(automaton, job.reads, n_letters, possible)
+    machine = build_machine(automaton, job.reads, possible)
     if not translation.is_checked and not agrees(machine, job.formula, job.semantics):
         return Failed("check")
     remarks = list(job.remarks)

@@ -13,6 +13,7 @@ from functools import reduce
 from operator import or_
 from typing import TypeVar
 
+from rulec.automata.alphabet import count_letters
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, sink_of
 
 Output = TypeVar("Output")
@@ -45,15 +46,15 @@ class DeterministicAutomaton:
 def build_machine(
     automaton: DeterministicAutomaton,
     reads: tuple[Read | NumberRead, ...],
-    n_letters: int,
     possible: int | None = None,
 ) -> MealyMonitor:
-    """The minimal machine of the automaton over ``n_letters`` letters.
+    """The minimal machine of the automaton over the letters of ``reads``.
 
     ``possible`` are the letters, one at least, that states can have, as bits; None for all of them.
     It does not depend on which of the language's automata it is given, down to its numbers: classes
     are numbered by their smallest letter, states in breadth-first order.
     """
+    n_letters = count_letters(reads)
     met = (1 << n_letters) - 1 if possible is None else possible
     classes = sorted(_letter_classes(automaton, met), key=lambda members: members & -members)
     successors, outputs = minimise(*_tables(automaton, classes), automaton.initial)

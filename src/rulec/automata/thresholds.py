@@ -72,10 +72,8 @@ def scale(read: NumberRead) -> ThresholdScale:
     variables = dict.fromkeys(name for _, term in read.terms for name in variables_of(term))
     names = dict.fromkeys(name for _, term in read.terms for name in names_in(term))
     quantity = None
-    if len(read.terms) == 1:
-        ((coefficient, term),) = read.terms
-        if coefficient == 1 and isinstance(term, QuantityTerm):
+    match read.terms:
+        case ((1, QuantityTerm() as term),):
             quantity = term
-    return ThresholdScale(
-        read, tuple(variables), tuple(names), quantity, tuple(map(floor_of, read.thresholds))
-    )
+    floors = tuple(map(floor_of, read.thresholds))
+    return ThresholdScale(read, tuple(variables), tuple(names), quantity, floors)

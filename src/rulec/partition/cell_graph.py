@@ -12,13 +12,15 @@ from rulec.partition.cells.cell_links import AdjacencyName
 from rulec.partition.cells.cell_model import Cell, Layer
 from rulec.partition.cells.occupancy import Predicted
 from rulec.partition.cells.regions import LATERAL_OF, STATION_OF, ExtentName, PartitionName
-from rulec.partition.time_margin import Edges, Margins
 from rulec.scenario import Obstacle, Scenario
 from rulec.trace import State, TraceGraph, Value
 from rulec.value_display import short_repr
 
 if TYPE_CHECKING:
     import networkx
+
+Edges = tuple[tuple[int, ...], ...]
+Margins = tuple[tuple[int | None, ...], ...]
 
 PAPER_SURFACE = {"carriageway": "R_cw", "crossing": "R_pc"}
 

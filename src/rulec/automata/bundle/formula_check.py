@@ -34,14 +34,13 @@ def _problems(
             case ltl.Same(left, right):
                 if not counted or not {left, right} <= variables:
                     yield "asks for the same object where there is none to compare"
-            case ltl.Unary(operator, operand):
-                if counted and operator not in BOOLEAN:
+            case ltl.Unary() | ltl.Binary() as operation:
+                if counted and operation.operator not in BOOLEAN:
                     yield "counts objects by what they do at other instants"
-                waiting.append(operand)
-            case ltl.Binary(operator, left, right):
-                if counted and operator not in BOOLEAN:
-                    yield "counts objects by what they do at other instants"
-                waiting += [right, left]
+                if isinstance(operation, ltl.Unary):
+                    waiting.append(operation.operand)
+                else:
+                    waiting += [operation.right, operation.left]
             case ltl.Constant():
                 pass
 

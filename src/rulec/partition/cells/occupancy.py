@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import count, pairwise
+from itertools import chain, count, pairwise
 
 from rulec.partition.cells.regions import OCCUPIED, ExtentName, PartitionName, Region, region_of
-from rulec.partition.cells.roadway import Roadway, Snap, coordinates, roadway, snap_table, snapped
+from rulec.partition.cells.roadway import Roadway, Snap, roadway, snap_table, snapped
 from rulec.scenario import Box, Obstacle, Scenario
 from rulec.scenario.motion import swept
 from rulec.scenario.time_grid import Timing
@@ -150,13 +150,12 @@ def _narrower(outline: Box, half: float, start: float) -> Box:
 
 
 def _snaps(scenario: Scenario, bodies: Sequence[Box]) -> tuple[Snap, Snap]:
-    road_s, road_d = coordinates(scenario.road)
-    boxes = [*bodies, scenario.ego.body, *([scenario.goal] if scenario.goal else [])]
-    ego = scenario.ego
-    return (
-        snap_table(road_s, [ego.s, *(x for box in boxes for x in (box.s_min, box.s_max))]),
-        snap_table(road_d, [ego.d, *(x for box in boxes for x in (box.d_min, box.d_max))]),
-    )
+    road, ego = scenario.road, scenario.ego
+    spans = [road.s, *(surface.s for surface in road.surfaces), *(gap.s for gap in road.missing)]
+    boxes = [*bodies, ego.body, *([scenario.goal] if scenario.goal else [])]
+    moving_s = [ego.s, *(place for box in boxes for place in (box.s_min, box.s_max))]
+    moving_d = [ego.d, *(place for box in boxes for place in (box.d_min, box.d_max))]
+    return snap_table(chain.from_iterable(spans), moving_s), snap_table(road.lanes, moving_d)
 
 
 def _appearances(

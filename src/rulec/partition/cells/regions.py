@@ -77,10 +77,7 @@ def region_of(
     taken = body_wide or Box(body.s_min, body.s_max, *lanes)
     if partition == "fine":
         return Region(index, taken, _FINE)
-    if not obstacle.walks:
-        return Region(index, taken, PAPER_TABLES["along"])
-    direction = facing(obstacle, *interval)
-    if direction in ("along", "against"):
-        return Region(index, taken, PAPER_TABLES[direction])
-    across = body_wide or Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
-    return Region(index, across, PAPER_TABLES[direction])
+    direction = facing(obstacle, *interval) if obstacle.walks else "along"
+    if direction in ("left", "right"):
+        taken = body_wide or Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
+    return Region(index, taken, PAPER_TABLES[direction])

@@ -8,7 +8,7 @@ than ``EPSILON_M`` is lost.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from rulec.scenario import Box, Road
@@ -84,12 +84,6 @@ class Roadway:
                     return True
                 start = max(start, hole.s_max)
         return start < end
-
-
-def coordinates(road: Road) -> tuple[Iterator[float], Iterator[float]]:
-    """All the road's own coordinates in ``s`` and in ``d``."""
-    intervals = (road.s, *(x.s for x in road.surfaces), *(x.s for x in road.missing))
-    return (value for interval in intervals for value in interval), iter(road.lanes)
 
 
 def roadway(road: Road, free: Box, s: Snap, d: Snap) -> Roadway:
