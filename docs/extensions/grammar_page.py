@@ -5,7 +5,7 @@ from pathlib import Path
 
 from sphinx.application import Sphinx
 
-from rulec.syntax.messages.expectations import spelling
+from rulec.syntax.messages.parse_context import spelling
 
 GRAMMAR = Path(__file__).resolve().parents[2] / "grammar" / "rulec.lark"
 

@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm, Same
-from rulec.logic.renaming import rename_variables
+from rulec.logic.free_names import rename_variables
 
 GAP_V, GAP_W = QuantityTerm("gap", ("v",)), QuantityTerm("gap", ("w",))
 

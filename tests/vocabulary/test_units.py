@@ -10,16 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.vocabulary.dimensions import ANGLE, ANGLE_IN_RADIANS, NUMBER
-from rulec.vocabulary.pint_units import _registry, pint_unit
-from rulec.vocabulary.unit_table import UNITS
-from rulec.vocabulary.units import (
+from rulec.vocabulary.dimensions import (
+    ANGLE,
+    ANGLE_IN_RADIANS,
     DIMENSIONS,
+    NUMBER,
+    UNITS,
     Dimension,
-    known_unit_names,
-    parse_unit,
-    unit_refusal,
 )
+from rulec.vocabulary.pint_units import _registry, pint_unit
+from rulec.vocabulary.units import known_unit_names, parse_unit, unit_refusal
 
 PINT = pint.UnitRegistry(non_int_type=Fraction)
 

@@ -23,10 +23,10 @@ from rulec.automata.alphabet import (
 )
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
-from rulec.logic.renaming import rename_variables
+from rulec.logic.free_names import rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.object_choices import choices
+from rulec.vocabulary.vocabulary_model import choices
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,7 @@ Nothing here prints. ``rulec.report`` turns diagnostics into text.
 """
 
 from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError
-from rulec.diagnostics.nearest import nearest_name
-from rulec.diagnostics.phrases import any_of, did_you_mean, named
+from rulec.diagnostics.phrases import any_of, did_you_mean, named, nearest_name
 from rulec.diagnostics.source_text import Source, SourceLocation, Span
 
 __all__ = [

@@ -116,11 +116,11 @@ def operations_of(formula: ltl.Formula) -> Iterator[ltl.Unary | ltl.Binary]:
     waiting = [formula]
     while waiting:
         match waiting.pop():
-            case ltl.Unary(_, operand) as one:
-                yield one
+            case ltl.Unary(_, operand) as operation:
+                yield operation
                 waiting.append(operand)
-            case ltl.Binary(_, left, right) as one:
-                yield one
+            case ltl.Binary(_, left, right) as operation:
+                yield operation
                 waiting += [right, left]
 
 
@@ -160,13 +160,9 @@ def _steps(bound: ltl.Bound | None, step_s: Fraction) -> ltl.Bound | None:
 
 
 def total_bound(formula: ltl.Formula) -> int:
-    """The sum of all bounds of the formula, in steps.
+    """The sum of all bounds of the formula in steps, each as far as it looks.
 
-    It is 0 if there are none but those of unbounded operators.
-
-    Each counts as far as it looks. ValueError for a bound in seconds.
+    ValueError for a bound in seconds.
     """
-    ranges = [
-        range_of(operation) for operation in operations_of(formula) if operation.bound is not None
-    ]
-    return sum(low if high is None else high for low, high in ranges)
+    bounded = (operation for operation in operations_of(formula) if operation.bound is not None)
+    return sum(low if high is None else high for low, high in map(range_of, bounded))

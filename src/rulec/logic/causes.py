@@ -139,7 +139,7 @@ def _of_search(
 
     It is for an instant within the range, with ``left`` at all those before it.
     """
-    wanted = part.operator not in _FAILING
+    sought = part.operator not in _FAILING
     weak = part.operator in _WEAK
     low, high = range_of(part)
     last = len(columns[right].values) - 1
@@ -147,8 +147,8 @@ def _of_search(
     # Beyond the last instant everything is as it is there, which is then on the way, too.
     beyond = start > last and not ends and (high is None or low <= high)
     start = last if beyond else start
-    result = columns[right].next(wanted, start)
-    broken = last + 1 if left is None else columns[left].next(not wanted, instant)
+    result = columns[right].next(sought, start)
+    broken = last + 1 if left is None else columns[left].next(not sought, instant)
     way = result + 1 if beyond else result
     if result <= end and broken >= way:
         yield right, result, result

@@ -161,10 +161,7 @@ def _names(data: Any) -> tuple[str, ...]:
 
 
 def number_from_data(data: Any) -> Fraction:
-    """The fraction that a text spells.
-
-    Raises ValueError if it spells none.
-    """
+    """The fraction that a text spells. Raises ValueError if it spells none."""
     if isinstance(data, str) and len(data) <= LONGEST and _FRACTION.fullmatch(data):
         number = Fraction(data)
         if str(number) == data:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 
 from rulec.logic import formula as ltl
@@ -12,10 +11,6 @@ from rulec.logic.fold import Algebra, fold
 def fold_constants(formula: ltl.Formula) -> ltl.Formula:
     """An equivalent formula in which ``and``, ``or``, ``implies``, ``not`` join no constants."""
     return fold(formula, _FOLDED)
-
-
-def _unchanged(formula: ltl.Formula) -> ltl.Formula:
-    return formula
 
 
 def _negation(operand: ltl.Formula) -> ltl.Formula:
@@ -42,15 +37,9 @@ def _implication(left: ltl.Formula, right: ltl.Formula) -> ltl.Formula:
     return ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right)
 
 
-def _operation(
-    formula: ltl.Unary | ltl.Binary, value_of: Callable[[ltl.Formula], ltl.Formula]
-) -> ltl.Formula:
-    return ltl.with_operands(formula, value_of)
-
-
 _FOLDED: Algebra[ltl.Formula] = Algebra(
-    proposition=_unchanged,
-    identity=_unchanged,
+    proposition=lambda proposition: proposition,
+    identity=lambda same: same,
     constant=ltl.Constant,
     negation=_negation,
     conjunction=partial(_joined, ltl.BinaryOperator.AND, True),
@@ -58,5 +47,5 @@ _FOLDED: Algebra[ltl.Formula] = Algebra(
     implication=_implication,
     equivalence=partial(ltl.Binary, ltl.BinaryOperator.IFF),
     difference=partial(ltl.Binary, ltl.BinaryOperator.XOR),
-    operation=_operation,
+    operation=ltl.with_operands,
 )

@@ -61,10 +61,7 @@ class Atom:
 
 @dataclass(frozen=True, slots=True)
 class QuantityTerm:
-    """A number in every state: ``name(arguments)``.
-
-    It is in the unit of its declaration.
-    """
+    """A number in every state: ``name(arguments)``. It is in the unit of its declaration."""
 
     name: str
     arguments: tuple[str, ...] = ()

@@ -1,10 +1,13 @@
-"""Free variables and declarations of formulas and terms."""
+"""What formulas speak of: variables, declarations, inputs; and formulas with other variables."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 
 from rulec.logic import formula as ltl
+from rulec.logic.linear_comparison import comparison
 
 
 def variables_of(what: ltl.Formula | ltl.Term) -> Iterator[str]:
@@ -45,3 +48,81 @@ def names_in(what: ltl.Formula | ltl.Term) -> Iterator[str]:
             yield from names_in(right)
         case ltl.Constant() | ltl.Same():
             return
+
+
+def rename_variables(formula: ltl.Formula, names: Mapping[str, str]) -> ltl.Formula:
+    """Rename all free variables of a formula at once.
+
+    Those not in ``names`` stay.
+
+    Different variables keep different names, and no count inside has a new name for its variable.
+    """
+    match formula:
+        case ltl.Atom():
+            return replace(formula, arguments=_renamed(formula.arguments, names))
+        case ltl.Comparison(terms, relation, limit, text):
+            # Other names may come in another order.
+            return comparison(
+                {_renamed_term(term, names): factor for factor, term in terms},
+                relation,
+                limit,
+                _ARGUMENT.sub(lambda found: found[1] + names.get(found[2], found[2]), text),
+            )
+        case ltl.Same(left, right):
+            return ltl.Same(*_renamed((left, right), names))
+        case ltl.Constant():
+            return formula
+        case ltl.Unary(_, operand):
+            return replace(formula, operand=rename_variables(operand, names))
+        case ltl.Binary(_, left, right):
+            return replace(
+                formula, left=rename_variables(left, names), right=rename_variables(right, names)
+            )
+
+
+_ARGUMENT = re.compile(r"([(,]\s*)(\w+)(?=\s*[,)])")
+
+
+def _renamed_term(term: ltl.Term, names: Mapping[str, str]) -> ltl.Term:
+    match term:
+        case ltl.QuantityTerm(name, arguments):
+            return ltl.QuantityTerm(name, _renamed(arguments, names))
+        case ltl.Count(variable, kind, body):
+            free = {old: new for old, new in names.items() if old != variable}
+            return ltl.Count(variable, kind, rename_variables(body, free))
+
+
+def _renamed(arguments: tuple[str, ...], names: Mapping[str, str]) -> tuple[str, ...]:
+    return tuple(names.get(argument, argument) for argument in arguments)
+
+
+def required_inputs(
+    formula: ltl.Formula, objects: Mapping[str, str], fits: Callable[[str, str], bool]
+) -> Iterator[ltl.Atom | ltl.QuantityTerm]:
+    """Every atom and quantity that a formula reads, with repetitions.
+
+    Those of every object that may count are included.
+
+    ``objects`` maps those that are there to their types; ``fits`` tells whether the first of two
+    types is the second or one below it.
+    """
+    for atom in ltl.atoms_of(formula):
+        if isinstance(atom, ltl.Comparison):
+            for _, term in atom.terms:
+                yield from _of_term(term, objects, fits)
+        else:
+            yield atom
+
+
+def _of_term(
+    term: ltl.Term, objects: Mapping[str, str], fits: Callable[[str, str], bool]
+) -> Iterator[ltl.Atom | ltl.QuantityTerm]:
+    if isinstance(term, ltl.QuantityTerm):
+        yield term
+        return
+    for name, kind in objects.items():
+        if fits(kind, term.type):
+            # What is asked of the object that stands in the count's place.
+            yield from required_inputs(
+                rename_variables(term.body, {term.variable: name}), objects, fits
+            )

@@ -33,8 +33,8 @@ def formula_text(formula: ltl.Formula) -> str:
             return "true" if value else "false"
         case ltl.Unary(operator, operand, bound):
             inner = formula_text(operand)
-            said = _operator(operator, bound)
-            return f"{said} {f'({inner})' if isinstance(operand, ltl.Binary) else inner}"
+            word = _operator(operator, bound)
+            return f"{word} {f'({inner})' if isinstance(operand, ltl.Binary) else inner}"
         case ltl.Binary(operator, left, right, bound):
             # Printed as it is read: chains of `and` and `or` to the left, phases to the right.
             to_the_left = operator in (ltl.BinaryOperator.AND, ltl.BinaryOperator.OR)
@@ -73,10 +73,7 @@ def time_in_words(amount: Fraction, unit: str) -> str:
 
 
 def number_in_words(number: Fraction) -> str:
-    """A number as a decimal, or else a fraction: ``0.5``, ``5/18``.
-
-    The decimal may be long.
-    """
+    """A number as a decimal, or else a fraction: ``0.5``, ``5/18``. The decimal may be long."""
     rest = number.denominator
     places = 0
     for prime in (2, 5):

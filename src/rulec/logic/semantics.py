@@ -46,10 +46,7 @@ def truth_values(
 def values_of_parts(
     formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> dict[ltl.Formula, list[bool]]:
-    """Truth values of the formula and of every part.
-
-    Raises ValueError as ``holds`` does.
-    """
+    """Truth values of the formula and of every part. Raises ValueError as ``holds`` does."""
     known = extended_values(formula, word, semantics)
     return {part: values[: len(word)] for part, values in known.items()}
 

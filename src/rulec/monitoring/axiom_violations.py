@@ -11,14 +11,13 @@ from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.logic.formula import Atom, Count, atoms_of
-from rulec.logic.free_names import names_in
+from rulec.logic.free_names import names_in, rename_variables
 from rulec.logic.kleene import Unknown, holds, number_of
 from rulec.logic.printing import formula_text, term_text
-from rulec.logic.renaming import rename_variables
 from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
 from rulec.monitoring.state_view import StateView
 from rulec.trace import Value
-from rulec.vocabulary.object_choices import choices
+from rulec.vocabulary.vocabulary_model import choices
 
 
 class ImpossibleStateError(RulecError):

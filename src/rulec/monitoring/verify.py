@@ -16,7 +16,7 @@ from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
 from rulec.trace.trace_validation import check_trace
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.object_choices import choices
+from rulec.vocabulary.vocabulary_model import choices
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Final, Literal, TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax import tree
-from rulec.syntax.building.rules import Clause, RuleHead
+from rulec.syntax.building.rules import Clause
 from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS
 from rulec.syntax.messages import whole_file
 
-Said = tuple[str, Clause | None, Span]
+ClausePart = tuple[str, Clause | None, Span]
 """A clause's word, what it says (None if that could not be read), and the word's place."""
 
 Part = tree.FileLine | tree.HeaderLine | tree.Item
@@ -22,8 +23,8 @@ _Kind = TypeVar("_Kind")
 
 
 def assemble_rule(
-    head: RuleHead,
-    parts: Sequence[Said | tree.ExampleItem | None],
+    head: tree.RuleItem,
+    parts: Sequence[ClausePart | tree.ExampleItem | None],
     span: Span,
     head_span: Span,
     *,
@@ -31,42 +32,37 @@ def assemble_rule(
 ) -> tuple[tree.RuleItem, list[Diagnostic]]:
     """Assemble a rule; None stands for an unreadable example."""
     mistakes: list[Diagnostic] = []
-    said: dict[str, Said] = {}
+    first_given: dict[str, ClausePart] = {}
     for part in parts:
         if isinstance(part, tuple):
-            first = said.setdefault(part[0], part)
+            first = first_given.setdefault(part[0], part)
             if first is not part and part[0] != "unless":
                 what = "in force" if part[0] == "in" else part[0]
                 mistakes.append(whole_file.given_twice(f"`{what}`", part[2], first[2]))
     unread = any(part is None or (isinstance(part, tuple) and part[1] is None) for part in parts)
     complete = complete and not unread
-    if "require" not in said and complete and not head.override:
+    if "require" not in first_given and complete and not head.override:
         mistakes.append(_no_require(head, head_span))
         complete = False
 
     def value(word: str, kind: type[_Kind]) -> _Kind | None:
-        result = said[word][1] if word in said else None
+        result = first_given[word][1] if word in first_given else None
         return result if isinstance(result, kind) else None
 
     def formula(word: str) -> tree.Formula | None:
-        result = said[word][1] if word in said else None
+        result = first_given[word][1] if word in first_given else None
         clauses = tree.Text | tree.Unless | tree.InForce | str
         return None if isinstance(result, clauses) else result
 
     certainty = value("certainty", str)
-    rule = tree.RuleItem(
-        strength=head.strength,
-        name=head.name,
-        variables=head.variables,
+    rule = replace(
+        head,
         require=formula("require"),
         cite=value("cite", tree.Text),
         says=value("says", tree.Text),
         examples=tuple(part for part in parts if isinstance(part, tree.ExampleItem)),
         complete=complete,
         span=span,
-        level=head.level,
-        weight=head.weight,
-        override=head.override,
         unless=tuple(
             part[1]
             for part in parts
@@ -99,8 +95,8 @@ def assemble_file(source: Source, parts: Sequence[Part]) -> tuple[tree.File, lis
                 whole_file.given_twice(f"`{word}`", line.span, lines[0].span) for line in lines[1:]
             ]
         mistakes += _used_twice(parts)
-        said = {mistake.place for mistake in mistakes}
-        mistakes += [diagnostic for diagnostic in _misplaced(parts) if diagnostic.place not in said]
+        reported = {mistake.place for mistake in mistakes}
+        mistakes += [mistake for mistake in _misplaced(parts) if mistake.place not in reported]
         mistakes += _no_rule(parts)
     file = tree.File(
         kind=kind,
@@ -199,7 +195,7 @@ def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
             )
 
 
-def _no_require(head: RuleHead, span: Span) -> Diagnostic:
+def _no_require(head: tree.RuleItem, span: Span) -> Diagnostic:
     return whole_file.MISSING_PART.at(
         span,
         f"rule `{head.name.text}` requires nothing",

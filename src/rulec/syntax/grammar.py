@@ -79,10 +79,7 @@ class TooDeep:
 
 
 def parse_piece(start: Start, text: str, begin: int, end: int) -> ParseNode | Mismatch | TooDeep:
-    """Parse characters ``begin`` to ``end`` of a text.
-
-    Positions count from the text's start.
-    """
+    """Parse characters ``begin`` to ``end`` of a text. Positions count from the text's start."""
     try:
         # Not a `TextSlice`: Lark would count the lines before every piece anew, which takes
         # quadratic time in all.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import ModuleType
 from typing import TypeVar, cast
 
@@ -177,4 +177,4 @@ class _Reader:
             return None
         span = span_of(self.source, self.tokens, pieces)
         good = cast("list[tree.ExampleState]", states)
-        return tree.ExampleItem(head.accepts, tuple(good), head.label, head.objects, span=span)
+        return replace(head, states=tuple(good), span=span)

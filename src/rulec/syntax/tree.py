@@ -114,10 +114,7 @@ class Infix(Grouping):
 
 @dataclass(frozen=True, slots=True)
 class Compare(Grouping):
-    """Comparison of two numbers: ``left < right``.
-
-    ``relation`` is one of ``< <= = != >= >``.
-    """
+    """Comparison of two numbers: ``left < right``. ``relation`` is one of ``< <= = != >= >``."""
 
     relation: Literal["<", "<=", "=", "!=", ">=", ">"]
     left: Formula

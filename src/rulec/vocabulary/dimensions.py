@@ -1,4 +1,4 @@
-"""Dimensions and units, with exact factors."""
+"""Dimensions and units with exact factors, and the units that rulebooks normally use."""
 
 from __future__ import annotations
 
@@ -44,9 +44,8 @@ class Dimension:
     @property
     def name(self) -> str:
         """In words: ``speed``; if it has none, as units are written: ``length^2/time``."""
-        named = _NAMES.get(self)
-        if named is not None:
-            return named
+        if self in _NAMES:
+            return _NAMES[self]
         above = [_power(base, power) for base, power in self.exponents if power > 0]
         below = [_power(base, -power) for base, power in self.exponents if power < 0]
         return "/".join(["*".join(above) or "1", *below])
@@ -131,3 +130,61 @@ class Refusal:
     text: str
     why: str
     instead: str
+
+
+# Spelled as Pint spells them: reading `km/h` does not take loading Pint and its registry, a quarter
+# of a second. Every row equals what Pint says; a test compares them.
+_ROWS: tuple[tuple[Dimension, str, str], ...] = (
+    (LENGTH, "1", "m meter meters metre metres"),
+    (LENGTH, "1000", "km kilometer kilometers kilometre kilometres"),
+    (LENGTH, "0.1", "dm"),
+    (LENGTH, "0.01", "cm centimeter centimeters centimetre centimetres"),
+    (LENGTH, "0.001", "mm millimeter millimeters millimetre millimetres"),
+    (LENGTH, "0.0254", "in inch inches"),
+    (LENGTH, "0.3048", "ft foot feet"),
+    (LENGTH, "0.9144", "yd yard yards"),
+    (LENGTH, "1609.344", "mi mile miles"),
+    (LENGTH, "1852", "nmi"),
+    (TIME, "1", "s sec second seconds"),
+    (TIME, "0.001", "ms millisecond milliseconds"),
+    (TIME, "60", "min minute minutes"),
+    (TIME, "3600", "h hr hour hours"),
+    (TIME, "86400", "d day days"),
+    (TIME, "604800", "week weeks"),
+    (SPEED, "1", "mps"),
+    (SPEED, "5/18", "kph"),
+    (SPEED, "0.44704", "mph"),
+    (SPEED, "0.3048", "fps"),
+    (SPEED, "463/900", "kt knot knots"),
+    (MASS, "0.001", "g gram grams"),
+    (MASS, "1", "kg kilogram kilograms"),
+    (MASS, "1000", "t tonne tonnes"),
+    (MASS, "0.45359237", "lb pound pounds"),
+    (ANGLE, "1", "° deg degree degrees"),
+    (ANGLE_IN_RADIANS, "1", "rad radian radians"),
+    (NUMBER, "0.01", "% percent"),
+    (NUMBER, "0.001", "permille"),
+    (FREQUENCY, "1", "Hz hertz"),
+)
+
+UNITS: Mapping[str, Unit] = MappingProxyType(
+    {
+        name: Unit(name, dimension, Fraction(factor))
+        for dimension, factor, names in _ROWS
+        for name in names.split()
+    }
+)
+"""The common units without powers and divisions, by the name."""
+
+COMPOSITE = ("km/h", "m/s", "m/s^2", "ft/s")
+"""Composed units that people most often mean when they mistype one."""
+
+_TON = (
+    "a ton is 1000 kg, 2000 lb or 2240 lb, according to the country",
+    "write `t` (1000 kg), `short_ton` (2000 lb) or `long_ton` (2240 lb)",
+)
+
+REFUSED: Mapping[str, Refusal] = MappingProxyType(
+    {name: Refusal(name, *_TON) for name in ("ton", "tons")}
+)
+"""Names that mean different units to different readers."""

@@ -6,8 +6,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from rulec.vocabulary.dimensions import Dimension, Refusal, Unit
-from rulec.vocabulary.unit_table import REFUSED
+from rulec.vocabulary.dimensions import REFUSED, Dimension, Refusal, Unit
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -44,10 +43,10 @@ def pint_unit(name: str) -> Unit | Refusal | None:
     registry = _registry()
     if registry is None:
         return None
-    spelled = registry.parse_unit_name(name)
-    if not spelled:
+    readings = registry.parse_unit_name(name)
+    if not readings:
         return None
-    prefix, base_name, _plural = spelled[0]
+    prefix, base_name, _plural = readings[0]
     if prefix and base_name in REFUSED:
         return Refusal(name, REFUSED[base_name].why, REFUSED[base_name].instead)
     try:

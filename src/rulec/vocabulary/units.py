@@ -9,19 +9,8 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
-from rulec.vocabulary.dimensions import DIMENSIONS, NUMBER, Dimension, Refusal, Unit
+from rulec.vocabulary.dimensions import COMPOSITE, NUMBER, REFUSED, UNITS, Refusal, Unit
 from rulec.vocabulary.pint_units import pint_unit
-from rulec.vocabulary.unit_table import COMPOSITE, REFUSED, UNITS
-
-__all__ = [
-    "DIMENSIONS",
-    "Dimension",
-    "Refusal",
-    "Unit",
-    "known_unit_names",
-    "parse_unit",
-    "unit_refusal",
-]
 
 # Pint's longest name has 41 letters; the limits keep hostile texts from costing time.
 _LONGEST = 64

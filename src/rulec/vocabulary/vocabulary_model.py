@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import permutations, product
 from types import MappingProxyType
 
 from rulec.value_display import short_repr
@@ -95,3 +96,24 @@ class Vocabulary:
     @cached_property
     def _above(self) -> Mapping[str, frozenset[str]]:
         return {name: frozenset(self.ancestors(name)) for name in self.types}
+
+
+def choices(
+    types: Sequence[str], objects: Mapping[str, str], vocabulary: Vocabulary
+) -> Iterator[tuple[str, ...]]:
+    """All choices of distinct objects for the types.
+
+    ``objects`` maps each object to its type.
+
+    An object of a subtype fits, too. Of no types there is one choice, the empty one.
+    """
+    fitting = [
+        [item for item, kind in objects.items() if vocabulary.is_subtype(kind, type_name)]
+        for type_name in types
+    ]
+    if len(set(types)) == 1:
+        yield from permutations(fitting[0], len(types))
+        return
+    for chosen in product(*fitting):
+        if len(set(chosen)) == len(chosen):
+            yield chosen

@@ -13,8 +13,7 @@ from rulec.automata.alphabet import count_letters, joined, letters_with, proposi
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.logic import formula as ltl
 from rulec.logic.fold import bit_sets, fold
-from rulec.logic.free_names import variables_of
-from rulec.logic.renaming import rename_variables
+from rulec.logic.free_names import rename_variables, variables_of
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, canonical_term, counts_in
 from rulec.witnesses.undecided import UndecidedError

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rulec.logic import formula as ltl
-from rulec.logic.renaming import rename_variables
+from rulec.logic.free_names import rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.object_choices import choices
+from rulec.vocabulary.vocabulary_model import choices
 
 COUNTED = "?"
 """The variable of every count in a universe; that of one with counts inside is longer."""

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Literal
 
 from rulec.logic.formula import Atom, Bound, Comparison, Count, QuantityTerm, Relation, Term
-from rulec.logic.printing import formula_text
+from rulec.logic.printing import number_in_words, term_text
 
 _VERBS: dict[Relation, tuple[str, str]] = {
     "<": ("is less than", "is not less than"),
@@ -36,20 +36,13 @@ _MOST_PLACES = 12
 
 def number_text(value: Fraction) -> str:
     """An exact number as a short decimal, or else a fraction."""
-    for places in range(_MOST_PLACES + 1):
-        scaled = value * 10**places
-        if scaled.denominator == 1:
-            digits = str(abs(scaled.numerator)).rjust(places + 1, "0")
-            cut = len(digits) - places
-            sign = "-" if value < 0 else ""
-            return f"{sign}{digits[:cut]}{'.' if places else ''}{digits[cut:]}"
-    return str(value)
+    return number_in_words(value) if 10**_MOST_PLACES % value.denominator == 0 else str(value)
 
 
 def spoken(name: str) -> str:
     """A name in spoken words: ``in_front_of`` becomes three, ``R_cw`` stays."""
-    formula_text = re.fullmatch(r"[^\W\dA-Z_]+(_[^\W\dA-Z_]+)+", name)
-    return name.replace("_", " ") if formula_text else name
+    several = re.fullmatch(r"[^\W\dA-Z_]+(_[^\W\dA-Z_]+)+", name)
+    return name.replace("_", " ") if several else name
 
 
 def listed(names: Sequence[str]) -> str:
@@ -142,25 +135,13 @@ def terms_text(terms: Sequence[tuple[Fraction, Term]]) -> str:
     return text
 
 
-def term_text(term: Term) -> str:
-    """A quantity or a count as a rulebook would say it."""
-    match term:
-        case QuantityTerm(name, arguments):
-            return f"{name}({', '.join(arguments)})" if arguments else name
-        case Count(variable, type_name, body):
-            return f"count {variable}: {type_name} ({formula_text(body)})"
-
-
 def amount(value: Fraction, unit: Literal["s", "steps"]) -> str:
     """``3 s``, ``1 step``, ``2 steps``."""
     return f"{number_text(value)} {'step' if unit == 'steps' and value == 1 else unit}"
 
 
 def span(bound: Bound, beyond: str) -> str:
-    """A time span: ``from 1 s to 4 s later``.
-
-    ``beyond`` is ``later`` or ``before``.
-    """
+    """A time span: ``from 1 s to 4 s later``. ``beyond`` is ``later`` or ``before``."""
     low = amount(bound.low, bound.unit)
     if bound.high is None:
         return f"{low} or more {beyond}"

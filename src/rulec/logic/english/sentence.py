@@ -87,10 +87,7 @@ def exemption(formula: ltl.Formula, scope: str) -> Phrase:
 
 
 def condition(formula: ltl.Formula, *, guards: bool) -> Phrase:
-    """The condition of a rule as a phrase.
-
-    ``guards``: it guards a stretch of the trace.
-    """
+    """The condition of a rule as a phrase. ``guards``: it guards a stretch of the trace."""
     when = _WHEN["throughout" if guards else "initially"]
     return _after(f"it counts only if, {when},", phrase(formula, inside=True))
 
@@ -107,10 +104,7 @@ def _for_every(variables: Sequence[tuple[str, str]], related: Related) -> str:
 
 
 def phrase(formula: ltl.Formula, *, inside: bool) -> Phrase:
-    """A formula as a phrase.
-
-    ``inside``: it speaks of another time than the start of the trace.
-    """
+    """A formula as a phrase. ``inside``: it speaks of another time than the start of the trace."""
     at_start = "" if inside else " at the start"
     match formula:
         case ltl.Unary(ltl.UnaryOperator.NOT, operand) if not _counts(operand):

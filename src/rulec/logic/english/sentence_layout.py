@@ -15,10 +15,7 @@ _ROMAN = ((50, "l"), (40, "xl"), (10, "x"), (9, "ix"), (5, "v"), (4, "iv"), (1, 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line of a sentence, ``depth`` lists deep.
-
-    The first one has no label.
-    """
+    """A line of a sentence, ``depth`` lists deep. The first one has no label."""
 
     depth: int
     label: str

@@ -19,7 +19,7 @@ from rulec.monitoring.online.group_letters import GroupLetters
 from rulec.monitoring.online.rule_group import GroupNode, PreparedRule, RuleGroup, RuleGroups
 from rulec.monitoring.state_validation import check_state
 from rulec.trace import State
-from rulec.vocabulary.object_choices import choices
+from rulec.vocabulary.vocabulary_model import choices
 
 Letters: TypeAlias = list[int]
 """For each binding of each group, one after the other, the letter that it reads."""

@@ -13,7 +13,7 @@ from itertools import islice, product
 
 from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import comparison
-from rulec.vocabulary.units import Dimension
+from rulec.vocabulary.dimensions import Dimension
 
 MOST_CASES = 64
 """More cases in one comparison are no condition that anyone could check by reading."""

@@ -14,7 +14,7 @@ from rulec.rulebook.elaborate.elaboration_messages import too_long
 from rulec.rulebook.elaborate.scope import Evaluate, Scope
 from rulec.rulebook.names.declaration_messages import unknown_unit
 from rulec.syntax import tree
-from rulec.vocabulary.units import DIMENSIONS
+from rulec.vocabulary.dimensions import DIMENSIONS
 
 _LONGEST = 400
 """Characters of a number; and what its exponent may be. Floats need fewer."""

@@ -14,7 +14,7 @@ from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.syntax import tree
-from rulec.vocabulary.units import DIMENSIONS
+from rulec.vocabulary.dimensions import DIMENSIONS
 
 
 def check_constants_and_macros(

@@ -12,7 +12,7 @@ from rulec.rulebook.elaborate.elaboration_messages import kind_of, origins, shor
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, WRONG_ARITY
 from rulec.rulebook.overlay.rulebook_overlay import Value
 from rulec.syntax import tree
-from rulec.vocabulary.units import Dimension
+from rulec.vocabulary.dimensions import Dimension
 
 if TYPE_CHECKING:
     from rulec.rulebook.elaborate.scope import Scope

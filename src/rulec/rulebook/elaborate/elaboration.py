@@ -19,7 +19,7 @@ from rulec.rulebook.elaborate.rule_messages import unused_variable
 from rulec.rulebook.elaborate.scope import AnyArgument, BoundVariable, Scope
 from rulec.rulebook.names.declaration_messages import twice
 from rulec.syntax import tree
-from rulec.vocabulary.units import DIMENSIONS
+from rulec.vocabulary.dimensions import DIMENSIONS
 
 _OF_ONE_STATE = frozenset(("not", "and", "or", "implies", "iff", "xor"))
 """The operators that are not temporal."""

@@ -15,7 +15,7 @@ from rulec.syntax import tree
 from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.tree_printer import print_formula
 from rulec.vocabulary import Enumeration
-from rulec.vocabulary.units import DIMENSIONS, Dimension
+from rulec.vocabulary.dimensions import DIMENSIONS, Dimension
 
 OPERATOR_BEFORE_THEN = Code(
     "R0311",

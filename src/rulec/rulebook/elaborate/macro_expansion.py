@@ -11,7 +11,7 @@ from rulec.rulebook.elaborate import constant_messages as say
 from rulec.rulebook.elaborate.scope import SIDES, AnyArgument, BoundVariable, Call, Evaluate, Scope
 from rulec.rulebook.overlay.rulebook_overlay import Value, in_force, never_in_force
 from rulec.syntax import tree
-from rulec.vocabulary.units import DIMENSIONS, Dimension
+from rulec.vocabulary.dimensions import DIMENSIONS, Dimension
 
 _Meaning = TypeVar("_Meaning")
 

@@ -11,7 +11,8 @@ from rulec.rulebook.names import declaration_messages as say
 from rulec.rulebook.names.declaration_messages import TYPE_CIRCLE
 from rulec.syntax import tree
 from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
-from rulec.vocabulary.units import Unit, parse_unit
+from rulec.vocabulary.dimensions import Unit
+from rulec.vocabulary.units import parse_unit
 
 
 @dataclass(slots=True)

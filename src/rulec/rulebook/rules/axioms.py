@@ -8,10 +8,9 @@ from fractions import Fraction
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
+from rulec.logic.free_names import rename_variables, required_inputs
 from rulec.logic.kleene import Unknown, holds
 from rulec.logic.printing import formula_text
-from rulec.logic.renaming import rename_variables
-from rulec.logic.required_inputs import required_inputs
 from rulec.rulebook.elaborate.elaboration import truth
 from rulec.rulebook.elaborate.elaboration_messages import short
 from rulec.rulebook.elaborate.scope import SIDES, BoundVariable, Scope
@@ -23,7 +22,7 @@ from rulec.rulebook.rulebook_model import Axiom, ExampleState, Rule, Variable
 from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.object_choices import choices
+from rulec.vocabulary.vocabulary_model import choices
 
 
 def axioms_of(

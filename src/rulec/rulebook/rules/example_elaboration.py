@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from rulec.diagnostics import Span
 from rulec.logic import formula as ltl
-from rulec.logic.required_inputs import required_inputs
+from rulec.logic.free_names import required_inputs
 from rulec.rulebook.elaborate.amounts import literal
 from rulec.rulebook.elaborate.scope import BoundVariable, Scope
 from rulec.rulebook.names.declaration_messages import twice

@@ -22,7 +22,7 @@ from rulec.rulebook.rulebook_model import Exemption, Rule, Variable
 from rulec.rulebook.rules.example_elaboration import example_of
 from rulec.rulebook.rules.exemptions import ExemptionError, exempted
 from rulec.syntax import tree
-from rulec.vocabulary.units import DIMENSIONS
+from rulec.vocabulary.dimensions import DIMENSIONS
 
 
 def translate_rule(

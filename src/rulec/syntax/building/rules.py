@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
-
 from rulec.syntax import tree
 from rulec.syntax.building.formulas import amount, atom, parameters
 from rulec.syntax.building.items import in_force, value_of, weight
@@ -20,35 +17,14 @@ _SCOPES: dict[str, tree.Scope] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class RuleHead:
-    """Head of a rule: strength, name, variables, level and weight."""
-
-    strength: Literal["hard", "soft"] | None
-    name: tree.Name
-    variables: tuple[tree.Parameter, ...]
-    level: tree.Name | None
-    weight: tree.NumberLiteral | None
-    override: bool
-
-
-@dataclass(frozen=True, slots=True)
-class ExampleHead:
-    """``accept "label" (objects)`` or ``reject …``."""
-
-    accepts: bool
-    label: str
-    objects: tuple[tree.Parameter, ...]
-
-
 Clause = tree.Text | tree.Formula | tree.Unless | tree.InForce | str
 """What a clause says; a text for ``certainty``."""
 
 
-def rule_head(values: NodeValues, node: ParseNode) -> RuleHead:
-    """A rule's head."""
+def rule_head(values: NodeValues, node: ParseNode) -> tree.RuleItem:
+    """A rule without its clauses."""
     name, *level = values.names(node)
-    return RuleHead(
+    return tree.RuleItem(
         strength="hard" if node.leaves("HARD") else "soft" if node.leaves("SOFT") else None,
         name=name,
         variables=parameters(values, node),
@@ -75,10 +51,11 @@ def clause(values: NodeValues, node: ParseNode) -> Clause:
             return values.text(node)
 
 
-def example_head(values: NodeValues, node: ParseNode) -> ExampleHead:
-    """An example's head."""
+def example_head(values: NodeValues, node: ParseNode) -> tree.ExampleItem:
+    """An example without its states."""
     label = values.text(node).value if node.leaves("STRING") else ""
-    return ExampleHead(bool(node.leaves("ACCEPT")), label, parameters(values, node))
+    accepts = bool(node.leaves("ACCEPT"))
+    return tree.ExampleItem(accepts, (), label, parameters(values, node))
 
 
 def state(values: NodeValues, node: ParseNode) -> tree.ExampleState:

@@ -110,12 +110,12 @@ class DocumentBuilder:
 
     def worded(self, node: ParseNode, column: int, deeper: int = 4) -> Concatenation:
         """A word and its content, which begins and continues at ``column``."""
-        word, *said = node.children
+        word, *content = node.children
         start = self.spell(word)
         assert isinstance(start, str), "a word is a leaf"
-        lead = self.gap(Break(" " * (column - len(start))), first_leaf(said[0]).start)
+        lead = self.gap(Break(" " * (column - len(start))), first_leaf(content[0]).start)
         first = lead.flat if isinstance(lead, Break) else lead
-        return run(start, Nest(column, run(first, self.plain(said, node.kind, deeper))))
+        return run(start, Nest(column, run(first, self.plain(content, node.kind, deeper))))
 
     def assigned(self, node: ParseNode, column: int, *, broken: bool) -> Document:
         """``word name = value``, with the name at ``column``.

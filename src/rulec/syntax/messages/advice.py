@@ -31,9 +31,9 @@ def _quotes(scene: ParseContext) -> str:
     if scene.accepted == {"STRING"} and token.kind != "symbol":
         return 'put the text in double quotes: "…"'
     if token.kind == "string" and "STRING" not in scene.accepted:
-        said = token.text[1:-1]
-        if said in map(spelling, scene.accepted) or ("NAME" in scene.accepted and _names(said)):
-            return f"write `{said}` without quotes"
+        inside = token.text[1:-1]
+        if inside in map(spelling, scene.accepted) or ("NAME" in scene.accepted and _names(inside)):
+            return f"write `{inside}` without quotes"
     if before is not None and before.kind == "string" and scene.is_word() and scene.touches():
         return 'a quote inside a text is written \\"'
     return ""

@@ -24,20 +24,12 @@ _OTHER_SPELLINGS: Final = {
 }
 _MEANT: Final = {spelling: word for word, group in _OTHER_SPELLINGS.items() for spelling in group}
 _SIGNS: Final = {
-    "≤": "<=",
-    "=<": "<=",
-    "⩽": "<=",
-    "≥": ">=",
-    "⩾": ">=",
-    ">==": ">=",
-    "≠": "!=",
-    "<>": "!=",
-    "!==": "!=",
-    "×": "*",
-    "·": "*",
+    **dict.fromkeys(("≤", "=<", "⩽"), "<="),
+    **dict.fromkeys(("≥", "⩾", ">=="), ">="),
+    **dict.fromkeys(("≠", "<>", "!=="), "!="),
+    **dict.fromkeys(("×", "·"), "*"),
+    **dict.fromkeys(("−", "–"), "-"),
     "÷": "/",
-    "−": "-",
-    "–": "-",
 }
 _QUANTIFIERS: Final = {
     **dict.fromkeys(("exists", "any", "∃", "there"), "some"),

@@ -56,39 +56,23 @@ RESERVED_WORD = Code(
 )
 
 
+_LINES = (
+    *("title", "law", "use", "extends", "traffic", "semantics", "step", "priority"),
+    *("drop", "soften", "silent", "rulebook", "vocabulary"),
+)
 _WHAT = {
-    "title": "the `title` line",
-    "law": "the `law` line",
-    "use": "the `use` line",
-    "type": "the declaration of a type",
-    "signal": "the declaration of a signal",
-    "quantity": "the declaration of a quantity",
-    "extends": "the `extends` line",
-    "traffic": "the `traffic` line",
-    "semantics": "the `semantics` line",
-    "step": "the `step` line",
-    "priority": "the `priority` line",
-    "fact": "the fact",
-    "option": "the option",
+    **{word: f"the `{word}` line" for word in _LINES},
+    **{word: f"the declaration of a {word}" for word in ("type", "signal", "quantity")},
+    **{word: f"the {word}" for word in ("fact", "option")},
+    **{word: f"`{word}`" for word in ("cite", "says", "source", "certainty")},
+    **dict.fromkeys(("define", "redefine"), "the definition"),
+    **dict.fromkeys(("accept", "reject"), "the example"),
     "param": "the parameter",
     "set": "the setting",
-    "define": "the definition",
-    "redefine": "the definition",
-    "drop": "the `drop` line",
-    "soften": "the `soften` line",
-    "silent": "the `silent` line",
-    "rulebook": "the `rulebook` line",
-    "vocabulary": "the `vocabulary` line",
-    "cite": "`cite`",
-    "says": "`says`",
-    "source": "`source`",
-    "certainty": "`certainty`",
     "in": "`in force`",
     "when": "the condition",
     "unless": "the exception",
     "require": "the formula",
-    "accept": "the example",
-    "reject": "the example",
 }
 _CLAUSE_BEGINS = keywords.CLAUSE_WORDS | {"throughout", "initially"}
 """Words that may stand first on a line of a rule: clauses, and the scope of the exception above."""

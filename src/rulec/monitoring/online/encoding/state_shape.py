@@ -18,7 +18,7 @@ from rulec.monitoring.online.encoding.encoded_values import (
     values_at,
 )
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.object_choices import choices
+from rulec.vocabulary.vocabulary_model import choices
 
 Items: TypeAlias = tuple[str, ...]
 """Objects, in the order of parameters or of a rule's variables."""
