@@ -22,8 +22,8 @@ from rulec.partition import NavigationGraph
 from rulec.planning import Maneuvers, evaluate
 from rulec.rulebook.loader import parse_rulebook
 from rulec.scenario import Choice, Scenario
-from rulec.scenario.recorded.recorded_scene import to_scenario
-from rulec.scenario.recording_files import read_recording
+from rulec.scenario.recorded.recorded_scene import seen_from_ego
+from rulec.scenario.scenario_files import read_recording
 
 BUSIEST = "USA_US101-24_2_T-1.xml"
 # All vehicles count: traffic that is congested may be overtaken on either side
@@ -65,12 +65,12 @@ def papers(rounds: int) -> Result:
 def busiest(file: Path, rounds: int) -> Result:
     """The recording with most cars."""
     recording = read_recording(file)
-    scene = to_scenario(recording, NEVER_CONGESTED, str(file))
+    scene = seen_from_ego(recording, NEVER_CONGESTED, str(file))
     r1 = rulec.compile_rulebook(parse_rulebook(R1))
     law, finer_law = (rulec.compile_rulebook("de", step_s=Fraction(1, n)) for n in (2, 4))
     graph = cut(scene, 0.5)
     tasks = {
-        "as a scenario along ego's road": lambda: to_scenario(recording, NEVER_CONGESTED, ""),
+        "as a scenario along ego's road": lambda: seen_from_ego(recording, NEVER_CONGESTED, ""),
         "partition paper, 0.5 s": partial(cut, scene, 0.5),
         "counts under R1 for every car": lambda: evaluate(graph, r1),
         "the same two, 0.25 s": partial(count, scene, r1, 0.25),

@@ -11,7 +11,7 @@ from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTall
 from rulec.extraction.selection import RequestedDrives
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import verify
-from rulec.scenario.recording_files import read_recording
+from rulec.scenario.scenario_files import read_recording
 from support.builders.recordings import RECORDINGS
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")

@@ -17,9 +17,8 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Comparison, Count, QuantityTerm, Same
 from rulec.monitoring.batch import batch_verify, joint_codes
 from rulec.monitoring.batch.batch_verify import verify_chunk, verify_many
-from rulec.monitoring.batch.columns.column_reader import NotGivenError
+from rulec.monitoring.batch.columns.column_reader import NotGivenError, digits_of_sum
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
-from rulec.monitoring.batch.columns.sum_thresholds import digits_of_sum
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.letter_reader import present_in

@@ -18,7 +18,7 @@ import pytest
 from rulec.scenario.recorded.ego_start import ego_start, reference_lanelet
 from rulec.scenario.recorded.reference_line import densified, reference_line
 from rulec.scenario.recorded.route import lanelets_at, route
-from rulec.scenario.recording_files import read_recording
+from rulec.scenario.scenario_files import read_recording
 from rulec.scenario.scenario_model import Choice
 from support.builders.recordings import RECORDINGS
 

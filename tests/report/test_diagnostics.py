@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span
 from rulec.diagnostics.source_text import SourceLocation
-from rulec.report.findings.diagnostics_text import render_diagnostics
-from rulec.report.findings.source_excerpt import MAX_WIDTH
+from rulec.report.findings.diagnostics_text import MAX_WIDTH, render_diagnostics
 
 
 def at(text, part, name="a.rules", occurrence=0):

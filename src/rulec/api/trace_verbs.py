@@ -79,7 +79,7 @@ class TraceVerbs(SessionSettings):
 
     def read_recording(self, path: str | Path, net: str | Path | None = None) -> Recording:
         """Read recorded traffic, with SUMO's road network ``net``. Raises RulecError."""
-        from rulec.scenario.recording_files import read_recording
+        from rulec.scenario.scenario_files import read_recording
 
         return read_recording(Path(path), None if net is None else Path(net))
 

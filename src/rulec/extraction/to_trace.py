@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import count
 from typing import Any
 
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.presence import Presence, presences
 from rulec.extraction.signals.crossing_signals import crossing_signals
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
@@ -23,6 +23,42 @@ from rulec.trace import State, Trace, Value
 from rulec.trace.vocabulary_projection import fits, is_about, known_type, known_types
 from rulec.value_display import short_repr
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class Presence:
+    """An object of a trace: a participant's row, first and last column of its presence."""
+
+    name: str
+    row: int
+    first: int
+    last: int
+
+
+def presences(context: DriveContext) -> Iterator[Presence]:
+    """The contiguous presences of all participants; absences up to ``away_s`` are bridged.
+
+    Those in which a participant is not beside the road never are: its extents are not known then.
+    """
+    longest = round(context.thresholds.away_s / context.recording.step_s)
+    participants = context.tracks.participants
+    taken = {body.id for body in participants}
+    unknown = np.cumsum(np.isnan(context.extents.w), axis=1)
+    for row, body in enumerate(participants):
+        columns = np.flatnonzero(context.relevant[row])
+        gone = unknown[row]
+        breaks = [
+            k
+            for k in range(1, len(columns))
+            if columns[k] - columns[k - 1] > longest + 1 or gone[columns[k]] > gone[columns[k - 1]]
+        ]
+        for number, part in enumerate(np.split(columns, breaks), 1):
+            name = body.id
+            if number > 1:
+                name = next(free for k in count(2) if (free := f"{body.id}_{k}") not in taken)
+                taken.add(name)
+            yield Presence(name, row, int(part[0]), int(part[-1]))
+
 
 _SIGNALS: tuple[Callable[[DriveContext], SignalColumns], ...] = (
     ego_signals,

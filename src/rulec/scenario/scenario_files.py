@@ -8,12 +8,73 @@ from pathlib import Path
 from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
 from rulec.files import decoded, opened
 from rulec.resources import scenarios_folder
-from rulec.scenario.safe_xml import is_xml
+from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.safe_xml import is_xml, root_of
 from rulec.scenario.scenario_messages import NOT_A_SCENARIO, OTHER_CHOICE, UNKNOWN_SCENARIO
 from rulec.scenario.scenario_model import Choice, Scenario
 from rulec.scenario.toml.conversion import to_scenario
 from rulec.scenario.toml.toml_tables import TomlFile
+from rulec.scenario.xml_element import XmlFormat, short
 from rulec.toml import parsed_toml
+
+RECORDING = XmlFormat(
+    "recorded traffic",
+    "",
+    "a recording is a CommonRoad scenario, or SUMO's floating-car data with their net",
+)
+
+
+def read_recording(path: Path, net: Path | None = None) -> Recording:
+    """Read a file of recorded traffic; ``net`` is for SUMO's data, which have none.
+
+    Raises:
+        RulecError: R0610 for a file that cannot be read as what it seems to be, R0611 without the
+            library for CommonRoad, R0613 for a net where none is needed, R0614 and R0615 for a
+            missing or wrong one, R0701 if a file cannot be opened.
+    """
+    root = root_of(path, RECORDING)
+    if root == "fcd-export":
+        from rulec.scenario.sumo.sumo_recording import read_sumo
+
+        return read_sumo(path, net)
+    if root == "net":
+        way_out = "give the floating-car data, and this file with --net"
+        raise RECORDING.refused(path, "it is a SUMO net, which has only roads", help_text=way_out)
+    if root != "commonRoad":
+        why = f"it is XML of `{short(root)}`"
+        expected = "expected `commonRoad` or `fcd-export`"
+        raise RECORDING.refused(path, why, expected=expected)
+    if net is not None:
+        raise OTHER_CHOICE.error(
+            SourceLocation(str(path)),
+            f"`{path.name}` has its own roads, and takes no net",
+            help="leave out --net, which is for SUMO's floating-car data",
+        )
+    from rulec.scenario.commonroad.commonroad_file import read_commonroad
+
+    return read_commonroad(path)
+
+
+def is_recording(file: str) -> bool:
+    """True if a file's name or first bytes show recorded traffic."""
+    return is_xml(Path(file))
+
+
+def read_scene(path: Path, choice: Choice) -> Scenario:
+    """The scenario in a recording, seen from the chosen ego.
+
+    Raises:
+        RulecError: as for ``read_recording``, R0612 if what is chosen is not in the file.
+    """
+    # Scenarios in TOML start without NumPy and Shapely, which recordings need
+    from rulec.scenario.recorded.recorded_scene import seen_from_ego
+
+    recording = read_recording(path, choice.net)
+    try:
+        return seen_from_ego(recording, choice, str(path))
+    except ValueError as reason:
+        raise RECORDING.refused(path, f"its road makes no sense, {reason}") from None
+
 
 LARGEST_BYTES = 4_000_000
 
@@ -54,9 +115,6 @@ def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = 
 def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
     """The scenario in a file. Raises RulecError like ``load_scenario``."""
     if is_xml(path):
-        # Scenarios in TOML start without NumPy and Shapely, which recordings need
-        from rulec.scenario.recording_files import read_scene
-
         return read_scene(path, choice or Choice())
     if choice not in (None, Choice()):
         raise OTHER_CHOICE.error(

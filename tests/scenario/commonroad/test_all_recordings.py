@@ -8,8 +8,8 @@ from rulec import compile_rulebook, find_maneuvers, navigation_graph
 from rulec.diagnostics import RulecError
 from rulec.planning.product.graph_product import count_paths
 from rulec.scenario import load_scenario
-from rulec.scenario.recorded.recorded_scene import to_scenario
-from rulec.scenario.recording_files import read_recording
+from rulec.scenario.recorded.recorded_scene import seen_from_ego
+from rulec.scenario.scenario_files import read_recording
 from rulec.scenario.scenario_model import Choice
 from support.builders.recordings import RECORDINGS
 
@@ -48,7 +48,7 @@ def test_every_vehicle_can_be_ego(file):
     refused = []
     for one in recording.participants:
         try:
-            scenario = to_scenario(recording, Choice(ego=one.id), file.name)
+            scenario = seen_from_ego(recording, Choice(ego=one.id), file.name)
         except RulecError as error:
             refused += [x.code for x in error.diagnostics]
             continue

@@ -10,7 +10,7 @@ import pytest
 from rulec.diagnostics import RulecError
 from rulec.scenario import Alternative, Box, Choice, ConstantAcceleration, Footprints
 from rulec.scenario.motion import swept
-from rulec.scenario.recorded.recorded_scene import to_scenario
+from rulec.scenario.recorded.recorded_scene import seen_from_ego
 from rulec.scenario.recorded.recording import Light, Participant
 from rulec.scenario.recorded.traffic_obstacles import GOES_ON_S
 from support.builders.recordings import recording, rectangle, straight, vehicle
@@ -22,7 +22,7 @@ CHOICE = Choice()
 
 def scene(*participants, choice=CHOICE, lanelets=(ROAD, BESIDE), **more):
     made = recording(lanelets, participants, **{"ego": (20.0, 0.5), **more})
-    return to_scenario(made, choice, "file.xml")
+    return seen_from_ego(made, choice, "file.xml")
 
 
 def drive(number, start, speed, steps=10, y=0.0, **more):
@@ -215,9 +215,9 @@ def test_ego_off_every_lane_is_refused():
 def test_without_a_planning_problem_ego_has_to_be_chosen():
     made = replace(recording([ROAD], [drive(7, 40, 10)]), problems=())
     with pytest.raises(RulecError, match="no planning problem") as caught:
-        to_scenario(made, CHOICE, "f")
+        seen_from_ego(made, CHOICE, "f")
     assert "--ego: `7`" in caught.value.diagnostics[0].help
-    assert to_scenario(made, Choice(ego=7), "f").ego.s == 0
+    assert seen_from_ego(made, Choice(ego=7), "f").ego.s == 0
 
 
 def crosswalk(x, low, high):

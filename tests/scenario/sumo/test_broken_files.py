@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
 from rulec.scenario import Choice, load_scenario, safe_xml
-from rulec.scenario.recording_files import read_recording
+from rulec.scenario.scenario_files import read_recording
 from rulec.scenario.xml_element import XmlFormat
 from support.builders.sumo_files import ROAD_NET, TYPES, body, data, moment, written
 

@@ -2,7 +2,7 @@
 
 import tracemalloc
 
-from rulec.scenario.recording_files import read_recording
+from rulec.scenario.scenario_files import read_recording
 from support.builders.sumo_files import body, data, moment, written
 
 STEPS, VEHICLES = 400, 50

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.scenario.recorded.track import rectangles
-from rulec.scenario.recording_files import read_recording
+from rulec.scenario.scenario_files import read_recording
 from rulec.scenario.sumo.vehicle_types import CLASSES
 from support.builders.sumo_files import body, data, moment, written
 

@@ -126,7 +126,7 @@ def _write_drives(
     # numpy and shapely, 200 ms: only for recordings.
     from rulec.extraction.selection import selected_drives
     from rulec.extraction.to_trace import Drive
-    from rulec.scenario.recording_files import read_recording
+    from rulec.scenario.scenario_files import read_recording
     from rulec.scenario.scenario_messages import NOT_IN_RECORDING
     from rulec.trace.formats.trace_files import format_of, write_traces
 

@@ -87,7 +87,7 @@ def command(
     Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
     """
     # Formats of recordings, 80 ms: not for --help.
-    from rulec.scenario.recording_files import is_recording
+    from rulec.scenario.scenario_files import is_recording
 
     rules = read_machines(rulebook, at)
     recordings = [file for file in files if is_recording(file)]

@@ -17,7 +17,7 @@ from rulec.scenario.scenario_model import Account, Choice, Ego, Road, Scenario, 
 STEP_S = 0.5
 
 
-def to_scenario(recording: Recording, choice: Choice, file: str) -> Scenario:
+def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     """The scenario that a recording gives, seen from the chosen ego.
 
     Raises:
