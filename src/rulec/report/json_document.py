@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
-from typing import Any, Literal
+from functools import cache
+from typing import Any, Literal, TypeVar
 
 import msgspec
 
 Number = int | float
+Filled = TypeVar("Filled", bound=msgspec.Struct)
 
 
 class JsonPart(msgspec.Struct, frozen=True, kw_only=True):
@@ -27,6 +29,20 @@ class JsonDocument(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     version: Literal[1] = 1
+
+
+def filled(kind: type[Filled], source: object, **own: Any) -> Filled:
+    """Make a part of its ``own`` fields and the source's attributes.
+
+    These are read for every field that is required and not given.
+    """
+    names = [name for name in _required(kind) if name not in own]
+    return kind(**{name: getattr(source, name) for name in names}, **own)
+
+
+@cache
+def _required(kind: type[msgspec.Struct]) -> list[str]:
+    return [field.name for field in msgspec.structs.fields(kind) if field.required]
 
 
 def as_line(document: JsonDocument) -> str:

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from typing import Any, TypeVar
 
 from msgspec import UNSET, UnsetType
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.monitoring.verdict import Violation
 from rulec.partition import AdjacencyName, ExtentName, NavigationGraph, PartitionName, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.rule_probability import AlternativeCounts
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
-from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, plain_number
+from rulec.report.json_document import (
+    JsonDocument,
+    JsonPart,
+    Number,
+    as_line,
+    filled,
+    plain_number,
+)
 from rulec.report.maneuvers.maneuver_answers import (
     ManeuverAnswers,
     derived_signals,
@@ -195,41 +202,30 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
 
 def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
     """Write the counts and what was asked for."""
-    graph = maneuvers.graph
-    scenario = graph.scenario
+    graph, scenario = maneuvers.graph, maneuvers.graph.scenario
+    several = any(obstacle.alternatives for obstacle in scenario.obstacles)
     return as_line(
-        ManeuversDocument(
+        filled(
+            ManeuversDocument,
+            graph,
             scenario=scenario.name,
             rulebook=maneuvers.rules.name,
-            partition=graph.partition,
-            adjacency=graph.adjacency,
-            extent=graph.extent,
-            step_s=graph.step_s,
             horizon_s=horizon_s(graph),
-            nodes=graph.nodes,
-            edges=graph.edges,
             traces=maneuvers.traces,
             satisfying=maneuvers.satisfying,
             by_default=maneuvers.by_default,
             seconds=round(seconds, 6),
             scene=UNSET if scenario.account is None else _scene(maneuvers, scenario.account),
-            violated_before=_each(
-                maneuvers.violated_before,
-                lambda violation: PastViolation(
-                    rule=violation.rule, binding=violation.binding, step=violation.step
-                ),
-            ),
-            least_violating=_each(answers.best, lambda best: _ranked(maneuvers, best, answers)),
-            ranked=_each(answers.ranked, lambda ranked: _ranked(maneuvers, ranked, answers)),
+            violated_before=_each(maneuvers.violated_before, partial(filled, PastViolation)),
+            least_violating=_each(answers.best, partial(_ranked, maneuvers, answers)),
+            ranked=_each(answers.ranked, partial(_ranked, maneuvers, answers)),
             maneuvers=_each(
                 answers.listed,
                 lambda maneuver: _maneuver(graph, maneuver, chances=_chances(answers, maneuver)),
             ),
-            likeliest=likeliest(scenario)
-            if any(obstacle.alternatives for obstacle in scenario.obstacles)
-            else UNSET,
+            likeliest=likeliest(scenario) if several else UNSET,
             worlds=_each(answers.worlds, _world),
-            rules=_each(answers.prunings, lambda pruning: _pruning(maneuvers, pruning)),
+            rules=_each(answers.prunings, partial(_pruning, maneuvers)),
             classes=UNSET if answers.classes is None else _classes(maneuvers, *answers.classes),
         )
     )
@@ -241,31 +237,23 @@ def _each(items: Iterable[Item] | None, data: Callable[[Item], Data]) -> list[Da
 
 
 def _world(world: AlternativeCounts) -> WorldData:
-    return WorldData(
-        obstacle=world.obstacle,
-        prediction=world.number + 1,
-        weight=float(world.weight),
-        traces=world.traces,
-        satisfying=world.satisfying,
-    )
+    return filled(WorldData, world, prediction=world.number + 1, weight=float(world.weight))
 
 
 def _scene(maneuvers: Maneuvers, account: Account) -> SceneData:
-    return SceneData(
-        reference=account.reference,
+    derived = derived_signals(maneuvers, account)
+    return filled(
+        SceneData,
+        account,
         obstacles=account.recorded,
-        left_out=account.left_out,
         recorded_until_s=account.until_s,
-        remarks=account.remarks,
         derived={
-            name: DerivedSignal(value=value, because=because)
-            for name, (value, because) in derived_signals(maneuvers, account).items()
+            name: DerivedSignal(value=value, because=why) for name, (value, why) in derived.items()
         },
     )
 
 
-def _ranked(maneuvers: Maneuvers, ranked: RankedManeuver, answers: ManeuverAnswers) -> ManeuverData:
-    rules = {rule.name: rule for rule in maneuvers.rules.rules}
+def _ranked(maneuvers: Maneuvers, answers: ManeuverAnswers, ranked: RankedManeuver) -> ManeuverData:
     return _maneuver(
         maneuvers.graph,
         ranked.maneuver,
@@ -279,96 +267,75 @@ def _ranked(maneuvers: Maneuvers, ranked: RankedManeuver, answers: ManeuverAnswe
             for rank, weight in ranked.penalty.items()
         ],
         members=ranked.members,
-        violations=[
-            _violation(maneuvers, violation, rules[violation.rule])
-            for violation in ranked.violations
-        ],
+        violations=_violations(maneuvers, ranked.violations),
         chances=_chances(answers, ranked.maneuver),
     )
 
 
 def _maneuver(graph: NavigationGraph, maneuver: Maneuver, **details: Any) -> ManeuverData:
-    return ManeuverData(
-        **details,
-        cost=maneuver.cost,
-        margin_s=maneuver.margin_s,
-        cells=[
-            CellData(
-                cell=index,
-                start_s=layer.start_s,
-                surface=layer.cells[index].surface,
-                signature=layer.cells[index].signature,
-            )
-            for layer, index in zip(graph.layers, maneuver.nodes, strict=True)
-        ],
-        envelope=[
-            EnvelopeData(
-                s_min=bounds.s_min,
-                s_max=bounds.s_max,
-                d_left=bounds.d_left,
-                d_right=bounds.d_right,
-            )
-            for bounds in envelope(graph, maneuver.nodes)
-        ],
-    )
+    cells = [
+        filled(CellData, layer.cells[index], cell=index, start_s=layer.start_s)
+        for layer, index in zip(graph.layers, maneuver.nodes, strict=True)
+    ]
+    bounds = [filled(EnvelopeData, bounds) for bounds in envelope(graph, maneuver.nodes)]
+    return filled(ManeuverData, maneuver, cells=cells, envelope=bounds, **details)
 
 
-def _violation(maneuvers: Maneuvers, violation: Violation, rule: CompiledRule) -> ManeuverViolation:
-    step = violation.step
-    return ManeuverViolation(
-        rule=violation.rule,
-        cite=rule.cite,
-        binding=violation.binding,
-        lost_s=None if step is None else maneuvers.graph.layers[step].start_s,
-        strength=violation.strength,
-        level=rule.level or None,
-        weight=plain_number(rule.weight),
-    )
+def _violations(maneuvers: Maneuvers, violations: Iterable[Violation]) -> list[ManeuverViolation]:
+    rules = {rule.name: rule for rule in maneuvers.rules.rules}
+    return [
+        filled(
+            ManeuverViolation,
+            violation,
+            cite=rules[violation.rule].cite,
+            lost_s=None
+            if violation.step is None
+            else maneuvers.graph.layers[violation.step].start_s,
+            level=rules[violation.rule].level or None,
+            weight=plain_number(rules[violation.rule].weight),
+        )
+        for violation in violations
+    ]
 
 
 def _chances(answers: ManeuverAnswers, maneuver: Maneuver) -> ChancesData | UnsetType:
     chances = answers.chances.get(maneuver.nodes)
     if chances is None:
         return UNSET
-    return ChancesData(
-        clear=float(chances.clear),
-        every_hard_rule=_float(chances.hard),
-        rules=[
-            RuleProbabilityData(
-                rule=rule.rule.name,
-                strength=rule.rule.strength,
-                kept=_float(rule.kept),
-                bindings=[
-                    BindingProbability(binding=binding.binding, kept=float(binding.kept))
-                    for binding in rule.bindings
-                ],
-            )
-            for rule in chances.rules
-        ],
-    )
+    rules = [
+        RuleProbabilityData(
+            rule=rule.rule.name,
+            strength=rule.rule.strength,
+            kept=_float(rule.kept),
+            bindings=[
+                BindingProbability(binding=binding.binding, kept=float(binding.kept))
+                for binding in rule.bindings
+            ],
+        )
+        for rule in chances.rules
+    ]
+    hard = _float(chances.hard)
+    return ChancesData(clear=float(chances.clear), every_hard_rule=hard, rules=rules)
 
 
 def _pruning(maneuvers: Maneuvers, pruning: RulePruning) -> PruningData:
-    rule = pruning.rule
-    violations = [_violation(maneuvers, violation, rule) for violation in pruning.violations]
-    return PruningData(
+    rule, example = pruning.rule, pruning.example
+    violations = _violations(maneuvers, pruning.violations)
+    return filled(
+        PruningData,
+        pruning,
         rule=rule.name,
         strength=rule.strength,
-        violating=pruning.violating,
-        alone=pruning.alone,
-        example=None
-        if pruning.example is None
-        else _maneuver(maneuvers.graph, pruning.example, violations=violations),
+        example=example and _maneuver(maneuvers.graph, example, violations=violations),
     )
 
 
 def _classes(
     maneuvers: Maneuvers, classes: HomotopyClasses, variants: Sequence[Variant]
 ) -> ClassesData:
-    return ClassesData(
-        total=classes.total,
-        satisfying=classes.satisfying,
-        divided=classes.divided,
+    return filled(
+        ClassesData,
+        classes,
         counting_steps=[rule.name for rule in maneuvers.counting_steps()],
         representatives=[
             _maneuver(maneuvers.graph, variant.cheapest, members=variant.members)

@@ -8,14 +8,9 @@ from typing import Any, Literal
 from msgspec import UNSET, UnsetType
 
 from rulec.analysis.diff.rule_comparison import RuleRelation
-from rulec.analysis.diff.rulebook_comparison import (
-    OneSided,
-    RulebookDiff,
-    RulePair,
-    SettingPair,
-)
+from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair, SettingPair
 from rulec.logic.printing import number_in_words
-from rulec.report.json_document import JsonDocument, JsonPart, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.rulebook.rulebook_model import Certainty, Rule, Rulebook, Strength, Variable
 from rulec.trace import Trace
 
@@ -98,65 +93,49 @@ class DiffDocument(JsonDocument, frozen=True, kw_only=True):
 def as_json(diff: RulebookDiff) -> str:
     """Write one object."""
     return as_indented(
-        DiffDocument(
+        filled(
+            DiffDocument,
+            diff,
             first=book_data(diff.first),
             second=book_data(diff.second),
-            rules=[_pair(pair) for pair in diff.pairs],
-            only_first=[_one_sided(rule) for rule in diff.only_first],
-            only_second=[_one_sided(rule) for rule in diff.only_second],
-            settings=diff.settings,
+            rules=list(map(_pair, diff.pairs)),
+            only_first=list(map(_one_sided, diff.only_first)),
+            only_second=list(map(_one_sided, diff.only_second)),
         )
     )
 
 
 def book_data(book: Rulebook) -> BookData:
     """The rulebook by its name, title and day."""
-    return BookData(name=book.name, title=book.title, at=book.at)
+    return filled(BookData, book)
 
 
 def _pair(pair: RulePair) -> RulePairData:
     comparison = pair.comparison
-    return RulePairData(
+    return filled(
+        RulePairData,
+        pair,
         rule=pair.name,
-        relation=pair.relation,
         undecided=comparison.undecided or None,
-        first=RuleSide(**_side(pair.first)),
-        second=RuleSide(**_side(pair.second)),
+        first=filled(RuleSide, pair.first, **_exactly(pair.first)),
+        second=filled(RuleSide, pair.second, **_exactly(pair.second)),
         common_types=comparison.common or None,
         on_common_types=comparison.on_common,
-        first_forbids=[_trace(trace) for trace in comparison.first_forbids],
-        second_forbids=[_trace(trace) for trace in comparison.second_forbids],
+        first_forbids=list(map(_trace, comparison.first_forbids)),
+        second_forbids=list(map(_trace, comparison.second_forbids)),
     )
 
 
-def _side(rule: Rule) -> dict[str, Any]:
-    return {
-        "strength": rule.strength,
-        "variables": rule.variables,
-        "level": rule.level or None,
-        "weight": number_in_words(rule.weight),
-        "cite": rule.cite,
-        "says": rule.says,
-        "certainty": rule.certainty,
-        "book": rule.book,
-    }
+def _exactly(rule: Rule) -> dict[str, str | None]:
+    return {"level": rule.level or None, "weight": number_in_words(rule.weight)}
 
 
-def _one_sided(rule: OneSided) -> OneSidedRule:
-    remark = rule.remark
-    return OneSidedRule(
-        rule=rule.rule.name,
-        **_side(rule.rule),
-        remark=remark.kind if remark else None,
-        because=remark.because if remark else None,
-    )
+def _one_sided(one_sided: OneSided) -> OneSidedRule:
+    rule, remark = one_sided.rule, one_sided.remark
+    kind, because = (remark.kind, remark.because) if remark else (None, None)
+    own = {"rule": rule.name, "remark": kind, "because": because, **_exactly(rule)}
+    return filled(OneSidedRule, rule, **own)
 
 
 def _trace(trace: Trace) -> TraceData:
-    return TraceData(
-        id=trace.id,
-        step_s=trace.step_s,
-        objects=trace.objects,
-        states=trace.states,
-        present=trace.present or UNSET,
-    )
+    return filled(TraceData, trace, present=trace.present or UNSET)

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from rulec.logic.english.sentence_layout import in_one_line
 from rulec.logic.printing import formula_text
 from rulec.report.automata.automaton_model import Fate, Transition
-from rulec.report.json_document import JsonDocument, JsonPart, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.rulebooks.rule_page import RulePage, ShortestTrace, phrase_of, restrictions_of
 from rulec.rulebook.rulebook_model import Certainty, Rule, Strength, Variable
 from rulec.vocabulary import Vocabulary
@@ -75,19 +75,10 @@ def as_json(
 
 
 def _rule(rule: Rule, vocabulary: Vocabulary, page: RulePage | None) -> RuleData:
-    data = RuleData(
-        name=rule.name,
-        strength=rule.strength,
-        variables=rule.variables,
-        cite=rule.cite,
-        says=rule.says,
-        source=rule.source,
-        certainty=rule.certainty,
-        level=rule.level,
+    data = filled(
+        RuleData,
+        rule,
         weight=float(rule.weight),
-        in_force_from=rule.in_force_from,
-        in_force_until=rule.in_force_until,
-        book=rule.book,
         sentence=in_one_line(phrase_of(rule, vocabulary)),
         restrictions=[in_one_line(phrase) for phrase in restrictions_of(rule)],
         formula=formula_text(rule.formula),

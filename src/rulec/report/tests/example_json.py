@@ -10,7 +10,7 @@ from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text
 from rulec.report.findings.diagnostics_json import PlaceData, place_data
-from rulec.report.json_document import JsonDocument, JsonPart, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.tests.example_text import missing_example
 from rulec.rulebook.rulebook_model import Rulebook
 
@@ -76,30 +76,27 @@ class ExamplesRun(JsonDocument, frozen=True, kw_only=True):
 
 def as_json(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
     """Write the runs of rulebooks, each with coverage unless it is None."""
-    outcomes = [outcome for run in runs for outcome in run.outcomes]
-    passed = sum(outcome.passed for outcome in outcomes)
+    examples = [_outcome(run, outcome) for run in runs for outcome in run.outcomes]
+    passed = sum(example.passed for example in examples)
     return as_indented(
         ExamplesRun(
-            examples=[
-                _outcome(run.rulebook.name, outcome) for run in runs for outcome in run.outcomes
-            ],
+            examples=examples,
             passed=passed,
-            failed=len(outcomes) - passed,
+            failed=len(examples) - passed,
             coverage=None if covered is None else _coverage(runs, covered),
         )
     )
 
 
-def _outcome(rulebook: str, outcome: ExampleOutcome) -> OutcomeData:
-    return OutcomeData(
-        rulebook=rulebook,
+def _outcome(run: ExampleRun, outcome: ExampleOutcome) -> OutcomeData:
+    return filled(
+        OutcomeData,
+        outcome,
+        rulebook=run.rulebook.name,
         rule=outcome.rule.name,
         label=outcome.example.label,
-        number=outcome.number,
         says="accept" if outcome.example.accepts else "reject",
         does="accept" if outcome.accepted else "reject",
-        passed=outcome.passed,
-        lost_after=outcome.lost_after,
         place=place_data(at(outcome.example.span)),
     )
 
@@ -118,22 +115,19 @@ def _coverage(
 
 
 def _rule(rulebook: Rulebook, rule: RuleCoverage) -> RuleCoverageData:
+    edges, values = rule.missing_edges, rule.missing_values
+    examples = [missing_example(edge, rulebook.vocabulary) for edge in edges]
     return RuleCoverageData(
         rulebook=rulebook.name,
         rule=rule.rule,
         percent=round(percent([rule]), 3),
         edges=rule.n_edges,
         missing_edges=[
-            MissingEdgeData(
-                source=edge.source,
-                target=edge.target,
-                example=missing_example(edge, rulebook.vocabulary),
-            )
-            for edge in rule.missing_edges
+            filled(MissingEdgeData, edge, example=example)
+            for edge, example in zip(edges, examples, strict=True)
         ],
         values=rule.n_values,
         missing_values=[
-            MissingValueData(atom=formula_text(atom), value=value)
-            for atom, value in rule.missing_values
+            MissingValueData(atom=formula_text(atom), value=value) for atom, value in values
         ],
     )

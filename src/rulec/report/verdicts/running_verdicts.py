@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from rulec.diagnostics import RulecError
 from rulec.monitoring.online.four_valued import FourValued
 from rulec.monitoring.online.monitor_state import SoFar, VerdictChange
-from rulec.report.json_document import JsonDocument, JsonPart, as_line
+from rulec.report.json_document import JsonDocument, JsonPart, as_line, filled
 from rulec.report.text.terminal_text import styled, visible
 from rulec.report.verdicts.verdict_json import ErrorData, error_data
 
@@ -49,11 +49,10 @@ class StateRefused(JsonDocument, frozen=True, kw_only=True):
 def as_json(result: SoFar) -> str:
     """Write the verdicts behind a state."""
     return as_line(
-        StateVerdict(
-            state=result.state,
-            verdict=result.verdict,
-            rules=result.rules,
-            changes=[ChangeData(**change._asdict()) for change in result.changes],
+        filled(
+            StateVerdict,
+            result,
+            changes=[filled(ChangeData, change) for change in result.changes],
         )
     )
 

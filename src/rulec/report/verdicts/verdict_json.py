@@ -10,9 +10,16 @@ from msgspec import UNSET, UnsetType
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.explain.explanation import Explanation, Observation
+from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, plain_number
+from rulec.report.json_document import (
+    JsonDocument,
+    JsonPart,
+    Number,
+    as_line,
+    filled,
+    plain_number,
+)
 from rulec.report.verdicts.violation_table import repaired_states
 
 Value = bool | int | float | str
@@ -125,11 +132,9 @@ def violations_data(
     """The violations, each with what its rule says of its weight."""
     rules = {rule.name: rule for rule in rulebook.rules}
     return [
-        ViolationData(
-            rule=violation.rule,
-            binding=violation.binding,
-            step=violation.step,
-            strength=violation.strength,
+        filled(
+            ViolationData,
+            violation,
             level=rules[violation.rule].level or None,
             weight=plain_number(rules[violation.rule].weight),
             explanation=UNSET if explanation is None else explanation_data(explanation),
@@ -141,47 +146,30 @@ def violations_data(
 def error_data(error: RulecError) -> ErrorData:
     """The first diagnostic of an error."""
     diagnostic = error.diagnostics[0]
-    place = diagnostic.place
-    return ErrorData(
-        code=diagnostic.code,
-        message=diagnostic.message,
-        file=place.file if place else None,
-        line=place.line if place else None,
-    )
+    file, line = (place.file, place.line) if (place := diagnostic.place) else (None, None)
+    return filled(ErrorData, diagnostic, file=file, line=line)
 
 
 def explanation_data(explanation: Explanation) -> ExplanationData:
     """The explanation with all its facts, parts and states."""
-    rule = explanation.rule
-    return ExplanationData(
-        book=rule.book,
-        cite=rule.cite,
-        says=rule.says,
-        states=explanation.states,
-        decisive=explanation.decisive,
-        facts=[_fact(observation) for observation in explanation.facts],
-        parts=[
-            FormulaPart(
-                formula=part.text,
-                depth=part.depth,
-                values=part.values,
-                changed=part.changed,
-                decides=part.decides,
+    return filled(
+        ExplanationData,
+        explanation,
+        book=explanation.rule.book,
+        cite=explanation.rule.cite,
+        says=explanation.rule.says,
+        facts=[
+            filled(
+                FactData,
+                fact,
+                reads=fact.text,
+                unit=fact.unit or UNSET,
+                objects=UNSET if fact.objects is None else fact.objects,
             )
-            for part in explanation.parts
+            for fact in explanation.facts
         ],
+        parts=[filled(FormulaPart, part, formula=part.text) for part in explanation.parts],
         repair=None
         if explanation.repair is None
         else [RepairData(state=number, says=says) for number, says in repaired_states(explanation)],
-    )
-
-
-def _fact(observation: Observation) -> FactData:
-    return FactData(
-        reads=observation.text,
-        values=observation.values,
-        changed=observation.changed,
-        decides=observation.decides,
-        unit=observation.unit or UNSET,
-        objects=UNSET if observation.objects is None else observation.objects,
     )
