@@ -19,7 +19,7 @@ from rulec.report.automata.automaton_model import Automaton, Transition, automat
 from rulec.report.automata.automaton_picture import as_picture
 from rulec.report.automata.automaton_text import as_dot
 from rulec.report.pictures.drawing.canvas import text_width
-from rulec.report.pictures.drawing.svg import as_svg
+from rulec.report.pictures.drawing.picture_formats import as_svg
 from support.builders.rulebooks import P, Q, book, compile_here, rule
 from support.generators.random_machines import VOCABULARY, machines
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.report.verdicts.example_table import ExampleTable, example_table
+from rulec.report.rulebooks.book_rule import example_rows
 from rulec.rulebook.loader import parse_rulebook
 
 BOOK = """\
@@ -43,6 +43,5 @@ def test_what_an_example_says(states, rows):
     text = BOOK.format(example=f"accept {{ {states} }}")
     book = parse_rulebook(text)
     (example,) = book.rules[0].examples
-    assert example_table(example, book.vocabulary) == ExampleTable(
-        len(states.split(";")), tuple(rows)
-    )
+    table = [[subject, *values] for subject, values in rows]
+    assert list(example_rows(example, book.vocabulary)) == table

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from rulec.diagnostics import Diagnostic, Label, Source, SourceLocation, Span
 from rulec.report.findings.code_registry import all_codes
 from rulec.report.findings.diagnostics_json import as_json
-from rulec.report.findings.finding_formats import FORMATS, render
-from rulec.report.findings.one_line_diagnostics import as_annotations, as_lines
+from rulec.report.findings.finding_formats import FORMATS, as_annotations, as_lines, render
 from rulec.report.findings.sarif import as_sarif
 
 TEXT = "one\ntwo 🚗 three\n"

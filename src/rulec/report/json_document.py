@@ -63,17 +63,14 @@ def as_builtins(document: Any) -> Any:
     return msgspec.to_builtins(document, enc_hook=_plain)
 
 
-def plain_number(number: Fraction) -> Number:
-    """An integer if the fraction is one, else the nearest float."""
-    return int(number) if number.denominator == 1 else float(number)
-
-
 _ENCODER = json.JSONEncoder(ensure_ascii=False)
 
 
 def _plain(value: object) -> object:
-    """Views of dicts, and numbers that a library has made."""
-    if isinstance(value, float):
+    """Views of dicts, fractions, and numbers that a library has made."""
+    if isinstance(value, Fraction) and value.denominator == 1:
+        return int(value)
+    if isinstance(value, float | Fraction):
         return float(value)
     try:
         return dict(value)  # type: ignore[call-overload]

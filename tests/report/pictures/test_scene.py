@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from rulec import find_maneuvers
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
-from rulec.report.pictures.cell_signatures import in_letters
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Polyline
+from rulec.report.pictures.picture_captions import in_letters
 from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
 from rulec.scenario import Ego, MissingLane, Road, Scenario, load_scenario
 from support.generators.random_scenarios import scenarios

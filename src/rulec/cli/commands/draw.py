@@ -20,7 +20,7 @@ from rulec.cli.options.shared_options import (
     rulebook_option,
 )
 from rulec.cli.project import read_machines
-from rulec.report.text.count_text import shown_count
+from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph

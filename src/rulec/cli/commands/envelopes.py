@@ -18,7 +18,7 @@ from rulec.cli.options.shared_options import (
 )
 from rulec.cli.output import output_stream, print_written
 from rulec.cli.project import read_machines
-from rulec.report.text.count_text import shown_count
+from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
     from rulec.trace.formats.trace_files import Format

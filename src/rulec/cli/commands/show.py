@@ -167,7 +167,7 @@ def _automaton(automaton: Automaton, output_format: str, name: str, width: int) 
     from rulec.report.automata.automaton_layout import is_too_large
     from rulec.report.automata.automaton_picture import as_picture
     from rulec.report.automata.automaton_text import as_dot, as_text
-    from rulec.report.pictures.drawing.svg import as_svg
+    from rulec.report.pictures.drawing.picture_formats import as_svg
 
     if output_format == "text":
         return as_text(automaton, width)

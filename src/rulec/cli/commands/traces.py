@@ -21,7 +21,7 @@ from rulec.cli.output import output_stream, print_written
 from rulec.cli.project import read_machines
 from rulec.diagnostics import SourceLocation
 from rulec.report.text.console import progress
-from rulec.report.text.count_text import shown_count
+from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
     from rulec.trace import Trace

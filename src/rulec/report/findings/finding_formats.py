@@ -1,10 +1,12 @@
-"""Findings about rulebooks in each output format."""
+"""Findings about rulebooks in each output format; those with a line each are here."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from rulec.diagnostics import Diagnostic
+from rulec.diagnostics.source_text import address
+from rulec.report.text.terminal_text import visible
 
 FORMATS = ("full", "concise", "json", "github", "sarif")
 
@@ -20,9 +22,6 @@ def render(diagnostics: Sequence[Diagnostic], wanted: str, *, color: bool, compl
     """
     match wanted:
         case "concise":
-            # Every verb imports this file for FORMATS, and few write findings.
-            from rulec.report.findings.one_line_diagnostics import as_lines
-
             return as_lines(diagnostics)
         case "json":
             # msgspec takes 8 ms.
@@ -30,9 +29,6 @@ def render(diagnostics: Sequence[Diagnostic], wanted: str, *, color: bool, compl
 
             return as_json(diagnostics)
         case "github":
-            # As above: for FORMATS alone nothing is imported.
-            from rulec.report.findings.one_line_diagnostics import as_annotations
-
             return as_annotations(diagnostics)
         case "sarif":
             # The explanations of all codes, and urllib: 6 ms.
@@ -40,7 +36,57 @@ def render(diagnostics: Sequence[Diagnostic], wanted: str, *, color: bool, compl
 
             return as_sarif(diagnostics, complete=complete)
         case _:
-            # As above.
+            # Every verb imports this file for FORMATS, and few write findings.
             from rulec.report.findings.diagnostics_text import render_diagnostics
 
             return render_diagnostics(diagnostics, color).rstrip("\n")
+
+
+def as_lines(diagnostics: Iterable[Diagnostic]) -> str:
+    """``file:line:column: code message``; what has no place has no prefix either."""
+    return "\n".join(
+        visible(f"{_address(diagnostic)}{diagnostic.code} {diagnostic.message}")
+        for diagnostic in diagnostics
+    )
+
+
+def _address(diagnostic: Diagnostic) -> str:
+    return "" if diagnostic.place is None else f"{address(diagnostic.place)}: "
+
+
+def as_annotations(diagnostics: Iterable[Diagnostic]) -> str:
+    """A workflow command of GitHub's for each, shown beside the lines of a change.
+
+    https://docs.github.com/en/actions/reference/workflows-and-actions/workflow-commands
+    """
+    return "\n".join(_command(diagnostic) for diagnostic in diagnostics)
+
+
+def _command(diagnostic: Diagnostic) -> str:
+    properties: dict[str, object] = {}
+    if diagnostic.place is not None:
+        place = diagnostic.place
+        properties = {"file": place.file, "line": place.line, "endLine": place.end_line}
+        # Of a place over several lines GitHub takes no columns.
+        if place.end_line in (None, place.line):
+            properties |= {"col": place.column, "endColumn": place.end_column}
+    properties["title"] = f"{diagnostic.code}: {diagnostic.message}"
+    written = ",".join(
+        f"{name}={_property(str(value))}" for name, value in properties.items() if value is not None
+    )
+    notes = (f"note: {note}" for note in diagnostic.notes)
+    lines = [
+        diagnostic.expected or diagnostic.message,
+        *([f"help: {diagnostic.help}"] if diagnostic.help else []),
+        *notes,
+    ]
+    message = "\n".join(visible(line) for line in lines)
+    return f"::{diagnostic.severity} {written}::{_data(message)}"
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(visible(text)).replace(":", "%3A").replace(",", "%2C")

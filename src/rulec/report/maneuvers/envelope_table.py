@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from types import MappingProxyType
 from typing import IO, Any
 
 from rulec.partition import Envelope, NavigationGraph, envelope
@@ -14,24 +13,6 @@ from rulec.scenario.scenario_model import Surface
 from rulec.trace import Value
 from rulec.trace.formats.csv_table import write_csv
 from rulec.trace.formats.trace_files import Format
-
-COLUMNS = MappingProxyType(
-    {
-        "maneuver": int,
-        "cost": float,
-        "margin_s": float,
-        "layer": int,
-        "start_s": float,
-        "end_s": float,
-        "cell": int,
-        "surface": str,
-        "s_min": float,
-        "s_max": float,
-        "d_right": float,
-        "d_left": float,
-    }
-)
-"""The columns with the types of their values; in all rows of a maneuver the first three agree."""
 
 
 class EnvelopeLine(JsonDocument, frozen=True, kw_only=True):
@@ -49,6 +30,12 @@ class EnvelopeLine(JsonDocument, frozen=True, kw_only=True):
     s_max: float
     d_right: float
     d_left: float
+
+
+_TYPES = {"maneuver": int, "layer": int, "cell": int, "surface": str}
+
+COLUMNS = {name: _TYPES.get(name, float) for name in EnvelopeLine.__struct_fields__[1:]}
+"""The columns with the types of their values; in all rows of a maneuver the first three agree."""
 
 
 def write_envelopes(

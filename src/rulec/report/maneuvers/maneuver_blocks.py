@@ -15,8 +15,7 @@ from rulec.planning.probability.rule_probability import RuleProbabilities, RuleP
 from rulec.planning.probability.violation_events import MOST_WORLDS
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
-from rulec.report.text.count_text import shown_count
-from rulec.report.text.terminal_text import table_lines, visible
+from rulec.report.text.terminal_text import shown_count, table_lines, visible
 
 # So many are shown in text; JSON has them all.
 MOST_BINDINGS = 3

@@ -15,14 +15,7 @@ from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.rule_probability import AlternativeCounts
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
-from rulec.report.json_document import (
-    JsonDocument,
-    JsonPart,
-    Number,
-    as_line,
-    filled,
-    plain_number,
-)
+from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.maneuvers.maneuver_answers import (
     ManeuverAnswers,
     derived_signals,
@@ -259,10 +252,8 @@ def _ranked(maneuvers: Maneuvers, answers: ManeuverAnswers, ranked: RankedManeuv
         ranked.maneuver,
         place=ranked.place,
         penalty=[
-            LevelPenalty(
-                strength=rank.strength,
-                levels=[level or None for level in rank.levels],
-                weight=plain_number(weight),
+            filled(
+                LevelPenalty, rank, levels=[level or None for level in rank.levels], weight=weight
             )
             for rank, weight in ranked.penalty.items()
         ],
@@ -292,7 +283,7 @@ def _violations(maneuvers: Maneuvers, violations: Iterable[Violation]) -> list[M
             if violation.step is None
             else maneuvers.graph.layers[violation.step].start_s,
             level=rules[violation.rule].level or None,
-            weight=plain_number(rules[violation.rule].weight),
+            weight=rules[violation.rule].weight,
         )
         for violation in violations
     ]

@@ -17,8 +17,7 @@ from rulec.report.maneuvers.maneuver_answers import (
     horizon_s,
     likeliest,
 )
-from rulec.report.text.count_text import first_of, shown_count
-from rulec.report.text.terminal_text import styled, visible
+from rulec.report.text.terminal_text import first_of, shown_count, styled, visible
 from rulec.scenario import Scenario
 
 MOST_VIOLATIONS = 6

@@ -7,10 +7,15 @@ from collections.abc import Iterator, Sequence
 from rulec.partition import NavigationGraph
 from rulec.planning.product.accepted_edges import AcceptedEdges
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.report.pictures.cell_signatures import MOST_SPELLED, in_full, in_letters, meaning
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import LabelText, Mark, Picture, Point, Polyline
-from rulec.report.pictures.picture_captions import legend
+from rulec.report.pictures.picture_captions import (
+    MOST_SPELLED,
+    in_full,
+    in_letters,
+    legend,
+    meaning,
+)
 
 _ROW = 34.0
 _TALLEST = 720.0

@@ -1,4 +1,4 @@
-"""What stands beside pictures: titles, legends, and numbers on axes."""
+"""What stands beside pictures: titles, legends, numbers on axes, letters for cells."""
 
 from __future__ import annotations
 
@@ -9,17 +9,28 @@ from typing import TYPE_CHECKING
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import LabelText, Mark, Picture, Polyline
 from rulec.report.pictures.drawing.styles import STYLES
-from rulec.report.text.count_text import shown_count
+from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.monitoring.verdict import Verdict
-    from rulec.partition import NavigationGraph
+    from rulec.partition import Cell, NavigationGraph, PartitionName
     from rulec.planning import Maneuvers
     from rulec.planning.ranking.cheapest import Maneuver
 
 _SWATCH = 26.0
 _GAP = 22.0
+
+MOST_SPELLED = 8
+"""With more obstacles a signature is longer than any cell is wide."""
+
+_STATION = {"behind": "b", "beside": "n", "in_front_of": "f"}
+_LATERAL = {"right_of": "r", "same_lane": "s", "left_of": "l"}
+
+_MEANING: dict[PartitionName, str] = {
+    "paper": "b behind, f in front, l left, r right",
+    "fine": "first b behind, n beside, f in front; then r right of, s same lane, l left of",
+}
 
 
 def legend(entries: Sequence[tuple[str, str]], notes: Iterable[str]) -> Picture:
@@ -86,3 +97,30 @@ def trace_title(verdict: Verdict, rules: CompiledRulebook, only: Sequence[str] =
     count = f"{number:,} violation{'s' * (number != 1)}" if number else "no violation"
     chosen = f", only {', '.join(only)}" if only else ""
     return f"{verdict.trace}: {count} by {rules.name}{chosen}"
+
+
+def in_letters(cell: Cell) -> str:
+    """A letter per obstacle (two with ``fine``), in the layer's object order."""
+    if len(cell.objects) > MOST_SPELLED:
+        return ""
+    letters = [
+        relation if isinstance(relation, str) else _STATION[relation[0]] + _LATERAL[relation[1]]
+        for relation in cell.signature.values()
+    ]
+    return ("" if cell.partition == "paper" else " ").join(letters)
+
+
+def in_full(cell: Cell) -> str:
+    """The surface, and the relation to every obstacle by name."""
+    named = [
+        f"{relation if isinstance(relation, str) else ' '.join(relation)}({name})"
+        for name, relation in cell.signature.items()
+    ]
+    return ", ".join([cell.surface, *named])
+
+
+def meaning(graph: NavigationGraph) -> str:
+    """Explanation of the letters, and the obstacles that they are about."""
+    names = list(graph.objects)
+    whose = f"of {names[0]}" if len(names) == 1 else f"of {', '.join(names)} in this order"
+    return f"{_MEANING[graph.partition]}; {whose}"

@@ -8,11 +8,16 @@ from dataclasses import replace
 from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.report.pictures import road_marks
-from rulec.report.pictures.cell_signatures import MOST_SPELLED, in_full, in_letters, meaning
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture
 from rulec.report.pictures.drawing.label_placement import Placing
-from rulec.report.pictures.picture_captions import legend
+from rulec.report.pictures.picture_captions import (
+    MOST_SPELLED,
+    in_full,
+    in_letters,
+    legend,
+    meaning,
+)
 from rulec.report.pictures.road_marks import Frame
 
 _TAKEN = {

@@ -16,11 +16,10 @@ from rulec.report.rulebooks.rule_page import phrase_of, restrictions_of
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
-from rulec.report.verdicts.example_table import example_table
 from rulec.rulebook.rulebook_model import Example, Rule
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import clauses_of, print_in_force
-from rulec.vocabulary import Vocabulary
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
 WIDTH = 84
 """The longest line of a formula: about what a printed page has."""
@@ -31,6 +30,9 @@ CERTAINTY: Mapping[str, str] = {
     "unverified": "✎ written from memory, not yet checked",
     "": "? not stated",
 }
+
+NOTHING = "–"
+"""What stands where a state does not say something that has no default either."""
 
 _FORMULAS = ("when", "require", "unless")
 
@@ -130,12 +132,36 @@ def _example(example: Example, number: int, vocabulary: Vocabulary) -> Iterator[
     objects = [f"{code(object_.name)}, a {spoken(object_.type)}" for object_ in example.objects]
     there = f" Also there: {listed(objects)}." if objects else ""
     yield f"**Example {number}{name}: {word}**{there}"
-    shown = example_table(example, vocabulary)
-    rows = [[escaped(about), *map(escaped, cells)] for about, cells in shown.rows]
+    rows = [[*map(escaped, row)] for row in example_rows(example, vocabulary)]
     if rows:
-        yield table(["state", *map(str, range(shown.n_states))], rows)
+        yield table(["state", *map(str, range(len(example.states)))], rows)
     else:
         yield "Nothing is mentioned: everything has its default."
+
+
+def example_rows(example: Example, vocabulary: Vocabulary) -> Iterator[list[str]]:
+    """A row for each subject, in order of mention: its value in each state.
+
+    A value in parentheses is a default: the state does not mention it.
+    """
+    for name, objects in dict.fromkeys(key for state in example.states for key in state):
+        item = vocabulary.declarations[name]
+        unit = f", {item.unit}" if isinstance(item, Quantity) else ""
+        of = f" of {listed(objects)}" if objects else ""
+        default = NOTHING if item.default is None else f"({_value(item, item.default)})"
+        values = [state.get((name, objects)) for state in example.states]
+        cells = [default if value is None else _value(item, value) for value in values]
+        yield [f"{spoken(name)}{of}{unit}", *cells]
+
+
+def _value(item: Declaration, value: bool | str | float) -> str:
+    match item, value:
+        case Signal(), _:
+            return "yes" if value else "no"
+        case Enumeration(), _:
+            return spoken(str(value))
+        case _:
+            return repr(float(value)).removesuffix(".0")
 
 
 def _difference(base: tree.RuleItem, history: RuleHistory) -> Iterator[str]:

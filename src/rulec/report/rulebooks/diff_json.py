@@ -11,7 +11,7 @@ from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair, SettingPair
 from rulec.logic.printing import number_in_words
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
-from rulec.rulebook.rulebook_model import Certainty, Rule, Rulebook, Strength, Variable
+from rulec.rulebook.rulebook_model import Certainty, Rule, Strength, Variable
 from rulec.trace import Trace
 
 
@@ -96,18 +96,13 @@ def as_json(diff: RulebookDiff) -> str:
         filled(
             DiffDocument,
             diff,
-            first=book_data(diff.first),
-            second=book_data(diff.second),
+            first=filled(BookData, diff.first),
+            second=filled(BookData, diff.second),
             rules=list(map(_pair, diff.pairs)),
             only_first=list(map(_one_sided, diff.only_first)),
             only_second=list(map(_one_sided, diff.only_second)),
         )
     )
-
-
-def book_data(book: Rulebook) -> BookData:
-    """The rulebook by its name, title and day."""
-    return filled(BookData, book)
 
 
 def _pair(pair: RulePair) -> RulePairData:

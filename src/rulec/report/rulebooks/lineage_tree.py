@@ -6,13 +6,12 @@ from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 from io import StringIO
 
-from msgspec import convert
 from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
 from rulec.analysis.lineage import rule_lineage
-from rulec.report.json_document import JsonDocument, JsonPart, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.report.text.terminal_text import visible
 from rulec.syntax import tree
@@ -170,13 +169,10 @@ def as_json(inherited: rule_lineage.BookLineage) -> str:
     """Write the chain, the rules' histories and the provisions."""
     rules = []
     for history in inherited.rules:
-        steps = convert(history.steps, Sequence[LineageStepData], from_attributes=True)
+        steps = [filled(LineageStepData, step) for step in history.steps]
         gone = history.rule is None
-        rules.append(RuleLineageData(name=history.name, gone=gone, steps=steps))
-    books, provisions = inherited.books, inherited.provisions
-    return as_indented(
-        LineageDocument(rulebook=inherited.book, books=books, rules=rules, provisions=provisions)
-    )
+        rules.append(filled(RuleLineageData, history, gone=gone, steps=steps))
+    return as_indented(filled(LineageDocument, inherited, rulebook=inherited.book, rules=rules))
 
 
 def forest_as_json(branches: Sequence[rule_lineage.ExtensionTree]) -> str:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from textwrap import fill
 
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
-from rulec.report.json_document import JsonDocument, JsonPart, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.rulebooks.diff_formats import as_csv
-from rulec.report.rulebooks.diff_json import BookData, book_data
+from rulec.report.rulebooks.diff_json import BookData
 from rulec.report.rulebooks.diff_text import WIDTH
 from rulec.report.text.markdown import code, escaped
 from rulec.report.text.markdown import table as markdown_table
@@ -176,7 +176,7 @@ def _as_csv(matrix: ComparisonMatrix) -> str:
 def _as_json(matrix: ComparisonMatrix) -> str:
     return as_indented(
         MatrixDocument(
-            books=[book_data(book) for book in matrix.books],
+            books=[filled(BookData, book) for book in matrix.books],
             rules=[_shared_rule(rule, matrix) for rule in matrix.rules],
             pairs=[_book_pair(matrix, first, second) for first, second in pairs(matrix.books)],
         )

@@ -1,4 +1,4 @@
-"""Text for terminals: without control characters, coloured, in columns."""
+"""Text for terminals: without control characters, coloured, in columns; long counts and lists."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from textwrap import wrap
 from typing import TextIO
 
 from click import unstyle
+
+MOST_DIGITS = 30
 
 _REORDERING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u061c")
 
@@ -99,3 +101,17 @@ def fact_lines(facts: Sequence[tuple[str, str]], width: int) -> list[str]:
         first, *rest = wrap(visible(text), room) or [""]
         rows += [(visible(name), first), *(("", line) for line in rest)]
     return table_lines(rows, indent="  ")
+
+
+def shown_count(count: int) -> str:
+    """A count for people: exact if short, else its magnitude."""
+    digits = str(count)
+    if len(digits) <= MOST_DIGITS:
+        return f"{count:,}"
+    return f"about {digits[0]}.{digits[1:3]}e{len(digits) - 1}"
+
+
+def first_of(names: Sequence[str], most: int) -> str:
+    """So many names, and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return f"{', '.join(names[:most])}{more}"

@@ -8,8 +8,7 @@ from textwrap import shorten
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
-from rulec.report.text.count_text import first_of
-from rulec.report.text.terminal_text import table_lines, visible
+from rulec.report.text.terminal_text import first_of, table_lines, visible
 from rulec.report.verdicts import verdict_report
 
 MOST_DEFAULTS = 4

@@ -12,14 +12,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.report.json_document import (
-    JsonDocument,
-    JsonPart,
-    Number,
-    as_line,
-    filled,
-    plain_number,
-)
+from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.verdicts.violation_table import repaired_states
 
 Value = bool | int | float | str
@@ -136,7 +129,7 @@ def violations_data(
             ViolationData,
             violation,
             level=rules[violation.rule].level or None,
-            weight=plain_number(rules[violation.rule].weight),
+            weight=rules[violation.rule].weight,
             explanation=UNSET if explanation is None else explanation_data(explanation),
         )
         for violation, explanation in zip_longest(verdict.violations, explained)

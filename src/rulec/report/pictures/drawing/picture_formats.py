@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Literal, cast, get_args
 
-from rulec.report.pictures.drawing.canvas import LINE_HEIGHT, MARGIN, Picture, paragraph, stacked
+from rulec.report.pictures.drawing import canvas
+from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.png import as_png
 from rulec.report.pictures.drawing.styles import as_css
-from rulec.report.pictures.drawing.svg import as_inline_svg, as_svg, styles_of
 from rulec.report.text.terminal_text import visible
 
 Format = Literal["svg", "png", "html"]
@@ -52,10 +52,14 @@ def as_bytes(drawing: Drawing, form: str, file: str) -> bytes:
     if form == "html":
         return _as_page(drawing).encode()
     width = max(picture.width for picture in drawing.pictures)
-    lines = paragraph(drawing.title, (MARGIN, MARGIN), width - 2 * MARGIN, "strong")
-    head = Picture(drawing.title, width, MARGIN + len(lines) * LINE_HEIGHT, tuple(lines))
+    lines = canvas.paragraph(
+        drawing.title, (canvas.MARGIN, canvas.MARGIN), width - 2 * canvas.MARGIN, "strong"
+    )
+    head = Picture(
+        drawing.title, width, canvas.MARGIN + len(lines) * canvas.LINE_HEIGHT, tuple(lines)
+    )
     below = [drawing.legend] if drawing.legend else []
-    whole = stacked(drawing.title, [head, *drawing.pictures, *below])
+    whole = canvas.stacked(drawing.title, [head, *drawing.pictures, *below])
     return as_png(whole, file) if form == "png" else f"{as_svg(whole)}\n".encode()
 
 
@@ -70,13 +74,13 @@ def _as_page(drawing: Drawing) -> str:
         f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         '<meta name="color-scheme" content="light dark">',
-        f"<style>\n{as_css(styles_of([*drawing.pictures, *below]))}\n{_beside('page.css')}</style>",
+        f"<style>\n{as_css(_styles([*drawing.pictures, *below]))}\n{_beside('page.css')}</style>",
         f"</head>\n<body>\n<main>\n<h1>{title}</h1>",
     ]
     last = len(drawing.pictures) - 1
     parts += [_SLIDER.format(last=last)] if last > 0 else []
     parts.append(f'<div id="frames">\n{frames}\n</div>')
-    parts += [f"<aside>\n{as_inline_svg(legend)}\n</aside>" for legend in below]
+    parts += [f"<aside>\n{_inline_svg(legend)}\n</aside>" for legend in below]
     parts += [f"<script>\n{_beside('slider.js')}</script>"] if last > 0 else []
     return "\n".join([*parts, "</main>\n</body>\n</html>\n"])
 
@@ -87,5 +91,52 @@ def _beside(name: str) -> str:
 
 def _figure(picture: Picture) -> str:
     name = escape(visible(picture.title), quote=True)
-    drawn = as_inline_svg(picture)
+    drawn = _inline_svg(picture)
     return f'<figure data-title="{name}" tabindex="0">\n{drawn}\n</figure>'
+
+
+def as_svg(picture: Picture) -> str:
+    """A file of its own."""
+    return _inline_svg(picture, f"<style>\n{as_css(_styles([picture]))}\n</style>\n")
+
+
+def _styles(pictures: Iterable[Picture]) -> set[str]:
+    """The names of the styles that pictures use."""
+    return {"ground", *(mark.style for picture in pictures for mark in picture.marks)}
+
+
+def _inline_svg(picture: Picture, style: str = "") -> str:
+    """A part of a page that has the styles."""
+    size = f'width="{picture.width:.0f}" height="{picture.height:.0f}"'
+    box = f'viewBox="0 0 {picture.width:.0f} {picture.height:.0f}"'
+    title = escape(visible(picture.title))
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" {size} {box} role="img">',
+            f'<title>{title}</title>\n{style}<rect class="ground" {size}/>',
+            *(text for mark in picture.marks for text in _drawn(mark)),
+            "</svg>",
+        ]
+    )
+
+
+def _drawn(mark: Mark) -> Iterator[str]:
+    match mark:
+        case Area(rings, style, tip):
+            path = " ".join(f"M{_through(ring)}Z" for ring in rings)
+            yield f'<path class="{style}" fill-rule="evenodd" d="{path}"{_closed("path", tip)}'
+        case Polyline(points, style, tip):
+            shape = f'class="{style}" points="{_through(points)}"'
+            yield f"<polyline {shape}{_closed('polyline', tip)}"
+        case LabelText(text, (x, y), anchor, style, turned):
+            turn = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if turned else ""
+            place = f'x="{x:.1f}" y="{y + 4:.1f}" text-anchor="{anchor}"{turn}'
+            yield f'<text class="{style}" {place}>{escape(visible(text))}</text>'
+
+
+def _through(points: tuple[Point, ...]) -> str:
+    return " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+
+
+def _closed(element: str, tip: str) -> str:
+    return f"><title>{escape(visible(tip))}</title></{element}>" if tip else "/>"
