@@ -34,6 +34,7 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
     """
     root = root_of(path, RECORDING)
     if root == "fcd-export":
+        # NumPy and Shapely take a while, and few commands read recordings.
         from rulec.scenario.sumo.sumo_recording import read_sumo
 
         return read_sumo(path, net)
@@ -50,6 +51,7 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
             f"`{path.name}` has its own roads, and takes no net",
             help="leave out --net, which is for SUMO's floating-car data",
         )
+    # As above.
     from rulec.scenario.commonroad.commonroad_file import read_commonroad
 
     return read_commonroad(path)
