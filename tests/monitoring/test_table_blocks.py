@@ -20,7 +20,7 @@ from rulec.monitoring.batch.batch_verify import rulebook_for, verify_items
 from rulec.monitoring.verify import verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
-from rulec.trace.formats import csv_table
+from rulec.trace.formats import csv_table, table_reader
 from rulec.trace.formats import table_blocks as trace_blocks
 from rulec.trace.formats.arrow import arrow_blocks
 from rulec.trace.formats.table_blocks import Block
@@ -212,7 +212,7 @@ def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
     bound = {item for one in alone for lost in one.violations for item in lost.binding.values()}
     assert len(bound) > 100
     assert any(one.violations == () for one in alone)
-    for module in (trace_blocks, arrow_blocks, csv_table):
+    for module in (table_reader, arrow_blocks):
         monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
     assert by_columns(data, form, traffic(), block_bytes) == alone
 
@@ -228,7 +228,7 @@ def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
 )
 def test_csv_that_is_plain_too(change, monkeypatch):
     data = change(written(drives()[:60], "csv"))
-    for module in (trace_blocks, arrow_blocks, csv_table):
+    for module in (table_reader, arrow_blocks):
         monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
     expected = [verify_or_reason(trace, traffic()) for trace in drives()[:60]]
     assert by_columns(data, "csv", traffic(), 3_000) == expected
@@ -314,7 +314,6 @@ import sys
 from pathlib import Path
 import rulec
 from rulec.monitoring.batch.batch_verify import verify_items
-from rulec.trace.formats import csv_table
 from rulec.trace.formats.arrow import arrow_csv, parquet
 from rulec.trace.formats.trace_files import read_chunks
 

@@ -39,22 +39,18 @@ def reads_of(formula: ltl.Formula, vocabulary: Vocabulary) -> tuple[Read | Numbe
 
 
 def _read(together: Sequence[ltl.Proposition], vocabulary: Vocabulary) -> Read | NumberRead:
-    """The read of propositions about one thing."""
     first = together[0]
     if isinstance(first, ltl.Comparison):
         comparisons = (each for each in together if isinstance(each, ltl.Comparison))
         passed = {side for each in comparisons for side in _sides(each) if side is not None}
-        return NumberRead(first.terms, tuple(sorted(passed, key=_position)))
+        ascending = sorted(passed, key=lambda side: (side.limit, not side.inclusive))
+        return NumberRead(first.terms, tuple(ascending))
     declaration = vocabulary.declarations[first.name]
     if not isinstance(declaration, Enumeration):
         return Read(first.name, first.arguments)
     mentioned = {atom.value for atom in together if isinstance(atom, ltl.Atom)}
     values = tuple(value for value in declaration.values if value in mentioned)
     return Read(first.name, first.arguments, values, others=len(values) < len(declaration.values))
-
-
-def _position(threshold: Threshold) -> tuple[object, bool]:
-    return threshold.limit, not threshold.inclusive
 
 
 def _sides(comparison: ltl.Comparison) -> tuple[Threshold | None, ...]:

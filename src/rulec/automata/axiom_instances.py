@@ -10,17 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rulec.automata.alphabet import (
-    AND,
-    OR,
-    count_letters,
-    joined,
-    knowledge,
-    letters_with,
-    propositions_of,
-    reads_of,
-    subject_of,
-)
+from rulec.automata import alphabet
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import rename_variables
@@ -81,7 +71,9 @@ class AxiomGroup:
     @property
     def known(self) -> ltl.Formula:
         """All of it."""
-        return joined(AND, [self.natural, *(instance.formula for instance in self.instances)])
+        return alphabet.joined(
+            alphabet.AND, [self.natural, *(instance.formula for instance in self.instances)]
+        )
 
 
 def axiom_groups(
@@ -94,9 +86,13 @@ def axiom_groups(
     groups = []
     for group in linked(instances):
         about = _subjects(group)
-        touched = [proposition for proposition in every if subject_of(proposition) in about]
-        whole = joined(AND, [*touched, *(instance.formula for instance in group)])
-        natural = knowledge(reads_of(whole, vocabulary), propositions_of(whole))
+        touched = [
+            proposition for proposition in every if alphabet.subject_of(proposition) in about
+        ]
+        whole = alphabet.joined(alphabet.AND, [*touched, *(instance.formula for instance in group)])
+        natural = alphabet.knowledge(
+            alphabet.reads_of(whole, vocabulary), alphabet.propositions_of(whole)
+        )
         groups.append(AxiomGroup(natural, group))
     return tuple(groups)
 
@@ -117,8 +113,8 @@ def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, 
 
 def possible_letters(reads: Sequence[Read | NumberRead], known: ltl.Formula) -> int:
     """Bit set of letters in which a formula without time operators holds."""
-    sets = letters_with(reads, propositions_of(known))
-    return _letters_where(known, sets, everything=(1 << count_letters(reads)) - 1)
+    sets = alphabet.letters_with(reads, alphabet.propositions_of(known))
+    return _letters_where(known, sets, everything=(1 << alphabet.count_letters(reads)) - 1)
 
 
 def _letters_where(
@@ -134,12 +130,16 @@ def _letters_where(
         case ltl.Binary(operator, left, right):
             first = _letters_where(left, sets, everything)
             second = _letters_where(right, sets, everything)
-            if operator is AND:
+            if operator is alphabet.AND:
                 return first & second
-            if operator is OR:
+            if operator is alphabet.OR:
                 return first | second
     raise TypeError("what is known is said by `not`, `and` and `or`")
 
 
 def _subjects(instances: Iterable[AxiomInstance]) -> set[object]:
-    return {subject_of(atom) for instance in instances for atom in ltl.atoms_of(instance.formula)}
+    return {
+        alphabet.subject_of(atom)
+        for instance in instances
+        for atom in ltl.atoms_of(instance.formula)
+    }

@@ -100,20 +100,12 @@ def compile_rulebook(
 def build_all(
     rulebook: Rulebook, formulas: RulebookFormulas, cpu_limit_s: int = CPU_LIMIT_S
 ) -> CompiledRulebook:
-    """Build the automaton of every formula.
+    """Build the automaton of every formula, in the order of the rules.
 
-    Args:
-        rulebook: the rulebook, as meant.
-        formulas: those of its rules.
-        cpu_limit_s: processor time that a rule's automaton may take, in whole seconds.
-
-    Returns:
-        The compiled rulebook, rules in the same order.
-
-    Raises:
-        RulecError: the formulas' problems; R0401 for each rule whose automaton is too large, R0402
-            for each whose automaton failed its check, R0403 if Spot is not installed, R0409 for
-            axioms that contradict each other.
+    ``cpu_limit_s``: processor time that a rule's automaton may take, in whole seconds. Raises
+    RulecError with the formulas' problems; R0401 for each rule whose automaton is too large, R0402
+    for each whose automaton failed its check, R0403 if Spot is not installed, R0409 for axioms that
+    contradict each other.
     """
     compiled: list[CompiledRule] = []
     problems = list(formulas.problems)
@@ -189,7 +181,6 @@ def _ask(process: subprocess.Popen[bytes], job: Job) -> Done | Failed | None:
 
 
 def _job(rulebook: Rulebook, lowered: RuleFormula, cpu_limit_s: int) -> Job:
-    """The question to the worker."""
     rule, formula, step = lowered.rule, lowered.formula, lowered.step_s
     cite = f", {rule.cite}" if rule.cite else ""
     remarks = [

@@ -34,8 +34,7 @@ class StepCompiler:
     def __call__(self, step_s: Fraction) -> CompiledRulebook:
         """The rulebook for traces whose states are ``step_s`` seconds apart.
 
-        Raises:
-            RulecError: as ``build_automata``; R0407 for a bound that is no multiple of the step.
+        Raises RulecError: as ``build_automata``; R0407 for a bound that is no multiple of the step.
         """
         if step_s not in self._answers:
             if len(self._answers) >= MOST_STEPS:

@@ -33,9 +33,8 @@ class DriveVerdict:
 class RecordingVerdicts(Rows):
     """The verdicts of a rulebook on a recording's drives, computed on demand.
 
-    Raises:
-        RulecError: R0407 if the rulebook has bounds that are no multiples of the recording's step,
-            R0507 if it was compiled for another step, R0612 for a vehicle that is not there.
+    Raises RulecError R0407 if the rulebook has bounds that are no multiples of the recording's
+    step, R0507 if it was compiled for another step, R0612 for a vehicle that is not there.
     """
 
     def __init__(

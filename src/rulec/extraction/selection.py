@@ -66,8 +66,7 @@ def selected_drives(
 ) -> SelectedDrives:
     """The drives of a recording, in a vocabulary's words, for rules of a side of ``traffic``.
 
-    Raises:
-        RulecError: R0612 for a vehicle that is not there.
+    Raises RulecError R0612 for a vehicle that is not there.
     """
     side = traffic or recording.side or "right"
     mirrored = recording.side not in (None, side) and not request.as_recorded
@@ -97,8 +96,7 @@ def _examples(known: tuple[str, ...]) -> str:
 def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str, Value]:
     """Name -> value, from texts such as ``built_up=true`` and ``limit=30 mph``.
 
-    Raises:
-        ValueError: with what is wrong, for people.
+    Raises ValueError: with what is wrong, for people.
     """
     values: dict[str, Value] = {}
     for text in texts:
@@ -155,8 +153,7 @@ def _measure(text: str, name: str, unit: str) -> float:
 def threshold_options(texts: Iterable[str]) -> Thresholds:
     """The usual thresholds but for some, from texts such as ``near_m=200``.
 
-    Raises:
-        ValueError: with what is wrong, for people.
+    Raises ValueError: with what is wrong, for people.
     """
     known = {field.name: field.default for field in fields(Thresholds)}
     numbers: dict[str, float | int] = {}

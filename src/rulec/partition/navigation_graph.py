@@ -57,19 +57,14 @@ def navigation_graph(
 ) -> NavigationGraph:
     """Partition a scenario's free space over time and link the cells.
 
-    Args:
-        scenario: the scene and its prediction.
-        partition: ``paper`` (behind, in front, left, right), which it is unless given, or ``fine``
-            (station and lateral).
-        adjacency: when two cells are next to each other: ``touch``, ``edge`` or ``forward``.
-        extent: how wide obstacles are: ``lane`` (all of the lanes that they touch) or ``body``.
-        step_s: planning interval in seconds, instead of the scenario's; in a recorded scene it is,
-            unless given, the longest one up to that which leaves ego a place to start.
-        horizon_s: planning horizon in seconds, instead of the scenario's.
+    ``partition`` is ``paper`` (behind, in front, left, right; if none is given) or ``fine``
+    (station and lateral); ``adjacency``, when two cells are next to each other, ``touch``, ``edge``
+    or ``forward``; ``extent``, how wide obstacles are, ``lane`` (all lanes that they touch) or
+    ``body``. Planning interval and horizon (s) are the scenario's unless given; in a recorded scene
+    the interval is then the longest one up to that which leaves ego a place to start.
 
-    Raises:
-        RulecError: R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
-            R0608 for an unknown partition, adjacency or extent.
+    Raises RulecError R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
+    R0608 for an unknown partition, adjacency or extent.
     """
     partition = partition or "paper"
     for what, name, names_type in (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from rulec.diagnostics import RulecError
 from rulec.partition.cells.cell_model import Plane
 from rulec.partition.cells.cell_plane import plane
 from rulec.partition.cells.occupancy import Occupancy, scene
@@ -43,19 +44,14 @@ def start_cell(
     ]
     free = places.roadway.free
     if free.d_min == free.d_max:
-        raise NO_START_CELL.error(
-            None,
+        raise _no_start(
             f"ego is {scenario.ego.width:g} m wide, and the road is no wider",
-            expected="expected a road with room for ego, as its extent is `body`",
-            help="correct ego's `width`, or take the extent `lane`, which leaves it out",
+            "a road with room for ego, as its extent is `body`",
+            "correct ego's `width`, or take the extent `lane`, which leaves it out",
         )
     if not in_the_way:
-        raise NO_START_CELL.error(
-            None,
-            f"ego starts off the road, at s = {s:g}, d = {d:g}",
-            expected="expected a place on one of the lanes",
-            help="move ego, or extend the road",
-        )
+        message = f"ego starts off the road, at s = {s:g}, d = {d:g}"
+        raise _no_start(message, "a place on one of the lanes", "move ego, or extend the road")
     blockers = " and ".join(f"`{scenario.obstacles[region.obstacle].id}`" for region in in_the_way)
     verb = "sweeps" if len(in_the_way) == 1 else "sweep"
     step = float(timing.step)
@@ -63,15 +59,17 @@ def start_cell(
     remedy = "choose another moment or another ego with --at-time and --ego"
     if scenario.account is None:
         remedy = "move ego along the road, or that obstacle"
-    raise NO_START_CELL.error(
-        None,
+    smaller = f"a smaller step does not help here: {remedy}"
+    raise _no_start(
         f"{blockers} {verb} ego's place (s = {s:g}, d = {d:g}) between 0 s and {step:g} s, "
         "so ego has no free cell to start from",
-        expected=f"expected a free place; an obstacle takes {_TAKEN[extent]}",
-        help=f"a step of {float(finer.step):g} s would do"
-        if finer
-        else f"a smaller step does not help here: {remedy}",
+        f"a free place; an obstacle takes {_TAKEN[extent]}",
+        f"a step of {float(finer.step):g} s would do" if finer else smaller,
     )
+
+
+def _no_start(message: str, expected: str, way_out: str) -> RulecError:
+    return NO_START_CELL.error(None, message, expected=f"expected {expected}", help=way_out)
 
 
 def step_that_leaves_room(

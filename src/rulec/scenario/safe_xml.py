@@ -41,8 +41,7 @@ def scan(
 ) -> None:
     """Scan an XML file once, with callbacks where elements begin and end, and for comments.
 
-    Raises:
-        RulecError: R0610 for a file that is none, R0701 for one that cannot be read.
+    Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
     """
     parser = ParserCreate()
     rooted = False
@@ -94,8 +93,7 @@ def scan(
 def root_of(path: Path, form: XmlFormat) -> str:
     """The name of a file's root element; ``form`` says what to call a file that has none.
 
-    Raises:
-        RulecError: R0610 for a file that is no XML, R0701 for one that cannot be read.
+    Raises RulecError R0610 for a file that is no XML, R0701 for one that cannot be read.
     """
     parser = ParserCreate()
     names: list[str] = []
@@ -142,7 +140,6 @@ def is_packed(path: Path) -> bool:
 
 
 def _blocks(path: Path, form: XmlFormat) -> Iterator[bytes]:
-    """The bytes of a file, unpacked."""
     with opened(path) as raw, _unpacked(raw) as stream:
         try:
             while block := stream.read(_BLOCK):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
 from rulec.files import decoded, opened
 from rulec.resources import scenarios_folder
-from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.safe_xml import is_xml, root_of
 from rulec.scenario.scenario_messages import NOT_A_SCENARIO, OTHER_CHOICE, UNKNOWN_SCENARIO
 from rulec.scenario.scenario_model import Choice, Scenario
@@ -16,6 +16,9 @@ from rulec.scenario.toml.conversion import to_scenario
 from rulec.scenario.toml.toml_tables import TomlFile
 from rulec.scenario.xml_element import XmlFormat, short
 from rulec.toml import parsed_toml
+
+if TYPE_CHECKING:
+    from rulec.scenario.recorded.recording import Recording
 
 RECORDING = XmlFormat(
     "recorded traffic",
@@ -27,10 +30,9 @@ RECORDING = XmlFormat(
 def read_recording(path: Path, net: Path | None = None) -> Recording:
     """Read a file of recorded traffic; ``net`` is for SUMO's data, which have none.
 
-    Raises:
-        RulecError: R0610 for a file that cannot be read as what it seems to be, R0611 without the
-            library for CommonRoad, R0613 for a net where none is needed, R0614 and R0615 for a
-            missing or wrong one, R0701 if a file cannot be opened.
+    Raises RulecError R0610 for a file that cannot be read as what it seems to be, R0611 without the
+    library for CommonRoad, R0613 for a net where none is needed, R0614 and R0615 for a missing or
+    wrong one, R0701 if a file cannot be opened.
     """
     root = root_of(path, RECORDING)
     if root == "fcd-export":
@@ -65,8 +67,7 @@ def is_recording(file: str) -> bool:
 def read_scene(path: Path, choice: Choice) -> Scenario:
     """The scenario in a recording, seen from the chosen ego.
 
-    Raises:
-        RulecError: as for ``read_recording``, R0612 if what is chosen is not in the file.
+    Raises RulecError: as for ``read_recording``, R0612 if what is chosen is not in the file.
     """
     # Scenarios in TOML start without NumPy and Shapely, which recordings need
     from rulec.scenario.recorded.recorded_scene import seen_from_ego
@@ -92,12 +93,10 @@ def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = 
     """A scenario by its built-in name, or from a file: TOML, or recorded traffic in XML.
 
     A built-in name comes first; ``./s1`` is a file in any case. Whose maneuvers are sought in a
-    recorded scene, and along which road, is the ``choice``. See ``docs/scenarios.md``.
-
-    Raises:
-        RulecError: R0601 for an unknown name, R0701 for a file that cannot be read, R0101 and
-            R0602 to R0606 for what is wrong in it, all mistakes of one file together; R0610 to
-            R0615 for recorded traffic, R0613 also for a ``choice`` where there is none to be made.
+    recorded scene, and along which road, is the ``choice``. See ``docs/scenarios.md``. Raises
+    RulecError R0601 for an unknown name, R0701 for a file that cannot be read, R0101 and R0602 to
+    R0606 for what is wrong in it, all mistakes of one file together; R0610 to R0615 for recorded
+    traffic, R0613 also for a ``choice`` where there is none to be made.
     """
     name = os.fspath(name_or_path)
     known = available_scenarios()

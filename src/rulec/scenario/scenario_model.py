@@ -6,7 +6,7 @@ ego's direction, ``d`` across it, positive to the left.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -226,3 +226,25 @@ class Choice:
     congested_below_kmh: float = CONGESTED_BELOW_KMH
     net: Path | None = None
     ego_width_m: float | None = None
+
+
+_ROUNDING = Fraction(1, 1000)
+
+
+def weighted(motions: Iterable[Alternative]) -> list[Alternative]:
+    """Motions by descending weight, normalised to probabilities, equal ones merged.
+
+    Of equally likely ones the first stays first.
+    """
+    together: dict[Motion, Fraction] = {}
+    for alternative in motions:
+        weight = together.get(alternative.motion, Fraction(0))
+        together[alternative.motion] = weight + alternative.weight
+    whole = sum(together.values(), Fraction(0))
+    by_weight = sorted(together.items(), key=lambda item: -item[1])
+    return [Alternative(weight / whole, motion) for motion, weight in by_weight]
+
+
+def is_distribution(total: Fraction) -> bool:
+    """True if weights add up to 1 within rounding, as three times 0.333 does."""
+    return abs(total - 1) <= _ROUNDING

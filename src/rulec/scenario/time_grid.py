@@ -28,11 +28,9 @@ class Timing:
 def timing(horizon_s: float, step_s: float) -> Timing:
     """The ``horizon / step + 1`` layers of a horizon (s) cut into steps (s).
 
-    Decimals count as typed, so that 4.0 s is forty steps of 0.1 s.
-
-    Raises:
-        RulecError: R0606 if one of them is no time above 0, the horizon is not a whole multiple of
-            the step, or there were more than ``MAX_LAYERS`` layers.
+    Decimals count as typed, so that 4.0 s is forty steps of 0.1 s. Raises RulecError R0606 if one
+    of them is no time above 0, the horizon is not a whole multiple of the step, or there were more
+    than ``MAX_LAYERS`` layers.
     """
     for name, value in (("horizon", horizon_s), ("step", step_s)):
         number = not isinstance(value, bool) and isinstance(value, (int, float))

@@ -133,7 +133,6 @@ class _StateProjection:
         return {item: inner for item, inner in value.items() if item not in excluded}
 
     def _others_than(self, name: str, declaration: Declaration) -> Set[str]:
-        """The objects that a name is not about."""
         if name not in self._excluded:
             self._excluded[name] = {
                 item

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from rulec.scenario.recorded.outline_bounds import outline_bounds
+from rulec.scenario.recorded.lane_coordinates import outline_bounds
 
 
 def test_an_outline_whose_middle_is_not_beside_the_line_has_no_bounds():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Set
 from fractions import Fraction
 from itertools import chain
 from math import prod
@@ -18,14 +18,13 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRulebook,
     alike,
 )
-from rulec.automata.bundle.formula_check import problem_in
 from rulec.diagnostics import SourceLocation
+from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
-from rulec.logic.formula import Formula
-from rulec.logic.printing import formula_text
+from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.rulebook_model import Rule, Rulebook, SourceFile, Variable
-from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
+from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 
 def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
@@ -87,37 +86,99 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
 
 
 def _axiom(fact: schema.AxiomEntry, vocabulary: Vocabulary) -> CompiledAxiom:
-    variables = _variables(fact.variables, vocabulary, "a fact")
-    formula = from_data(fact.tree)
-    problem = problem_in(formula, vocabulary, {variable.name for variable in variables})
-    _require(problem is None, f"a fact {problem}")
+    variables, formula = _formula(fact, vocabulary, "a fact")
     timeless = all(part.operator in BOOLEAN for part in operations_of(formula))
     _require(timeless, "a fact speaks of more than one state")
-    _require(formula_text(formula) == fact.formula, "a fact has two different formulas")
-    return CompiledAxiom(
-        variables, formula, SourceLocation(fact.file, fact.line) if fact.file else None
-    )
+    place = SourceLocation(fact.file, fact.line) if fact.file else None
+    return CompiledAxiom(variables, formula, place)
 
 
-def _variables(
-    read: Sequence[tuple[str, str]], vocabulary: Vocabulary, of: str
-) -> tuple[Variable, ...]:
-    variables = tuple(Variable(name, type_name) for name, type_name in read)
+def _formula(
+    read: schema.AxiomEntry | schema.BundleRule, vocabulary: Vocabulary, of: str
+) -> tuple[tuple[Variable, ...], ltl.Formula]:
+    variables = tuple(Variable(name, type_name) for name, type_name in read.variables)
     names = {variable.name for variable in variables}
     _require(len(names) == len(variables), f"{of} names a variable twice")
     for variable in variables:
         _require(variable.type in vocabulary.types, f"{of} is about an unknown type")
-    return variables
+    formula = from_data(read.tree)
+    _check_formula(formula, vocabulary, names, of, counted=False)
+    _require(formula_text(formula) == read.formula, f"{of} has two different formulas")
+    return variables, formula
+
+
+def _check_formula(
+    formula: ltl.Formula, vocabulary: Vocabulary, variables: Set[str], of: str, *, counted: bool
+) -> None:
+    """Check a formula; ``counted`` says that it is a count's body."""
+    waiting = [formula]
+    while waiting:
+        match waiting.pop():
+            case ltl.Atom() as atom:
+                known = _is_known(atom, vocabulary, variables)
+                _require(known, f"{of} speaks of `{atom}`, which its vocabulary lacks")
+            case ltl.Comparison(terms) as comparison:
+                normal = _is_normal(comparison)
+                _require(normal, f"{of} compares numbers that are not in their normal form")
+                for _, term in terms:
+                    _check_term(term, vocabulary, variables, of)
+            case ltl.Same(left, right):
+                comparable = counted and {left, right} <= variables
+                _require(
+                    comparable, f"{of} asks for the same object where there is none to compare"
+                )
+            case ltl.Unary() | ltl.Binary() as operation:
+                now = not counted or operation.operator in BOOLEAN
+                _require(now, f"{of} counts objects by what they do at other instants")
+                if isinstance(operation, ltl.Unary):
+                    waiting.append(operation.operand)
+                else:
+                    waiting += [operation.right, operation.left]
+
+
+def _is_known(atom: ltl.Atom, vocabulary: Vocabulary, variables: Set[str]) -> bool:
+    declaration = vocabulary.declarations.get(atom.name)
+    match declaration:
+        case Enumeration(values=values):
+            known = atom.value in values
+        case Signal():
+            known = atom.value is None
+        case _:
+            return False
+    about = len(declaration.parameters) == len(atom.arguments)
+    return known and about and set(atom.arguments) <= variables
+
+
+def _is_normal(comparison: ltl.Comparison) -> bool:
+    coefficients = [coefficient for coefficient, _ in comparison.terms]
+    texts = [term_text(term) for _, term in comparison.terms]
+    return (
+        len(texts) > 0
+        and coefficients[0] == 1
+        and 0 not in coefficients
+        and texts == sorted(texts)
+        and len({term for _, term in comparison.terms}) == len(texts)
+    )
+
+
+def _check_term(term: ltl.Term, vocabulary: Vocabulary, variables: Set[str], of: str) -> None:
+    match term:
+        case ltl.QuantityTerm(name, arguments):
+            declared = vocabulary.declarations.get(name)
+            _require(
+                isinstance(declared, Quantity)
+                and len(declared.parameters) == len(arguments)
+                and set(arguments) <= variables,
+                f"{of} speaks of the quantity `{term_text(term)}`, which its vocabulary lacks",
+            )
+        case ltl.Count(variable, type_name, body):
+            known = type_name in vocabulary.types
+            _require(known, f"{of} counts objects of the unknown type `{type_name}`")
+            _check_formula(body, vocabulary, variables | {variable}, of, counted=True)
 
 
 def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str]) -> CompiledRule:
-    variables = _variables(rule.variables, vocabulary, f"rule `{rule.name}`")
-    formula = from_data(rule.tree)
-    problem = problem_in(formula, vocabulary, {variable.name for variable in variables})
-    _require(problem is None, f"rule `{rule.name}` {problem}")
-    _require(
-        formula_text(formula) == rule.formula, f"rule `{rule.name}` has two different formulas"
-    )
+    variables, formula = _formula(rule, vocabulary, f"rule `{rule.name}`")
     machine = _machine(rule.machine, rule.name)
     same = machine.reads == reads_of(formula, vocabulary)
     _require(same, f"the table of rule `{rule.name}` does not read what its formula does")
@@ -136,8 +197,7 @@ def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str
     )
 
 
-def _step(rule: schema.BundleRule, formula: Formula) -> Fraction | None:
-    """Checked step of a compiled rule; None if it has no seconds."""
+def _step(rule: schema.BundleRule, formula: ltl.Formula) -> Fraction | None:
     needed = has_seconds(formula)
     _require(needed is (rule.step_s is not None), f"rule `{rule.name}` is for a wrong step")
     if rule.step_s is None:

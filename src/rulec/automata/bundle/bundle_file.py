@@ -117,9 +117,8 @@ def read_to_data(read: Read | NumberRead) -> dict[str, Any]:
 def from_json(data: bytes, file: str) -> CompiledRulebook:
     """Read a compiled rulebook, checking everything that running relies on.
 
-    Raises:
-        RulecError: R0404 if it is not a compiled rulebook, of a version that this rulec does not
-            read, or damaged.
+    Raises RulecError R0404 if it is not a compiled rulebook, of a version that this rulec does not
+    read, or damaged.
     """
     data = data.removeprefix(codecs.BOM_UTF8)
     try:
@@ -155,13 +154,8 @@ def read_compiled(path: Path) -> CompiledRulebook:
 def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
     """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` to a folder.
 
-    All of them are written before the first appears, so that they fit together.
-
-    Returns:
-        The files, the compiled rulebook last.
-
-    Raises:
-        RulecError: R0702.
+    All of them are written before the first appears, so that they fit together. Returns the files,
+    the compiled rulebook last. Raises RulecError R0702.
     """
     make_folder(folder)
     texts = {folder / f"{rule.name}.hoa": rule.hoa for rule in rulebook.rules}

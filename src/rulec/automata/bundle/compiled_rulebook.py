@@ -13,16 +13,7 @@ from rulec.automata.thresholds import exact
 from rulec.diagnostics import SourceLocation
 from rulec.logic.formula import Formula
 from rulec.logic.printing import number_in_words
-from rulec.rulebook.rulebook_model import (
-    Certainty,
-    Rule,
-    Rulebook,
-    Semantics,
-    SourceFile,
-    Strength,
-    Traffic,
-    Variable,
-)
+from rulec.rulebook import rulebook_model as model
 from rulec.value_display import Rows, short_repr
 from rulec.vocabulary import Vocabulary
 
@@ -38,8 +29,8 @@ class CompiledRule:
     __repr__ = short_repr
 
     name: str
-    strength: Strength
-    variables: tuple[Variable, ...]
+    strength: model.Strength
+    variables: tuple[model.Variable, ...]
     cite: str
     says: str
     formula: Formula
@@ -49,7 +40,7 @@ class CompiledRule:
     level: str = ""
     weight: Fraction = Fraction(1)
     source: str = ""
-    certainty: Certainty = ""
+    certainty: model.Certainty = ""
     book: str = ""
 
 
@@ -57,7 +48,7 @@ class CompiledRule:
 class CompiledAxiom:
     """An axiom, which holds in every state, and where it is written."""
 
-    variables: tuple[Variable, ...]
+    variables: tuple[model.Variable, ...]
     formula: Formula
     place: SourceLocation | None = field(default=None, compare=False)
 
@@ -79,17 +70,17 @@ class CompiledRulebook(Rows):
     title: str
     law: str
     as_of: str
-    sources: tuple[SourceFile, ...]
+    sources: tuple[model.SourceFile, ...]
     rulec: str
     spot: str
-    semantics: Semantics = "stutter"
+    semantics: model.Semantics = "stutter"
     levels: tuple[str, ...] = ()
     priorities: frozenset[tuple[str, str]] = frozenset()
     extends: tuple[str, ...] = ()
     at: str = ""
     axioms: tuple[CompiledAxiom, ...] = ()
-    traffic: Traffic = ""
-    source: Rulebook | None = field(default=None, compare=False, repr=False)
+    traffic: model.Traffic = ""
+    source: model.Rulebook | None = field(default=None, compare=False, repr=False)
     recompile: Callable[[Fraction], CompiledRulebook] | None = field(
         default=None, compare=False, repr=False
     )
@@ -98,11 +89,9 @@ class CompiledRulebook(Rows):
         """These rules for traces whose states are ``step_s`` seconds apart.
 
         A float means the decimal that is written. Rules without bounds in seconds are the same for
-        any step; each step is compiled once.
-
-        Raises:
-            RulecError: R0507 if the rules are for another step and cannot be compiled again, R0407
-                for a bound that is no multiple of the step, else as ``compile_rulebook``.
+        any step; each step is compiled once. Raises RulecError R0507 if the rules are for another
+        step and cannot be compiled again, R0407 for a bound that is no multiple of the step, else
+        as ``compile_rulebook``.
         """
         step = exact(step_s)
         if self.recompile is None:
@@ -123,27 +112,31 @@ class CompiledRulebook(Rows):
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a rule."""
+        fields = ("strength", "level", "cite", "says", "book")
         return [
-            {
-                "rule": rule.name,
-                "strength": rule.strength,
-                "level": rule.level,
-                "cite": rule.cite,
-                "says": rule.says,
-                "book": rule.book,
-            }
+            {"rule": rule.name, **{name: getattr(rule, name) for name in fields}}
             for rule in self.rules
         ]
 
 
 _ALIKE = {
-    Rulebook: ("name", "title", "law", "as_of", "semantics", "levels", "extends", "at", "traffic"),
-    Rule: ("name", "strength", "cite", "says", "level", "source", "certainty", "book"),
+    model.Rulebook: (
+        "name",
+        "title",
+        "law",
+        "as_of",
+        "semantics",
+        "levels",
+        "extends",
+        "at",
+        "traffic",
+    ),
+    model.Rule: ("name", "strength", "cite", "says", "level", "source", "certainty", "book"),
 }
 """Fields that both have alike, and their compiled forms, and the entries of these in the file."""
 
 
-def alike(kind: type[Rulebook | Rule], source: object) -> dict[str, Any]:
+def alike(kind: type[model.Rulebook | model.Rule], source: object) -> dict[str, Any]:
     """Fields that a rulebook's or rule's other forms have alike."""
     return {name: getattr(source, name) for name in _ALIKE[kind]}
 

@@ -31,9 +31,7 @@ def check(
     ``formula`` may speak of ``memories``, the automaton must not. Every word has one way to choose
     them as they are defined: it is inside if so completed ``formula`` holds for it, else outside.
     With ``cpu_s``, each direction may take so much processor time and is left out if it takes more.
-
-    Raises:
-        CheckError: if they differ, or if the automaton is not deterministic and complete.
+    Raises CheckError if they differ, or if the automaton is not deterministic and complete.
     """
     fresh = {spot_formulas.formula_of(memory.atom).ap_name() for memory in memories}
     if (

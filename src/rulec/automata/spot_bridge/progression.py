@@ -55,10 +55,7 @@ class Progression:
         if left.id() not in known:
             letter = buddy.bdd_ithvar(variable)
             results: dict[int, tuple[Any, Any]] = {}
-            for side, branch in (
-                (letter, buddy.bdd_high(left)),
-                (-letter, buddy.bdd_low(left)),
-            ):
+            for side, branch in ((letter, buddy.bdd_high(left)), (-letter, buddy.bdd_low(left))):
                 for key, (letters, target) in self._split(branch, known).items():
                     before = results[key][0] if key in results else buddy.bddfalse
                     results[key] = before | (side & letters), target

@@ -62,7 +62,7 @@ def command(
     from rulec.monitoring.online import monitor_sources
     from rulec.monitoring.online.running_monitor import Monitor
     from rulec.report.verdicts import running_verdicts
-    from rulec.trace.formats.live_states import read_live
+    from rulec.trace.formats.json_lines import read_live
 
     saved = None if restore is None else monitor_sources.read_saved(restore)
     step_s = step_s or monitor_sources.step_of(saved)

@@ -22,8 +22,7 @@ def _prediction(
 ) -> str | dict[str, Fraction]:
     """A kind of prediction, or several with their probabilities."""
     # Scenarios' formats, 30 ms: not for --help.
-    from rulec.scenario.alternatives import is_distribution
-    from rulec.scenario.scenario_model import PREDICTIONS
+    from rulec.scenario.scenario_model import PREDICTIONS, is_distribution
 
     known = " or ".join(f"`{kind}`" for kind in PREDICTIONS)
     if value in PREDICTIONS:

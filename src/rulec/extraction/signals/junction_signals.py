@@ -68,7 +68,6 @@ def _crosses_stop_line(context: DriveContext, front: Floats) -> Flags:
 
 
 def _turn(context: DriveContext, start: float, end: float) -> str:
-    """The way that ego's road takes at a junction."""
     line = context.road.line
     turned = np.degrees(line.heading_at(end + 1.0) - line.heading_at(start - 1.0))
     turned = (turned + 180.0) % 360.0 - 180.0

@@ -96,5 +96,4 @@ def _precedes(context: DriveContext, follows: Flags, gap: Floats) -> Flags:
 
 
 def _constant(context: DriveContext, flags: list[bool]) -> Flags:
-    """A flag for each participant, repeated in every state."""
     return np.repeat(np.array(flags, dtype=bool)[:, None], context.states, axis=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -29,12 +29,8 @@ class SignalColumns:
     only: Mapping[str, Flags] = field(default_factory=dict)
 
     def __or__(self, other: SignalColumns) -> SignalColumns:
-        return SignalColumns(
-            {**self.world, **other.world},
-            {**self.about, **other.about},
-            {**self.unknown, **other.unknown},
-            {**self.only, **other.only},
-        )
+        names = [field.name for field in fields(self)]
+        return SignalColumns(*({**getattr(self, name), **getattr(other, name)} for name in names))
 
 
 def named_values(codes: SignalColumn, names: Sequence[str]) -> SignalColumn:

@@ -13,16 +13,15 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.tracks import Floats
-from rulec.scenario.recorded.lane_coordinates import Lanes, borders_along, lanes_along
-from rulec.scenario.recorded.outline_bounds import crossings_along
+from rulec.scenario.recorded.lane_coordinates import (
+    Lanes,
+    borders_along,
+    crossings_along,
+    lanes_along,
+)
 from rulec.scenario.recorded.recording import Lanelet, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at, reference_line
-from rulec.scenario.recorded.route import (
-    directions_beside,
-    extended_route,
-    is_lane,
-    lanes_beside,
-)
+from rulec.scenario.recorded.route import directions_beside, extended_route, is_lane, lanes_beside
 
 _CROSSING_ANGLE = radians(30.0)
 """Ways that meet at a smaller angle run into each other, as where lanes join or part."""
@@ -64,10 +63,8 @@ class DrivenRoad:
 def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
     """The road of a chain of lanelets, extended straight at both ends.
 
-    ``junctions`` are the lanelets that lie in one.
-
-    Raises:
-        ValueError: its lanes cannot be laid out along a line.
+    ``junctions`` are the lanelets that lie in one. Raises ValueError: its lanes cannot be laid out
+    along a line.
     """
     whole = extended_route(recording, way)
     lanelets = tuple(recording.lanelets[number] for number in whole)

@@ -22,12 +22,7 @@ import shapely
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.reference_line import turn
-from rulec.scenario.recorded.route import (
-    directions_beside,
-    is_lane,
-    lanelet_area,
-    lanes_beside,
-)
+from rulec.scenario.recorded.route import directions_beside, is_lane, lanelet_area, lanes_beside
 
 NEAR_M = 3.0
 """The farthest that a vehicle may be beside a lanelet that it is matched to."""

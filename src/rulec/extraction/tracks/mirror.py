@@ -4,24 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rulec.scenario.recorded.recording import (
-    Lamp,
-    Lanelet,
-    Participant,
-    Points,
-    Recording,
-    Side,
-    TrackState,
-)
+from rulec.scenario.recorded import recording as model
 
-_LAMPS: dict[Lamp, Lamp] = {
+_LAMPS: dict[model.Lamp, model.Lamp] = {
     "left_indicator": "right_indicator",
     "right_indicator": "left_indicator",
 }
-_OTHER: dict[Side | None, Side | None] = {"left": "right", "right": "left", None: None}
+_OTHER: dict[model.Side | None, model.Side | None] = {"left": "right", "right": "left", None: None}
 
 
-def mirrored_recording(recording: Recording) -> Recording:
+def mirrored_recording(recording: model.Recording) -> model.Recording:
     """Mirror a recording: negate ``y``, exchange left and right."""
     return replace(
         recording,
@@ -35,11 +27,11 @@ def mirrored_recording(recording: Recording) -> Recording:
     )
 
 
-def _points(points: Points) -> Points:
+def _points(points: model.Points) -> model.Points:
     return points * (1.0, -1.0)
 
 
-def _lanelet(lanelet: Lanelet) -> Lanelet:
+def _lanelet(lanelet: model.Lanelet) -> model.Lanelet:
     return replace(
         lanelet,
         left=_points(lanelet.right),
@@ -52,7 +44,7 @@ def _lanelet(lanelet: Lanelet) -> Lanelet:
     )
 
 
-def _participant(participant: Participant) -> Participant:
+def _participant(participant: model.Participant) -> model.Participant:
     return replace(
         participant,
         states={step: _state(state) for step, state in participant.states.items()},
@@ -64,5 +56,5 @@ def _participant(participant: Participant) -> Participant:
     )
 
 
-def _state(state: TrackState) -> TrackState:
+def _state(state: model.TrackState) -> model.TrackState:
     return replace(state, y=-state.y, heading=-state.heading)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.scenario.recorded.outline_bounds import outline_bounds
+from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
 
 _BOUNDS = ("s_min", "s_max", "d_min", "d_max", "w_min", "w_max")

@@ -24,8 +24,7 @@ from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
-from rulec.trace.formats.block_presence import outlined
-from rulec.trace.formats.table_blocks import Block, OddTableError
+from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
 from rulec.trace.trace_validation import check_frame, check_presence
 
 FEWEST = 4

@@ -19,7 +19,7 @@ from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.trace import Trace
 from rulec.trace.formats.json_line_problems import is_beginning
-from rulec.trace.formats.live_states import LiveState
+from rulec.trace.formats.json_lines import LiveState
 from rulec.trace.trace_validation import check_trace
 
 

@@ -24,19 +24,11 @@ from rulec.scenario.commonroad.commonroad_participants import (
     planning_problem,
 )
 from rulec.scenario.commonroad.required_elements import COMMONROAD, check_form
-from rulec.scenario.recorded.recording import (
-    LONGEST_M,
-    Lanelet,
-    LaneMark,
-    Light,
-    Points,
-    Recording,
-    Side,
-)
+from rulec.scenario.recorded import recording
 from rulec.scenario.scenario_messages import COMMONROAD_MISSING
 from rulec.scenario.xml_element import LARGEST
 
-_MARKS: Mapping[str, LaneMark] = MappingProxyType(
+_MARKS: Mapping[str, recording.LaneMark] = MappingProxyType(
     {
         "solid": "solid",
         "broad_solid": "solid",
@@ -62,12 +54,11 @@ NOR PER PHL POL PRT ROU RUS SAU SRB SVK SVN SWE TUN TUR TWN UKR URY USA VNM
 """The codes of countries (ISO 3166) by the side of traffic; names of scenarios begin with them."""
 
 
-def read_commonroad(path: Path) -> Recording:
+def read_commonroad(path: Path) -> recording.Recording:
     """Read the recording in a CommonRoad file.
 
-    Raises:
-        RulecError: R0610 for a file that cannot be read as CommonRoad, R0611 without the library,
-            R0701 if the file cannot be opened.
+    Raises RulecError R0610 for a file that cannot be read as CommonRoad, R0611 without the library,
+    R0701 if the file cannot be opened.
     """
     check_form(path)
     with _quiet():
@@ -118,7 +109,7 @@ def _unreadable(path: Path, reason: Exception) -> RulecError:
     return COMMONROAD.refused(path, why)
 
 
-def _recording(name: str, scenario: Any, problems: Any) -> Recording:
+def _recording(name: str, scenario: Any, problems: Any) -> recording.Recording:
     signs = {sign.traffic_sign_id: sign for sign in scenario.lanelet_network.traffic_signs}
     lights = {
         light.traffic_light_id: _light(light.traffic_light_cycle)
@@ -132,7 +123,7 @@ def _recording(name: str, scenario: Any, problems: Any) -> Recording:
     step_s = float(scenario.dt)
     if not 0 < step_s < inf:
         raise ValueError(f"a time step of {step_s:g} s is none")
-    return Recording(
+    return recording.Recording(
         name,
         step_s,
         lanelets,
@@ -145,14 +136,16 @@ def _recording(name: str, scenario: Any, problems: Any) -> Recording:
     )
 
 
-def _light(cycle: Any) -> Light:
+def _light(cycle: Any) -> recording.Light:
     phases = tuple((phase.state.value, int(phase.duration)) for phase in cycle.cycle_elements)
     if not phases or min(duration for _, duration in phases) <= 0:
         raise ValueError("a traffic light has a phase that does not last")
-    return Light(int(cycle.time_offset), phases)
+    return recording.Light(int(cycle.time_offset), phases)
 
 
-def _lanelet(lanelet: Any, signs: Mapping[int, Any], lights: Mapping[int, Light]) -> Lanelet:
+def _lanelet(
+    lanelet: Any, signs: Mapping[int, Any], lights: Mapping[int, recording.Light]
+) -> recording.Lanelet:
     elements = [
         element
         for number in sorted(lanelet.traffic_signs or ())
@@ -164,7 +157,7 @@ def _lanelet(lanelet: Any, signs: Mapping[int, Any], lights: Mapping[int, Light]
         for element in elements
         if element.traffic_sign_element_id.name == "MAX_SPEED" and element.additional_values
     ]
-    return Lanelet(
+    return recording.Lanelet(
         id=str(lanelet.lanelet_id),
         left=_points(lanelet.left_vertices),
         right=_points(lanelet.right_vertices),
@@ -186,16 +179,16 @@ def _id(number: int | None) -> str | None:
     return None if number is None else str(number)
 
 
-def _points(vertices: Any) -> Points:
+def _points(vertices: Any) -> recording.Points:
     points = np.asarray(vertices, dtype=float)[:, :2]
     if len(points) < 2 or not (np.abs(points) < LARGEST).all():
         raise ValueError("a lanelet's bound has fewer than two points, or one that is no place")
-    if np.ptp(points, axis=0).max() > LONGEST_M:
-        raise ValueError(f"a lanelet's bound is longer than {LONGEST_M / 1000:g} km")
+    if np.ptp(points, axis=0).max() > recording.LONGEST_M:
+        raise ValueError(f"a lanelet's bound is longer than {recording.LONGEST_M / 1000:g} km")
     return points
 
 
-def side_in(name: str) -> Side | None:
+def side_in(name: str) -> recording.Side | None:
     """The side of ``DEU_Ulm-1_1_T-1``; None for other names, and for made-up countries.
 
     CommonRoad's own ``ZAM`` is the made-up country Zamunda, not Zambia.

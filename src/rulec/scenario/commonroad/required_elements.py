@@ -43,8 +43,7 @@ _FEWEST_POINTS = {"leftBound": 2, "rightBound": 2}
 def check_form(path: Path) -> None:
     """Check that a file is well-formed XML with CommonRoad's required elements.
 
-    Raises:
-        RulecError: R0610 for a file that is none, R0701 for one that cannot be read.
+    Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
     """
     # Name, line and children so far of the elements that have begun
     open_elements: list[tuple[str, int, list[str]]] = []

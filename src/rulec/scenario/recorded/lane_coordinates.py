@@ -25,6 +25,9 @@ from rulec.scenario.scenario_model import MissingLane
 NARROWEST_LANE_M = 1.0
 """Where a lane is narrower it has not begun yet, or has ended."""
 
+_REACH_FACTOR, _REACH_MORE_M = 2.0, 3.0
+_NARROWEST_M = 0.1
+_EDGE_EVERY_M = 0.5
 _EVERY_M = 1.0
 _MARGIN_M = 5.0
 _HAIR_M = 0.01
@@ -84,8 +87,7 @@ def lanes_along(
 ) -> Lanes:
     """The lanes beside those of the way that lead the same way.
 
-    Raises:
-        ValueError: there is no lane as wide as ``NARROWEST_LANE_M``.
+    Raises ValueError if there is no lane as wide as ``NARROWEST_LANE_M``.
     """
     lanelets = [recording.lanelets[number] for number in way]
     borders = borders_along(lanelets, line)
@@ -183,3 +185,44 @@ def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> 
         raise ValueError("a lane's bounds are nowhere beside its centre line")
     places = places[np.argsort(places[:, 0], kind="stable")]
     return np.interp(strip.grid, places[:, 0], places[:, 1])
+
+
+def outline_bounds(
+    outlines: Sequence[Points], line: ReferenceLine, lanes: Lanes
+) -> tuple[_Values, _Values]:
+    """The least and the greatest coordinates of each outline, a row each.
+
+    Columns: ``s``, ``d`` (m from the line), ``w`` (m, ``d`` between the lanes' straight bounds).
+    NaN for outlines that are not beside the line. Corners are projected near the foot of their
+    middle, so that no body is torn apart where a road meets itself.
+    """
+    if not outlines:
+        return np.empty((0, 3)), np.empty((0, 3))
+    counts = np.array([len(outline) for outline in outlines])
+    starts = np.append(0, np.cumsum(counts)[:-1])
+    corners = np.concatenate(outlines)
+    middles = np.add.reduceat(corners, starts) / counts[:, None]
+    away = np.hypot(*(corners - np.repeat(middles, counts, axis=0)).T)
+    reach = np.maximum.reduceat(away, starts) * _REACH_FACTOR + _REACH_MORE_M
+    around = np.repeat(line.coordinates(middles)[:, 0], counts)
+    feet = line.coordinates_near(corners, around, np.repeat(reach, counts))
+    feet[np.isnan(around)] = np.nan
+    coordinates = np.column_stack((feet, lanes.straightened(feet)[:, 1]))
+    return np.minimum.reduceat(coordinates, starts), np.maximum.reduceat(coordinates, starts)
+
+
+def crossings_along(
+    recording: Recording, line: ReferenceLine, lanes: Lanes, start: float, end: float
+) -> Iterator[tuple[float, float]]:
+    """The stretches (``s``) that crosswalks take up on the lanes, within ``start`` and ``end``."""
+    for lanelet in recording.lanelets.values():
+        if "crosswalk" not in lanelet.types:
+            continue
+        outline = np.concatenate((lanelet.right, lanelet.left[::-1], lanelet.right[:1]))
+        places = lanes.straightened(line.coordinates(densified(outline, _EDGE_EVERY_M)))
+        d = places[:, 1]
+        on_road = places[(d > lanes.straight[0]) & (d < lanes.straight[-1]), 0]
+        if len(on_road):
+            low, high = max(float(on_road.min()), start), min(float(on_road.max()), end)
+            if high - low >= _NARROWEST_M:
+                yield low, high

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.scenario.recorded.ego_start import choice_error, ego_size, ego_start, reference_lanelet
-from rulec.scenario.recorded.lane_coordinates import lanes_along
-from rulec.scenario.recorded.outline_bounds import crossings_along
+from rulec.scenario.recorded.lane_coordinates import crossings_along, lanes_along
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.reference_line import reference_line
 from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
@@ -20,9 +19,8 @@ STEP_S = 0.5
 def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     """The scenario that a recording gives, seen from the chosen ego.
 
-    Raises:
-        RulecError: R0612 if what is chosen is not in it.
-        ValueError: its lanes cannot be laid out along a line.
+    Raises RulecError R0612 if what is chosen is not in it, ValueError if its lanes cannot be laid
+    out along a line.
     """
     start = ego_start(recording, choice, file)
     own = reference_lanelet(recording, choice, start.state, file)

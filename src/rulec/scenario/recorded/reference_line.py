@@ -108,8 +108,7 @@ class ReferenceLine:
 def reference_line(corners: Points) -> ReferenceLine:
     """The line through corners, without those too close together.
 
-    Raises:
-        ValueError: all of them are in one place.
+    Raises ValueError if all of them are in one place.
     """
     kept = without_repeats(corners, _CLOSEST_M)
     if len(kept) == 1:

@@ -9,22 +9,11 @@ from math import cos, degrees, pi
 
 import numpy as np
 
-from rulec.scenario.alternatives import weighted
+from rulec.scenario import scenario_model as model
 from rulec.scenario.geometry import Box
-from rulec.scenario.recorded.lane_coordinates import Lanes
-from rulec.scenario.recorded.outline_bounds import outline_bounds
+from rulec.scenario.recorded.lane_coordinates import Lanes, outline_bounds
 from rulec.scenario.recorded.recording import Participant, Points, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine
-from rulec.scenario.scenario_model import (
-    PEDESTRIAN,
-    Alternative,
-    ConstantAcceleration,
-    Footprints,
-    Motion,
-    Obstacle,
-    Prediction,
-    SignalValue,
-)
 
 GOES_ON_S = 600.0
 """The time (s) for which those present at the end of a recording go on after it."""
@@ -77,23 +66,25 @@ class TrafficView:
 
 
 def traffic_obstacles(
-    view: TrafficView, ego: str | None, prediction: Prediction | Mapping[Prediction, Fraction]
-) -> Iterator[Obstacle]:
+    view: TrafficView,
+    ego: str | None,
+    prediction: model.Prediction | Mapping[model.Prediction, Fraction],
+) -> Iterator[model.Obstacle]:
     """The obstacles on the road from time 0 on, in the file's order."""
     predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
     others = [participant for participant in view.recording.participants if participant.id != ego]
     for participant, steps, own in _laid_out(view, others):
         motions = [
-            Alternative(weight, motion)
+            model.Alternative(weight, motion)
             for kind, weight in predictions.items()
             if (motion := _motion(view, participant, steps, own, kind)) is not None
         ]
         if not motions:
             continue
-        likeliest, *alternatives = weighted(motions)
+        likeliest, *alternatives = model.weighted(motions)
         first = next(box for box in own if box is not None)
         words = participant.object_types
-        yield Obstacle(
+        yield model.Obstacle(
             id=participant.id,
             type=words[0],
             length=first.s_max - first.s_min,
@@ -131,8 +122,8 @@ def _motion(
     participant: Participant,
     steps: Sequence[int],
     boxes: Sequence[Box | None],
-    prediction: Prediction,
-) -> Motion | None:
+    prediction: model.Prediction,
+) -> model.Motion | None:
     """The motion of a participant; None off the road, or if a constant one has no time 0."""
     now = boxes[0] if steps and (participant.standing or view.time(steps[0]) == 0) else None
     if participant.standing or prediction == "constant" or (now and len(participant.outlines) == 1):
@@ -150,18 +141,18 @@ def _motion(
         along = _speed(times, known) * GOES_ON_S
         times.append(times[-1] + GOES_ON_S)
         known.append(replace(last, s_min=last.s_min + along, s_max=last.s_max + along))
-    return Footprints(tuple(times), tuple(known))
+    return model.Footprints(tuple(times), tuple(known))
 
 
 def _constant(
     view: TrafficView, participant: Participant, step: int, box: Box
-) -> ConstantAcceleration:
+) -> model.ConstantAcceleration:
     s, d = (box.s_min + box.s_max) / 2, (box.d_min + box.d_max) / 2
     state = participant.states.get(step)
     if participant.standing or state is None:
-        return ConstantAcceleration(s, d)
+        return model.ConstantAcceleration(s, d)
     along = cos(state.heading - view.line.heading_at(s + view.ego_s))
-    return ConstantAcceleration(s, d, state.speed * along, state.acceleration * along)
+    return model.ConstantAcceleration(s, d, state.speed * along, state.acceleration * along)
 
 
 def _speed(times: Sequence[float], boxes: Sequence[Box | None]) -> float:
@@ -180,7 +171,7 @@ def _speed(times: Sequence[float], boxes: Sequence[Box | None]) -> float:
 def _walking_direction(view: TrafficView, participant: Participant) -> float | None:
     """The direction (degrees) of a pedestrian that never moves; None if motion tells."""
     state = next(iter(participant.states.values()), None)
-    if participant.object_types[0] != PEDESTRIAN or state is None:
+    if participant.object_types[0] != model.PEDESTRIAN or state is None:
         return None
     if len({(own.x, own.y) for own in participant.states.values()}) > 1:
         return None
@@ -189,9 +180,11 @@ def _walking_direction(view: TrafficView, participant: Participant) -> float | N
     return degrees((turn + pi) % (2 * pi) - pi)
 
 
-def _signals(participant: Participant) -> dict[str, SignalValue]:
+def _signals(participant: Participant) -> dict[str, model.SignalValue]:
     """The constant signals of a participant; changing ones are left to the rulebook."""
-    signals: dict[str, SignalValue] = {"two_wheeled": participant.type in ("motorcycle", "bicycle")}
+    signals: dict[str, model.SignalValue] = {
+        "two_wheeled": participant.type in ("motorcycle", "bicycle")
+    }
     if participant.type == "parkedVehicle":
         signals["parked"] = True
     return signals

@@ -1,4 +1,4 @@
-"""SUMO's floating-car data: who was where at which moment.
+"""SUMO's floating-car data: who was where at which moment, and the files beside them.
 
 A vehicle's ``x`` and ``y`` are the middle of its front bumper; its ``angle`` is a compass's:
 degrees clockwise from the y axis. Who rides in a vehicle is a part of it, and left out.
@@ -6,14 +6,16 @@ degrees clockwise from the y axis. Who rides in a vehicle is a part of it, and l
 
 from __future__ import annotations
 
+import re
 from array import array
 from dataclasses import dataclass, field
+from html import unescape
 from operator import itemgetter
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.scenario.safe_xml import scan
-from rulec.scenario.sumo.companion_files import FcdHead, fcd_head
+from rulec.scenario.scenario_messages import NET_MISSING
 from rulec.scenario.xml_element import LARGEST, XmlElement, XmlFormat, short
 
 FCD = XmlFormat(
@@ -27,10 +29,35 @@ LONGEST_ID = 200
 MICROSECONDS = 1_000_000
 """In a second: moments are whole numbers of them."""
 
+_OPTION = re.compile(r'<(net-file|route-files|additional-files|fcd-output\.geo)\s+value="([^"]*)"')
 _PLACE = ("x", "y", "angle", "speed")
 _place_of = itemgetter(*_PLACE)
 _NOWHERE = -(2.0**30)
 """What SUMO writes for x and y of who is in no place, as while it is moved elsewhere."""
+
+
+@dataclass(frozen=True, slots=True)
+class FcdHead:
+    """SUMO's configuration, a comment at the head of its output."""
+
+    net: str = ""
+    demand: tuple[str, ...] = ()
+    geographic: bool = False
+
+
+def fcd_head(comment: str) -> FcdHead:
+    """The configuration in a comment, as far as it matters here."""
+    options = {name: unescape(value) for name, value in _OPTION.findall(comment)}
+    demand = [
+        name.strip()
+        for key in ("route-files", "additional-files")
+        for name in options.get(key, "").split(",")
+    ]
+    return FcdHead(
+        options.get("net-file", ""),
+        tuple(filter(None, demand)),
+        options.get("fcd-output.geo") in ("true", "1", "yes", "on"),
+    )
 
 
 @dataclass(slots=True)
@@ -62,11 +89,7 @@ class FloatingCarData:
 
 
 def read_fcd(path: Path) -> FloatingCarData:
-    """The file's content.
-
-    Raises:
-        RulecError: R0610 if it is none, R0701 if it cannot be read.
-    """
+    """The file's content. Raises RulecError R0610 if it is none, R0701 if it cannot be read."""
     data = FloatingCarData()
     carriers = 0
 
@@ -138,3 +161,43 @@ def _wrong(element: XmlElement) -> RulecError:
         element.number(key)
     element.number("acceleration", 0.0)
     raise AssertionError("one of these is not a number")
+
+
+def net_beside(path: Path, head: FcdHead) -> Path:
+    """The net of floating-car data. Raises RulecError R0614 if it is not clear which that is."""
+    written = _beside(path, head.net) if head.net else None
+    if written is not None:
+        return written
+    nets = [*path.parent.glob("*.net.xml"), *path.parent.glob("*.net.xml.gz")]
+    if len(nets) == 1:
+        return nets[0]
+    if nets:
+        why = f"there are several nets beside it: {named(sorted(net.name for net in nets))}"
+    elif head.net:
+        why = f"`{_name(head.net)}`, which it was made with, is not beside it"
+    else:
+        why = "there is no net beside it"
+    raise NET_MISSING.error(
+        SourceLocation(str(path)),
+        f"SUMO's floating-car data do not say where the roads are, and {why}",
+        help="name SUMO's net with --net FILE",
+    )
+
+
+def demand_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
+    """The files beside floating-car data that may describe the types of vehicles."""
+    written = [file for name in head.demand if (file := _beside(path, name)) is not None]
+    if written:
+        return tuple(written)
+    only = [*path.parent.glob("*.rou.xml"), *path.parent.glob("*.rou.xml.gz")]
+    return tuple(only) if len(only) == 1 else ()
+
+
+def _beside(path: Path, written: str) -> Path | None:
+    # Only the name counts: what a file says shall not lead anywhere else
+    candidate = path.parent / _name(written)
+    return candidate if candidate.is_file() else None
+
+
+def _name(written: str) -> str:
+    return PurePosixPath(written.replace("\\", "/").replace("\0", "")).name

@@ -35,10 +35,8 @@ def time_step(path: Path, moments: list[int]) -> float:
     """The time step (s): the shortest time between two moments of the file.
 
     Moments may be missing, as when nobody was there; what lies between two steps may not be. With
-    one moment only it is a second, or the part of one that goes into its time.
-
-    Raises:
-        RulecError: R0610 for moments that are not all on one grid from time 0 on, or too far apart.
+    one moment only it is a second, or the part of one that goes into its time. Raises RulecError
+    R0610 for moments that are not all on one grid from time 0 on, or too far apart.
     """
     if len(moments) < 2:
         return gcd(MICROSECONDS, *moments) / MICROSECONDS

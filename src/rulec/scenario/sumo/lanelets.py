@@ -82,7 +82,6 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
 
 
 def _lines(lane: NetLane, shape: Points) -> tuple[Points, Points, Points]:
-    """Left and right border, and the middle."""
     if lane.edge.function == "walkingarea" and len(shape) > 3:
         # The shape is an outline: one half of it is one side, the other half the other
         half = len(shape) // 2
@@ -194,7 +193,6 @@ def _types(lane: NetLane, junctions: set[str], entries: list[NetConnection]) -> 
 
 
 def _permitted(lane: NetLane) -> frozenset[str]:
-    """The classes of road users that may be on the lane."""
     if lane.allow is not None:
         return _ALL if lane.allow == "all" else frozenset(lane.allow.split()) & _ALL
     if lane.disallow is not None:

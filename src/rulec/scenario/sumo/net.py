@@ -133,11 +133,7 @@ class SumoNet:
 
 
 def read_net(path: Path) -> SumoNet:
-    """The net in a file.
-
-    Raises:
-        RulecError: R0610 if it is none, R0701 if it cannot be read.
-    """
+    """The net in a file. Raises RulecError R0610 if it is none, R0701 if it cannot be read."""
     net = SumoNet()
     edge: NetEdge | None = None
     light: XmlElement | None = None

@@ -11,8 +11,14 @@ from numpy import int64
 from rulec.diagnostics import SourceLocation
 from rulec.scenario.recorded.recording import Lanelet, Participant, Recording
 from rulec.scenario.scenario_messages import OTHER_NET
-from rulec.scenario.sumo.companion_files import demand_beside, net_beside
-from rulec.scenario.sumo.fcd import FCD, MICROSECONDS, FloatingCarData, read_fcd
+from rulec.scenario.sumo.fcd import (
+    FCD,
+    MICROSECONDS,
+    FloatingCarData,
+    demand_beside,
+    net_beside,
+    read_fcd,
+)
 from rulec.scenario.sumo.fcd_participants import fcd_participants, time_step
 from rulec.scenario.sumo.lanelets import net_lanelets
 from rulec.scenario.sumo.net import SumoNet, read_net
@@ -28,9 +34,8 @@ _NAMED = 5
 def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     """Read floating-car data on the roads of a net: the one given, or the one beside them.
 
-    Raises:
-        RulecError: R0610 for a file that cannot be read as what it should be, R0614 if there is no
-            net, R0615 for another road's net, R0701 if a file cannot be opened.
+    Raises RulecError R0610 for a file that cannot be read as what it should be, R0614 if there is
+    no net, R0615 for another road's net, R0701 if a file cannot be opened.
     """
     data = read_fcd(path)
     if data.head.geographic:
@@ -86,7 +91,6 @@ def _some(names: list[str]) -> str:
 
 
 def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNet) -> None:
-    """Check that the net has all lanes and edges of the data. Raises RulecError R0615."""
     for name, (kind, line) in data.on.items():
         if name not in (net.lanes if kind == "lane" else net.edges):
             raise OTHER_NET.error(
@@ -99,7 +103,6 @@ def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNe
 def _check_near(
     path: Path, participants: Iterable[Participant], lanelets: Iterable[Lanelet]
 ) -> None:
-    """Check that all participants are near the roads. Raises RulecError R0615."""
     roads = np.concatenate([lanelet.centre for lanelet in lanelets])
     low, high = roads.min(axis=0) - NEAR_M, roads.max(axis=0) + NEAR_M
     for participant in participants:

@@ -74,8 +74,7 @@ _USUAL = {"vehicle": "passenger", "person": "pedestrian", "container": "containe
 def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
     """Read the vehicle types that files describe, if any.
 
-    Raises:
-        RulecError: R0610 if a file is broken.
+    Raises RulecError R0610 if a file is broken.
     """
     types: dict[str, VehicleType] = {}
 

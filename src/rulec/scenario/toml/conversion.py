@@ -10,7 +10,6 @@ from typing import TypeVar
 from rulec.diagnostics import RulecError
 from rulec.scenario.geometry import Box
 from rulec.scenario.motion import swept
-from rulec.scenario.scenario_messages import INCONSISTENT_SCENARIO
 from rulec.scenario.scenario_model import Ego, MissingLane, Road, Scenario, SignalValue, Stretch
 from rulec.scenario.time_grid import timing
 from rulec.scenario.toml.obstacle_tables import LocatedObstacle, read_obstacles, read_signals
@@ -25,8 +24,7 @@ _Part = TypeVar("_Part", RawSurface, RawMissing)
 def to_scenario(raw: Mapping[str, object], name: str, file: TomlFile) -> Scenario:
     """The scenario that the tables describe, called ``name`` if they give no name.
 
-    Raises:
-        RulecError: every mistake that was found.
+    Raises RulecError with every mistake that was found.
     """
     table = TomlTable(file, "the scenario", "")
     top = table.read(RawScenario, raw)
@@ -83,7 +81,6 @@ def _stretches(raw: object, file: TomlFile) -> Iterator[Stretch]:
             apart = part.s[1] <= other.s[0] or other.s[1] <= part.s[0]
             if not apart and part.type != other.type:
                 table.add(
-                    INCONSISTENT_SCENARIO,
                     f"{table.words} is {part.type} where another one is {other.type}",
                     "s",
                     expected="one surface in one place",
@@ -98,7 +95,6 @@ def _missing(raw: object, count: int | None, file: TomlFile) -> Iterator[Missing
             yield MissingLane(part.lane, part.s)
         else:
             table.add(
-                INCONSISTENT_SCENARIO,
                 f"{table.words}: `lane` is {part.lane}",
                 "lane",
                 expected=f"a number from 1 to {count}, the lanes of the road",
@@ -121,7 +117,6 @@ def _is_interval(value: tuple[float, float] | None, table: TomlTable, key: str) 
     if value is None or value[1] - value[0] >= NARROWEST_M:
         return True
     table.add(
-        INCONSISTENT_SCENARIO,
         f"{table.words}: `{key}` runs from {value[0]:g} to {value[1]:g}",
         key,
         expected=f"a second number that is larger than the first, by {NARROWEST_M} m or more",
@@ -135,7 +130,6 @@ def _ascend(lanes: Sequence[float], table: TomlTable) -> bool:
     for right, left in pairwise(lanes):
         if left - right < NARROWEST_M:
             table.add(
-                INCONSISTENT_SCENARIO,
                 f"{table.words}: in `lanes`, {left:g} follows {right:g}",
                 "lanes",
                 expected="bounds from right to left, each larger than the one before by "
@@ -159,14 +153,12 @@ def _check_on_road(ego: Ego, road: Road, file: TomlFile) -> None:
     table = TomlTable(file, "ego", "ego")
     if not road.outline.covers(ego.s, ego.d):
         table.add(
-            INCONSISTENT_SCENARIO,
             f"ego is off the road, at s = {ego.s:g}, d = {ego.d:g}",
             expected=f"a place within {road.outline}",
             way_out="move ego, or extend `[road]`",
         )
     elif any(hole.overlaps(Box(ego.s, ego.s, ego.d, ego.d)) for hole in road.holes()):
         table.add(
-            INCONSISTENT_SCENARIO,
             f"ego is where the road has no lane, at s = {ego.s:g}, d = {ego.d:g}",
             expected="a place outside every `[[road.missing]]`",
             way_out="move ego, or shorten that `[[road.missing]]`",
@@ -178,7 +170,6 @@ def _check_collisions(ego: Ego, obstacles: Sequence[LocatedObstacle], file: Toml
         body = swept(obstacle, 0.0, 0.0)
         if body is not None and body.overlaps(ego.body):
             TomlTable(file, "ego", "ego").add(
-                INCONSISTENT_SCENARIO,
                 f"ego stands inside {table.words}",
                 expected=f"a place outside {body} at time 0",
                 way_out="move one of the two",
@@ -199,7 +190,6 @@ def _goal(raw: object, road: Road | None, file: TomlFile) -> Box | None:
     goal = Box(*(values.s or road.s), *(values.d or (outline.d_min, outline.d_max)))
     if not goal.overlaps(outline):
         table.add(
-            INCONSISTENT_SCENARIO,
             "the goal is off the road",
             expected=f"a region that has some area within {outline}",
         )
@@ -214,7 +204,6 @@ def _signals(
     for obstacle, place in obstacles:
         for name in filter(signals.__contains__, obstacle.signals):
             place.add(
-                INCONSISTENT_SCENARIO,
                 f"{place.words} sets {quoted(name)}, and so does `[signals]`",
                 "signals",
                 expected="a signal that is either global or per object",

@@ -10,26 +10,13 @@ from typing import Any
 
 import msgspec
 
-from rulec.scenario.alternatives import is_distribution, weighted
+from rulec.scenario import scenario_model as model
 from rulec.scenario.motion import stands_forever
-from rulec.scenario.scenario_messages import (
-    INCONSISTENT_SCENARIO,
-    MISSING_OR_UNKNOWN_FIELD,
-    UNFITTING_FIELD,
-)
-from rulec.scenario.scenario_model import (
-    PEDESTRIAN,
-    Alternative,
-    ConstantAcceleration,
-    Motion,
-    Obstacle,
-    SignalValue,
-    Trajectory,
-)
+from rulec.scenario.scenario_messages import MISSING_OR_UNKNOWN_FIELD, UNFITTING_FIELD
 from rulec.scenario.toml.schema import MOST_OBSTACLES, RawObstacle, RawPrediction
 from rulec.scenario.toml.toml_tables import TomlFile, TomlTable, quoted, shown
 
-LocatedObstacle = tuple[Obstacle, TomlTable]
+LocatedObstacle = tuple[model.Obstacle, TomlTable]
 
 RESERVED = ("position", "surface", "station", "lateral")
 """What a state calls by these names comes from the partition."""
@@ -56,7 +43,6 @@ def read_obstacles(raw: object, file: TomlFile) -> list[LocatedObstacle]:
         values = table.read(RawObstacle, item)
         if isinstance(name, str) and (first := numbers.setdefault(name, number)) != number:
             table.add(
-                INCONSISTENT_SCENARIO,
                 f"obstacles {first} and {number} are both called {quoted(name)}",
                 "id",
                 expected="an id that no other obstacle has",
@@ -69,7 +55,7 @@ def read_obstacles(raw: object, file: TomlFile) -> list[LocatedObstacle]:
         if not motions:
             continue
         likeliest, *others = motions
-        obstacle = Obstacle(
+        obstacle = model.Obstacle(
             id=values.id,
             type=values.type,
             length=values.length,
@@ -81,24 +67,23 @@ def read_obstacles(raw: object, file: TomlFile) -> list[LocatedObstacle]:
             alternatives=tuple(others),
         )
         stands = any(stands_forever(prediction.motion) for prediction in motions)
-        if obstacle.type == PEDESTRIAN and obstacle.walking_direction is None and stands:
+        if obstacle.type == model.PEDESTRIAN and obstacle.walking_direction is None and stands:
             table.add(
-                MISSING_OR_UNKNOWN_FIELD,
                 f"{words} stands still and has no `walking_direction`",
                 expected="a pedestrian's direction, because its regions depend on it",
                 way_out="add a line `walking_direction = 90` for one who faces left, -90 for right",
+                code=MISSING_OR_UNKNOWN_FIELD,
             )
         listed.append((obstacle, table))
     return listed
 
 
-def read_signals(raw: Mapping[str, object], table: TomlTable) -> dict[str, SignalValue]:
+def read_signals(raw: Mapping[str, object], table: TomlTable) -> dict[str, model.SignalValue]:
     """The signals of a table, of which only the form is checked here."""
-    signals: dict[str, SignalValue] = {}
+    signals: dict[str, model.SignalValue] = {}
     for name, value in raw.items():
         if name in RESERVED:
             table.add(
-                INCONSISTENT_SCENARIO,
                 f"{table.words} sets {quoted(name)}, which the partition supplies",
                 name,
                 way_out="leave it out, or call the signal something else",
@@ -109,34 +94,33 @@ def read_signals(raw: Mapping[str, object], table: TomlTable) -> dict[str, Signa
             signals[name] = float(value)
         else:
             table.add(
-                UNFITTING_FIELD,
                 f"{table.words}: {quoted(name)} is {shown(value)}",
                 name,
                 expected="true, false, a finite number, or a value's name in quotes",
+                code=UNFITTING_FIELD,
             )
     return signals
 
 
 def _predictions(
     obstacle: RawObstacle, fields: Mapping[str, Any], table: TomlTable, before: int
-) -> Sequence[Alternative]:
+) -> Sequence[model.Alternative]:
     """The obstacle's motions, the likeliest first; none after mistakes.
 
     So many predictions stand ``before`` these in the file.
     """
     if not obstacle.prediction:
         motion = _motion(obstacle, fields, table)
-        return [] if motion is None else [Alternative(Fraction(1), motion)]
+        return [] if motion is None else [model.Alternative(Fraction(1), motion)]
     if obstacle.trajectory is not None:
         table.add(
-            INCONSISTENT_SCENARIO,
             f"{table.words} has a `trajectory` and also predictions",
             "trajectory",
             expected="either the one or the other",
             way_out="give each prediction a `trajectory` of its own",
         )
         return []
-    motions: list[Alternative] = []
+    motions: list[model.Alternative] = []
     for number, raw in enumerate(obstacle.prediction, start=1):
         words = f"{table.words}, prediction {number}"
         place = TomlTable(table.file, words, "obstacle.prediction", before + number)
@@ -150,21 +134,22 @@ def _predictions(
         values = {name: getattr(prediction, name) for name in own}
         motion = _motion(msgspec.structs.replace(obstacle, **values), own, place)
         if motion is not None:
-            motions.append(Alternative(Fraction(str(prediction.weight)), motion))
+            motions.append(model.Alternative(Fraction(str(prediction.weight)), motion))
     if len(motions) < len(obstacle.prediction):
         return []
     total = sum((motion.weight for motion in motions), Fraction(0))
-    if not is_distribution(total):
+    if not model.is_distribution(total):
         table.add(
-            INCONSISTENT_SCENARIO,
             f"the weights of {table.words}'s predictions add up to {float(total):g}",
             expected="weights that add up to 1",
         )
         return []
-    return weighted(motions)
+    return model.weighted(motions)
 
 
-def _motion(values: RawObstacle, fields: Mapping[str, Any], table: TomlTable) -> Motion | None:
+def _motion(
+    values: RawObstacle, fields: Mapping[str, Any], table: TomlTable
+) -> model.Motion | None:
     """The motion that ``values`` describe, of which ``fields`` stand in this table."""
     if values.trajectory is not None:
         return _trajectory(values.trajectory, fields, table)
@@ -172,32 +157,30 @@ def _motion(values: RawObstacle, fields: Mapping[str, Any], table: TomlTable) ->
         for key in ("s", "d"):
             if getattr(values, key) is None:
                 table.add(
-                    MISSING_OR_UNKNOWN_FIELD,
                     f"{table.words} has no `{key}`",
                     expected="its centre at time 0 in metres: s along the road, d across it",
                     way_out=f"add a line `{key} = …`, or give a `trajectory` instead",
+                    code=MISSING_OR_UNKNOWN_FIELD,
                 )
         return None
     sideways, until = values.lateral_speed, values.until_d
     if until is not None and (until - values.d) * sideways <= 0:
         table.add(
-            INCONSISTENT_SCENARIO,
             f"{table.words} never comes to `until_d = {until:g}`",
             "until_d",
             expected=f"an offset to which `lateral_speed = {sideways:g}` leads from {values.d:g}",
             way_out="change the sign of `lateral_speed`, or leave `until_d` out",
         )
         return None
-    return ConstantAcceleration(**{key: getattr(values, key) for key in _PREDICTED})
+    return model.ConstantAcceleration(**{key: getattr(values, key) for key in _PREDICTED})
 
 
 def _trajectory(
     points: list[tuple[float, float, float]], fields: Mapping[str, Any], table: TomlTable
-) -> Motion | None:
+) -> model.Motion | None:
     both = [key for key in _PREDICTED if key in fields]
     if both:
         table.add(
-            INCONSISTENT_SCENARIO,
             f"{table.words} has a `trajectory` and also {', '.join(map(quoted, both))}",
             both[0],
             expected="either a trajectory, or a start and a prediction",
@@ -207,10 +190,9 @@ def _trajectory(
     for before, after in pairwise(points):
         if after[0] <= before[0]:
             table.add(
-                INCONSISTENT_SCENARIO,
                 f"{table.words}: in `trajectory`, time {after[0]:g} follows {before[0]:g}",
                 "trajectory",
                 expected="times in ascending order, each once",
             )
             return None
-    return Trajectory(tuple(points))
+    return model.Trajectory(tuple(points))

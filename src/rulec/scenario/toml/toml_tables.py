@@ -16,7 +16,11 @@ import msgspec
 
 from rulec.diagnostics import Diagnostic, Source, SourceLocation, did_you_mean, nearest_name
 from rulec.diagnostics.code import Code
-from rulec.scenario.scenario_messages import MISSING_OR_UNKNOWN_FIELD, UNFITTING_FIELD
+from rulec.scenario.scenario_messages import (
+    INCONSISTENT_SCENARIO,
+    MISSING_OR_UNKNOWN_FIELD,
+    UNFITTING_FIELD,
+)
 
 T = TypeVar("T", bound=msgspec.Struct)
 
@@ -75,12 +79,12 @@ class TomlTable:
 
     def add(
         self,
-        code: Code,
         message: str,
         key: str | None = None,
         *,
         expected: str = "",
         way_out: str = "",
+        code: Code = INCONSISTENT_SCENARIO,
     ) -> None:
         """Add a mistake in the table, or in one of its fields; ``expected`` is a thing."""
         expected = expected and f"expected {expected}"
@@ -89,7 +93,9 @@ class TomlTable:
     def read(self, kind: type[T], raw: object) -> T | None:
         """The table as a ``kind``, or None after adding all mistakes in its fields."""
         if not isinstance(raw, Mapping):
-            self.add(UNFITTING_FIELD, f"{self.words} is {shown(raw)}", expected="a table of fields")
+            self.add(
+                f"{self.words} is {shown(raw)}", expected="a table of fields", code=UNFITTING_FIELD
+            )
             return None
         known = {info.name: info for info in msgspec.structs.fields(kind)}
         values: dict[str, Any] = {}
@@ -99,11 +105,11 @@ class TomlTable:
             if key not in known:
                 misspelt.add(nearest_name(key, list(known)))
                 self.add(
-                    MISSING_OR_UNKNOWN_FIELD,
                     f"{self.words} has a field {quoted(key)} that does not exist",
                     key,
                     expected=f"one of {', '.join(map(quoted, known))}",
                     way_out=did_you_mean(key, list(known)) or "leave it out",
+                    code=MISSING_OR_UNKNOWN_FIELD,
                 )
                 continue
             try:
@@ -113,19 +119,19 @@ class TomlTable:
                 for index in _indices(str(error)):
                     where, part = f"{where}, number {index + 1}", part[index]
                 self.add(
-                    UNFITTING_FIELD,
                     f"{self.words}: `{key}`{where} is {shown(part)}",
                     key,
                     expected=_words_of(known[key].type),
+                    code=UNFITTING_FIELD,
                 )
         for key, info in known.items():
             if info.required and key not in raw and key not in misspelt:
                 is_table = not self.heading and key in ("road", "ego")
                 self.add(
-                    MISSING_OR_UNKNOWN_FIELD,
                     f"{self.words} has no `{key}`",
                     expected=_words_of(info.type),
                     way_out=f"add a table `[{key}]`" if is_table else f"add a line `{key} = …`",
+                    code=MISSING_OR_UNKNOWN_FIELD,
                 )
         return kind(**values) if len(self.file.errors) == before else None
 

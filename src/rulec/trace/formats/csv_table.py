@@ -11,16 +11,8 @@ from importlib.util import find_spec
 from typing import IO, cast
 
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.trace.formats import table_reader as tables
 from rulec.trace.formats.stream_lines import foreign, not_utf8, placed
-from rulec.trace.formats.table_reader import (
-    TRACE,
-    Row,
-    Table,
-    check_columns,
-    in_chunks,
-    problem,
-    traces_in,
-)
 from rulec.trace.trace_model import Trace, Value
 
 LARGE_BYTES = 1 << 22
@@ -43,7 +35,7 @@ def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecErr
         return
     columns = _columns_if_large(stream)
     if columns is None:
-        yield from in_chunks(_traces(stream, file))
+        yield from tables.in_chunks(_traces(stream, file))
         return
     from rulec.trace.formats.arrow.arrow_blocks import cut  # loads Arrow, 0.1 s
     from rulec.trace.formats.arrow.arrow_csv import pieces  # loads Arrow, 0.1 s
@@ -61,9 +53,13 @@ def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
         beginning = cast("io.BufferedReader", stream).peek()
     result = foreign(beginning)
     if result is not None:
-        return problem(f"this is no CSV, but {result.noun}", SourceLocation(file), result.help)
+        return tables.problem(
+            f"this is no CSV, but {result.noun}", SourceLocation(file), result.help
+        )
     if beginning.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
-        return problem("this is no CSV, but JSON", SourceLocation(file), "add `--format jsonl`")
+        return tables.problem(
+            "this is no CSV, but JSON", SourceLocation(file), "add `--format jsonl`"
+        )
     return None
 
 
@@ -78,7 +74,7 @@ def _columns_if_large(stream: IO[bytes]) -> list[str] | None:
         line = stream.readline(_LONGEST_HEAD_BYTES).removeprefix(b"\xef\xbb\xbf")
         with suppress(UnicodeDecodeError, RulecError):
             columns = line.decode().rstrip("\r\n").split(",")
-            check_columns(columns, SourceLocation(""))
+            tables.check_columns(columns, SourceLocation(""))
             if line.endswith(b"\n") and not re.search(rb'["\0]|\r(?!\n)', line):
                 return columns
         stream.seek(start)
@@ -91,26 +87,29 @@ def _traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
         number, columns = next(rows, (0, []))
         if columns:
             _check_separator(columns, SourceLocation(file, number))
-            check_columns(columns, SourceLocation(file, number))
+            tables.check_columns(columns, SourceLocation(file, number))
     except RulecError as error:
         yield error
         return
-    yield from traces_in(rows, _table(columns, file), SourceLocation(file))
+    yield from tables.traces_in(rows, _table(columns, file), SourceLocation(file))
 
 
 def _check_separator(columns: Sequence[str], place: SourceLocation) -> None:
-    """Raises RulecError R0509."""
     for name, mark in (("semicolons", ";"), ("tabs", "\t"), ("bars", "|")):
-        if len(columns) == 1 and mark in columns[0] and TRACE in columns[0].split(mark):
+        if len(columns) == 1 and mark in columns[0] and tables.TRACE in columns[0].split(mark):
             message = f"the columns' names are separated by {name}"
-            raise problem(message, place, "separate the cells by commas, and decimals by points")
+            raise tables.problem(
+                message, place, "separate the cells by commas, and decimals by points"
+            )
 
 
-def _table(columns: Sequence[str], file: str) -> Table:
-    return Table(tuple(columns), _value, lambda line: SourceLocation(file, line), has_texts=True)
+def _table(columns: Sequence[str], file: str) -> tables.Table:
+    return tables.Table(
+        tuple(columns), _value, lambda line: SourceLocation(file, line), has_texts=True
+    )
 
 
-def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[Row]:
+def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[tables.Row]:
     """Rows from line ``number`` on, the header included. Raises RulecError R0509."""
     text = io.TextIOWrapper(stream, "utf-8-sig" if number == 1 else "utf-8", newline="")
     lines = csv.reader(_without_null(text), strict=True)
@@ -125,7 +124,7 @@ def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[Row]:
     except csv.Error as reason:
         words = next((ours for theirs, ours in _WORDS.items() if theirs in str(reason)), reason)
         message = f"from here on the file cannot be read as CSV: {words}"
-        raise problem(message, SourceLocation(file, number), _QUOTES) from None
+        raise tables.problem(message, SourceLocation(file, number), _QUOTES) from None
     finally:
         with suppress(ValueError):  # who has read enough may have closed the stream
             text.detach()  # the stream is its owner's
@@ -159,7 +158,7 @@ def _not_utf8(stream: IO[bytes], place: SourceLocation, reason: UnicodeDecodeErr
                 place = placed(SourceLocation(place.file, number), line.rstrip(b"\n"), at)
                 break
     message = f"{where}the byte 0x{byte:02x} is not UTF-8"
-    return problem(message, place, "save the file in UTF-8")
+    return tables.problem(message, place, "save the file in UTF-8")
 
 
 def _value(cell: str) -> Value:

@@ -1,4 +1,4 @@
-"""Blocks of a table: whole traces as columns."""
+"""Blocks of a table: whole traces as columns, and when their objects are there."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.trace.formats.table_reader import STEP_S, Row, Table, traces_in
+from rulec.trace.formats import table_reader as tables
+from rulec.trace.formats.table_reader import OBJECT, OTHER, STEP, STEP_S, TRACE, TYPE
 from rulec.trace.trace_model import Trace
 
 
@@ -55,10 +56,10 @@ class Block(Sequence["Trace | RulecError"]):
     (exclusive) as ``traces_in`` reads them.
     """
 
-    table: Table
+    table: tables.Table
     columns: Mapping[str, Column]
     starts: NDArray[np.int64]
-    rows: Callable[[int, int], Iterable[Row]]
+    rows: Callable[[int, int], Iterable[tables.Row]]
     file: SourceLocation
 
     def __len__(self) -> int:
@@ -87,7 +88,7 @@ class Block(Sequence["Trace | RulecError"]):
         return float(result[row if isinstance(column, Numbers) else column.codes[row]])
 
     def _read(self, start: int, stop: int) -> Iterator[Trace | RulecError]:
-        return traces_in(self.rows(start, stop), self.table, self.file)
+        return tables.traces_in(self.rows(start, stop), self.table, self.file)
 
 
 def trace_starts(traces: Coded) -> NDArray[np.int64]:
@@ -95,3 +96,159 @@ def trace_starts(traces: Coded) -> NDArray[np.int64]:
     codes = traces.codes
     changes = np.flatnonzero(codes[1:] != codes[:-1]) + 1
     return np.concatenate([np.zeros(min(len(codes), 1), np.int64), changes])
+
+
+Rows = NDArray[np.int64]
+"""A number for each row."""
+
+NOBODY = -1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BlockPresence:
+    """Objects of each trace, and the object of each row.
+
+    Each row has its ``trace``, its ``step``, and the objects that it is about: ``item`` and
+    ``other`` are places among its trace's objects, in the order of their first rows, or NOBODY.
+
+    Each trace has ``names``, a ``length`` in states, a step in seconds, and from ``starts`` on its
+    objects: their ``objects`` names, ``types``, and in ``stretches`` the first and the last state
+    in which they are, twice NOBODY for those that are there all the time.
+    """
+
+    trace: Rows
+    step: Rows
+    item: Rows
+    other: Rows
+    names: list[str]
+    length: NDArray[np.int64]
+    step_s: NDArray[np.float64]
+    starts: NDArray[np.int64]
+    objects: list[str]
+    types: list[str]
+    stretches: NDArray[np.int64]
+
+    def objects_of(self, trace: int) -> tuple[str, ...]:
+        """The names of a trace's objects."""
+        return tuple(self.objects[self.starts[trace] : self.starts[trace + 1]])
+
+    def shape_of(self, trace: int) -> tuple[object, ...]:
+        """Shape that traces share whatever their lengths and objects' names."""
+        there = slice(self.starts[trace], self.starts[trace + 1])
+        types = tuple(self.types[there])
+        return float(self.step_s[trace]), types, self.stretches[there].tobytes()
+
+
+def outlined(block: Block) -> BlockPresence:
+    """Objects and presence of a block. Raises OddTableError."""
+    starts, n_rows = block.starts, int(block.starts[-1])
+    names = _names(block.columns[TRACE])
+    trace = np.repeat(np.arange(len(block)), np.diff(starts))
+    step = _steps(block.columns[STEP])
+    is_first = np.zeros(n_rows, dtype=bool)
+    is_first[starts[:-1]] = True
+    onward = np.diff(step, prepend=0)
+    in_order = not step[is_first].any() and np.isin(onward[~is_first], (0, 1)).all()
+    if (names.codes < 0).any() or not in_order:
+        raise OddTableError
+    length = step[starts[1:] - 1] + 1
+
+    nothing = Coded(np.full(n_rows, -1), ())
+    items = _names(block.columns.get(OBJECT, nothing))
+    types = _names(block.columns.get(TYPE, nothing))
+    others = _names(block.columns.get(OTHER, nothing))
+    is_about = items.given
+    if (types.given & ~is_about).any() or (others.given & ~is_about).any():
+        raise OddTableError
+    rows = np.flatnonzero(is_about)
+    keys = trace[rows] * max(len(items.values), 1) + items.codes[rows]
+    known, first, which = np.unique(keys, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.argsort(order)
+    first_row = rows[first[order]]
+    owner = trace[first_row]
+    starts_of_objects = np.searchsorted(owner, np.arange(len(block) + 1))
+
+    numbers = rank[which]
+    item = np.full(n_rows, NOBODY)
+    item[rows] = numbers - starts_of_objects[trace[rows]]
+    kind, given = types.codes[first_row], types.codes[rows]
+    if (kind < 0).any() or ((given != kind[numbers]) & (given >= 0)).any():
+        raise OddTableError
+    # Rows are in the order of steps.
+    last_row = np.zeros(len(order), dtype=np.int64)
+    last_row[numbers] = rows
+    stretches = np.stack([step[first_row], step[last_row]], axis=1)
+    is_always = (stretches[:, 0] == 0) & (stretches[:, 1] == length[owner] - 1)
+    stretches[is_always] = NOBODY
+    return BlockPresence(
+        trace=trace,
+        step=step,
+        item=item,
+        other=_others(others, items, trace, (known, rank), starts_of_objects),
+        names=[names.values[code] for code in names.codes[starts[:-1]].tolist()],
+        length=length,
+        step_s=_step_s(block.columns.get(STEP_S), trace, starts),
+        starts=starts_of_objects,
+        objects=[items.values[code] for code in items.codes[first_row].tolist()],
+        types=[types.values[code] for code in kind.tolist()],
+        stretches=stretches,
+    )
+
+
+def _names(column: Column) -> Coded:
+    if not isinstance(column, Coded) or not {type(value) for value in column.values} <= {str, int}:
+        raise OddTableError
+    return Coded(column.codes, [str(value) for value in column.values])
+
+
+def _steps(column: Column) -> Rows:
+    if isinstance(column, Numbers):
+        raise OddTableError
+    table = [tables.whole(value) for value in column.values]
+    most = len(column.codes)
+    if (column.codes < 0).any() or not all(entry is not None and entry < most for entry in table):
+        raise OddTableError
+    return np.array(table, dtype=np.int64).take(column.codes)
+
+
+def _others(
+    others: Coded,
+    items: Coded,
+    trace: Rows,
+    known: tuple[NDArray[np.int64], NDArray[np.int64]],
+    starts: NDArray[np.int64],
+) -> Rows:
+    """Indices of second objects, which have rows of their own."""
+    result = np.full(len(trace), NOBODY)
+    rows = np.flatnonzero(others.given)
+    if not len(rows):
+        return result
+    places = {name: place for place, name in enumerate(items.values)}
+    codes = np.array([places.get(name, -1) for name in others.values]).take(others.codes[rows])
+    keys, rank = known
+    keys_of_rows = trace[rows] * max(len(items.values), 1) + codes
+    at = np.minimum(np.searchsorted(keys, keys_of_rows), len(keys) - 1)
+    if (codes < 0).any() or (keys[at] != keys_of_rows).any():
+        raise OddTableError
+    result[rows] = rank[at] - starts[trace[rows]]
+    return result
+
+
+def _step_s(column: Column | None, trace: Rows, starts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Said in no row of the block, or in all."""
+    n_traces = len(starts) - 1
+    if column is None or not column.given.any():
+        return np.ones(n_traces)
+    if not column.given.all():
+        raise OddTableError
+    if isinstance(column, Numbers):
+        seconds = column.numbers
+    elif {type(value) for value in column.values} <= {int, float}:
+        seconds = np.array(column.values, dtype=np.float64).take(column.codes)
+    else:
+        raise OddTableError
+    result = seconds[starts[:-1]]
+    if not ((result > 0) & np.isfinite(result)).all() or (seconds != result[trace]).any():
+        raise OddTableError
+    return result

@@ -205,7 +205,6 @@ class _Building:
         self.now = []
 
     def _state(self) -> State:
-        """The state that the rows of a step make."""
         table = self.table
         state: dict[str, Any] = {}
         for number, cells in self.now:

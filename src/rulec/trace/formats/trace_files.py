@@ -59,9 +59,8 @@ def write_traces(
 ) -> None:
     """Write traces; ``kinds`` are those of all names that they speak of.
 
-    Raises:
-        RulecError: R0706 if Parquet cannot be written here.
-        ValueError: if a name cannot be a column.
+    Raises RulecError R0706 if Parquet cannot be written here. Raises ValueError if a name cannot be
+    a column.
     """
     if form == "jsonl":
         json_lines.write_traces(traces, stream)

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from rulec.monitoring.batch.columns.columnize import UnencodableError, column_dtype, encode_values
 from rulec.monitoring.batch.trace_groups import Names
-from rulec.trace.formats.block_presence import NOBODY, BlockPresence
-from rulec.trace.formats.table_blocks import Block, Coded, Column
+from rulec.trace.formats.table_blocks import NOBODY, Block, BlockPresence, Coded, Column
 from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns, layout_of
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 

@@ -11,14 +11,7 @@ import pyarrow
 from pyarrow import compute, types
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.trace.formats.table_blocks import (
-    Block,
-    Coded,
-    Column,
-    Numbers,
-    OddTableError,
-    trace_starts,
-)
+from rulec.trace.formats import table_blocks as blocks
 from rulec.trace.formats.table_reader import NAMES, TRACE, Row, Table, in_chunks, traces_in
 from rulec.trace.trace_model import Trace, Value
 
@@ -68,7 +61,7 @@ def cut(
 def _last_start(waiting: Sequence[Piece], piece: Piece, table: Table) -> int | None:
     """Start of the last trace of a piece; None if earlier."""
     at = table.at[TRACE]
-    start = int(trace_starts(coded(piece.column(at)))[-1])
+    start = int(blocks.trace_starts(coded(piece.column(at)))[-1])
     goes_on = not waiting or waiting[-1].column(at)[-1] == piece.column(at)[0]
     return None if start == 0 and goes_on else start
 
@@ -81,14 +74,14 @@ def _block(
     whole = pyarrow.Table.from_batches(pieces).combine_chunks().to_batches()[0]
     try:
         columns = columns_of(whole, table)
-    except OddTableError:
+    except blocks.OddTableError:
         return list(traces_in(_rows([whole], first), table, file))
-    starts = np.append(trace_starts(coded(whole.column(table.at[TRACE]))), len(whole))
+    starts = np.append(blocks.trace_starts(coded(whole.column(table.at[TRACE]))), len(whole))
 
     def rows(start: int, stop: int) -> Iterator[Row]:
         return _rows([whole.slice(start, stop - start)], first + start)
 
-    return Block(table, columns, starts, rows, file)
+    return blocks.Block(table, columns, starts, rows, file)
 
 
 def _rows(pieces: Iterable[Piece], first: int) -> Iterator[Row]:
@@ -98,9 +91,9 @@ def _rows(pieces: Iterable[Piece], first: int) -> Iterator[Row]:
     return enumerate(cells, first)
 
 
-def columns_of(piece: Any, table: Table) -> Mapping[str, Column]:
+def columns_of(piece: Any, table: Table) -> Mapping[str, blocks.Column]:
     """The columns of a piece (a record batch). Raises OddTableError."""
-    columns: dict[str, Column] = {}
+    columns: dict[str, blocks.Column] = {}
     for name, array in zip(table.columns, piece.columns, strict=True):
         if types.is_dictionary(array.type):
             array = array.dictionary_decode()  # whose values need not be distinct
@@ -115,35 +108,37 @@ def columns_of(piece: Any, table: Table) -> Mapping[str, Column]:
     return columns
 
 
-def coded(array: Any) -> Coded:
+def coded(array: Any) -> blocks.Coded:
     """Column of dictionary codes; empty texts are no value."""
     if types.is_null(array.type):
-        return Coded(np.full(len(array), -1), ())
+        return blocks.Coded(np.full(len(array), -1), ())
     encoded = array.dictionary_encode()
     values = encoded.dictionary.to_pylist()
     codes = encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False)
     if "" in values:
         codes = np.where(codes == values.index(""), -1, codes)
-    return Coded(codes, values)
+    return blocks.Coded(codes, values)
 
 
-def _numbers(array: Any) -> Numbers:
+def _numbers(array: Any) -> blocks.Numbers:
     try:
         numbers = array.cast(pyarrow.float64()).fill_null(0)
     except pyarrow.ArrowInvalid:  # floats cannot tell such whole numbers apart
-        raise OddTableError from None
+        raise blocks.OddTableError from None
     given = compute.is_valid(array)
-    return Numbers(numbers.to_numpy(zero_copy_only=False), given.to_numpy(zero_copy_only=False))
+    return blocks.Numbers(
+        numbers.to_numpy(zero_copy_only=False), given.to_numpy(zero_copy_only=False)
+    )
 
 
-def _read(texts: Coded, value: Callable[[str], Value]) -> Column:
+def _read(texts: blocks.Coded, value: Callable[[str], Value]) -> blocks.Column:
     """Texts as the values that they stand for."""
     if len(texts.values) > _FEW:
         written = pyarrow.array([text or "0" for text in texts.values])
         if compute.all(compute.match_substring_regex(written, NUMBER)).as_py():
             try:
                 numbers = written.cast(pyarrow.float64()).to_numpy()
-                return Numbers(numbers.take(texts.codes, mode="clip"), texts.given)
+                return blocks.Numbers(numbers.take(texts.codes, mode="clip"), texts.given)
             except pyarrow.ArrowInvalid:  # such as `.5`, which Arrow does not read
                 pass
-    return Coded(texts.codes, [value(text) if text else "" for text in texts.values])
+    return blocks.Coded(texts.codes, [value(text) if text else "" for text in texts.values])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Iterator, Sequence
-from typing import IO, Any
+from typing import IO
 
 import pyarrow
 from pyarrow import compute, csv
@@ -42,7 +42,6 @@ def pieces(
 
 
 def _in_lines(stream: IO[bytes]) -> Iterator[bytes]:
-    """The stream in blocks of whole lines."""
     rest: list[bytes] = []
     while block := stream.read(_BLOCK_BYTES):
         end = block.rfind(b"\n") + 1
@@ -76,11 +75,8 @@ def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
         )
     except pyarrow.ArrowException:
         return None
-    if any(_longest(column) > _LONGEST_CELL for column in table.columns):
+    lengths = [compute.max(compute.binary_length(column)).as_py() for column in table.columns]
+    if any(length and length > _LONGEST_CELL for length in lengths):
         return None
     (piece,) = table.combine_chunks().to_batches(max_chunksize=len(table))
     return piece
-
-
-def _longest(column: Any) -> int:
-    return compute.max(compute.binary_length(column)).as_py() or 0
