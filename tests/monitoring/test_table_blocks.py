@@ -314,6 +314,7 @@ import sys
 from pathlib import Path
 import rulec
 from rulec.monitoring.batch.batch_verify import verify_items
+from rulec.trace.formats import csv_table
 from rulec.trace.formats.arrow import arrow_csv, parquet
 from rulec.trace.formats.trace_files import read_chunks
 

@@ -6,7 +6,7 @@ import pytest
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace import Trace
-from rulec.trace.trace_validation import check_trace
+from rulec.trace.trace_model import check_trace
 
 PLACE = SourceLocation("t.jsonl", 3)
 OBJECTS = {"v1": "vehicle"}

@@ -14,7 +14,7 @@ from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.trace import Trace
-from rulec.trace.trace_validation import check_trace
+from rulec.trace.trace_model import check_trace
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import choices
 

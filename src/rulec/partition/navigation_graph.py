@@ -18,13 +18,7 @@ from typing import TypedDict, get_args
 
 from rulec.diagnostics import did_you_mean, named
 from rulec.partition.cell_graph import Edges, Margins, NavigationGraph
-from rulec.partition.cells.cell_links import (
-    AdjacencyName,
-    Links,
-    continuations,
-    inverse,
-    neighbours,
-)
+from rulec.partition.cells import cell_links
 from rulec.partition.cells.cell_model import Layer
 from rulec.partition.cells.cell_plane import plane
 from rulec.partition.cells.occupancy import scene
@@ -40,7 +34,7 @@ class GraphOptions(TypedDict, total=False):
     """The options of ``navigation_graph``; None is as if there were none."""
 
     partition: PartitionName | None
-    adjacency: AdjacencyName
+    adjacency: cell_links.AdjacencyName
     extent: ExtentName
     step_s: float | None
     horizon_s: float | None
@@ -50,7 +44,7 @@ def navigation_graph(
     scenario: Scenario,
     *,
     partition: PartitionName | None = None,
-    adjacency: AdjacencyName = "touch",
+    adjacency: cell_links.AdjacencyName = "touch",
     extent: ExtentName = "lane",
     step_s: float | None = None,
     horizon_s: float | None = None,
@@ -69,7 +63,7 @@ def navigation_graph(
     partition = partition or "paper"
     for what, name, names_type in (
         ("partition", partition, PartitionName),
-        ("adjacency", adjacency, AdjacencyName),
+        ("adjacency", adjacency, cell_links.AdjacencyName),
         ("extent", extent, ExtentName),
     ):
         if name not in (known := get_args(names_type)):
@@ -97,9 +91,9 @@ def navigation_graph(
     for (before, after), regions in zip(pairwise(planes), places.instants, strict=True):
         obstacles = [str(region.obstacle) for region in regions]
         instant = plane(places.roadway, regions, partition, obstacles)
-        onward.append(continuations(before, instant, after))
+        onward.append(cell_links.continuations(before, instant, after))
     layers = tuple(
-        Layer(times.start(p), names, flat.cells, neighbours(flat, adjacency), others)
+        Layer(times.start(p), names, flat.cells, cell_links.neighbours(flat, adjacency), others)
         for p, (flat, names, others) in enumerate(
             zip(planes, places.names, places.others, strict=True)
         )
@@ -132,14 +126,15 @@ _Runs = dict[tuple[int, int], int]
 
 
 def edges(
-    layers: Sequence[Layer], onward: Sequence[Links]
+    layers: Sequence[Layer], onward: Sequence[cell_links.Links]
 ) -> tuple[tuple[Edges, ...], tuple[Margins, ...]]:
     """Successors of every cell and their margins, in layers.
 
     ``onward[p]`` are the continuations from layer p to p + 1. The margin of staying is None.
     """
     back = [
-        inverse(links, len(after.cells)) for links, after in zip(onward, layers[1:], strict=True)
+        cell_links.inverse(links, len(after.cells))
+        for links, after in zip(onward, layers[1:], strict=True)
     ]
     so_far = _runs(layers, back)
     to_come = _runs(layers[::-1], onward[::-1])[::-1]
@@ -168,7 +163,7 @@ def edges(
     return tuple(successors), tuple(margins)
 
 
-def _runs(layers: Sequence[Layer], back: Sequence[Links]) -> list[_Runs]:
+def _runs(layers: Sequence[Layer], back: Sequence[cell_links.Links]) -> list[_Runs]:
     """Layers for which each adjacent pair has been adjacent so far.
 
     ``back[p]`` leads from layer p + 1 to layer p, in whichever order of time layers are given.

@@ -7,46 +7,42 @@ from itertools import pairwise
 from math import atan2, cos, degrees, inf, radians, sin
 from typing import Literal
 
+from rulec.scenario import scenario_model as model
 from rulec.scenario.geometry import Box, centred, enclosing
-from rulec.scenario.scenario_model import (
-    ConstantAcceleration,
-    Footprints,
-    Motion,
-    Obstacle,
-    Trajectory,
-)
 
 Facing = Literal["along", "left", "against", "right"]
 
 
-def span(motion: Motion) -> tuple[float, float]:
+def span(motion: model.Motion) -> tuple[float, float]:
     """First and last time (s) at which the obstacle is there."""
     match motion:
-        case ConstantAcceleration():
+        case model.ConstantAcceleration():
             return 0.0, inf
-        case Trajectory(points):
+        case model.Trajectory(points):
             return points[0][0], points[-1][0]
-        case Footprints(times):
+        case model.Footprints(times):
             return times[0], times[-1]
 
 
-def position_at(motion: ConstantAcceleration | Trajectory, time: float) -> tuple[float, float]:
+def position_at(
+    motion: model.ConstantAcceleration | model.Trajectory, time: float
+) -> tuple[float, float]:
     """The centre ``(s, d)`` at a time (s) within ``span``."""
     match motion:
-        case ConstantAcceleration():
+        case model.ConstantAcceleration():
             return _accelerated(motion, time)
-        case Trajectory(points):
+        case model.Trajectory(points):
             return _interpolated(points, time)
 
 
-def swept(obstacle: Obstacle, start: float, end: float) -> Box | None:
+def swept(obstacle: model.Obstacle, start: float, end: float) -> Box | None:
     """The bounds of the space occupied from ``start`` to ``end`` (s), both included.
 
     Exact: between the times that it looks at, motion along and across the road is monotone. None if
     the obstacle is not there in that interval.
     """
     motion = obstacle.motion
-    if isinstance(motion, Footprints):
+    if isinstance(motion, model.Footprints):
         boxes = _footprints_within(motion, start, end)
         return enclosing(boxes) if boxes else None
     first, last = span(motion)
@@ -54,13 +50,13 @@ def swept(obstacle: Obstacle, start: float, end: float) -> Box | None:
     if start > end:
         return None
     times = [start, end]
-    if isinstance(motion, Trajectory):
+    if isinstance(motion, model.Trajectory):
         times += [point[0] for point in motion.points if start < point[0] < end]
     length, width = obstacle.length, obstacle.width
     return enclosing([centred(*position_at(motion, time), length, width) for time in times])
 
 
-def facing(obstacle: Obstacle, start: float, end: float) -> Facing:
+def facing(obstacle: model.Obstacle, start: float, end: float) -> Facing:
     """The walking direction from ``start`` to ``end`` (s), by right angles of the road.
 
     Who stands keeps the direction of the last steps before, failing that takes that of the next
@@ -72,25 +68,25 @@ def facing(obstacle: Obstacle, start: float, end: float) -> Facing:
     return _right_angle(*_heading(obstacle.motion, start, end))
 
 
-def stands_forever(motion: Motion) -> bool:
+def stands_forever(motion: model.Motion) -> bool:
     """True if the obstacle never moves, and so shows no direction."""
     return _heading(motion, 0.0, 0.0) == (0.0, 0.0)
 
 
-def _heading(motion: Motion, start: float, end: float) -> tuple[float, float]:
+def _heading(motion: model.Motion, start: float, end: float) -> tuple[float, float]:
     """The displacement within an interval; at rest that of the last step before, else the next."""
     match motion:
-        case ConstantAcceleration():
+        case model.ConstantAcceleration():
             speed = motion.speed or max(motion.acceleration, 0.0)
             return speed, motion.lateral_speed
-        case Trajectory(points):
+        case model.Trajectory(points):
             first, last = span(motion)
             (s0, d0), (s1, d1) = (
                 position_at(motion, min(max(time, first), last)) for time in (start, end)
             )
             meanwhile = s1 - s0, d1 - d0
             steps = [(t1, (s1 - s0, d1 - d0)) for (_, s0, d0), (t1, s1, d1) in pairwise(points)]
-        case Footprints():
+        case model.Footprints():
             boxes = _footprints_within(motion, start, end)
             meanwhile = boxes[0].shift_to(boxes[-1]) if boxes else (0.0, 0.0)
             steps = [
@@ -117,7 +113,7 @@ def _right_angle(ahead: float, left: float) -> Facing:
     return "along" if -45 < angle < 45 else "against"
 
 
-def _accelerated(motion: ConstantAcceleration, time: float) -> tuple[float, float]:
+def _accelerated(motion: model.ConstantAcceleration, time: float) -> tuple[float, float]:
     speed, acceleration = motion.speed, motion.acceleration
     if speed == 0 and acceleration < 0:
         acceleration = 0.0
@@ -141,14 +137,14 @@ def _interpolated(
     return s0 + part * (s1 - s0), d0 + part * (d1 - d0)
 
 
-def _footprints_within(motion: Footprints, start: float, end: float) -> list[Box]:
+def _footprints_within(motion: model.Footprints, start: float, end: float) -> list[Box]:
     """The footprints at both times and at all known times between."""
     first, last = bisect_left(motion.times, start), bisect_right(motion.times, end)
     ends = (_footprint_at(motion, start), *motion.boxes[first:last], _footprint_at(motion, end))
     return [box for box in ends if box is not None]
 
 
-def _footprint_at(motion: Footprints, time: float) -> Box | None:
+def _footprint_at(motion: model.Footprints, time: float) -> Box | None:
     times, boxes = motion.times, motion.boxes
     after = bisect_left(times, time)
     if after == len(times):

@@ -25,7 +25,7 @@ from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
-from rulec.trace.trace_validation import check_frame, check_presence
+from rulec.trace.trace_model import check_frame, check_presence
 
 FEWEST = 4
 """Fewer traces of one shape are judged one by one."""

@@ -20,7 +20,7 @@ from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.trace import Trace
 from rulec.trace.formats.json_line_problems import is_beginning
 from rulec.trace.formats.json_lines import LiveState
-from rulec.trace.trace_validation import check_trace
+from rulec.trace.trace_model import check_trace
 
 
 def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> Monitor:

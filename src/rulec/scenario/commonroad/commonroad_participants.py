@@ -11,18 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from rulec.scenario.recorded.recording import (
-    Lanelet,
-    Participant,
-    PlanningProblem,
-    Points,
-    TrackState,
-)
+from rulec.scenario.recorded import recording as recorded
 from rulec.scenario.recorded.track import rectangles
 from rulec.scenario.xml_element import LARGEST
 
 
-def commonroad_participants(scenario: Any) -> Iterator[Participant]:
+def commonroad_participants(scenario: Any) -> Iterator[recorded.Participant]:
     """All obstacles of a scenario of the library's, in its order."""
     for obstacle in scenario.static_obstacles:
         yield _participant(obstacle, [obstacle.initial_state], standing=True)
@@ -30,11 +24,11 @@ def commonroad_participants(scenario: Any) -> Iterator[Participant]:
         yield _participant(obstacle, _states_of(obstacle), standing=False)
     for obstacle in scenario.environment_obstacle:
         outline = _corners(obstacle.occupancy_at_time(0))
-        yield Participant(
+        yield recorded.Participant(
             str(obstacle.obstacle_id), obstacle.obstacle_type.value, True, {}, {0: outline}
         )
     for obstacle in scenario.phantom_obstacle:
-        yield Participant(
+        yield recorded.Participant(
             str(obstacle.obstacle_id), "unknown", False, {}, dict(_predicted(obstacle))
         )
 
@@ -44,9 +38,9 @@ def _states_of(obstacle: Any) -> list[Any]:
     return [obstacle.initial_state, *(trajectory.state_list if trajectory else ())]
 
 
-def _participant(obstacle: Any, states: Iterable[Any], *, standing: bool) -> Participant:
-    known: dict[int, TrackState] = {}
-    outlines: dict[int, Points] = {}
+def _participant(obstacle: Any, states: Iterable[Any], *, standing: bool) -> recorded.Participant:
+    known: dict[int, recorded.TrackState] = {}
+    outlines: dict[int, recorded.Points] = {}
     for state in states:
         step = int(state.time_step)
         outline = _rectangle(obstacle.obstacle_shape, state)
@@ -56,19 +50,19 @@ def _participant(obstacle: Any, states: Iterable[Any], *, standing: bool) -> Par
         known[step] = _state(state, outline)
     if not standing and not hasattr(obstacle.prediction, "trajectory"):
         outlines.update(_predicted(obstacle))
-    return Participant(
+    return recorded.Participant(
         str(obstacle.obstacle_id), obstacle.obstacle_type.value, standing, known, outlines
     )
 
 
-def _predicted(obstacle: Any) -> Iterator[tuple[int, Points]]:
+def _predicted(obstacle: Any) -> Iterator[tuple[int, recorded.Points]]:
     """The outlines of a prediction without states, by step."""
     for occupancy in getattr(obstacle.prediction, "occupancy_set", None) or ():
         shape = getattr(occupancy, "shape", occupancy)
         yield int(occupancy.time_step), _corners(shape)
 
 
-def _rectangle(shape: Any, state: Any) -> Points | None:
+def _rectangle(shape: Any, state: Any) -> recorded.Points | None:
     """The outline of a rectangle in an exact place, the usual case; else None."""
     length, width = getattr(shape, "length", None), getattr(shape, "width", None)
     position, heading = state.position, state.orientation
@@ -78,11 +72,11 @@ def _rectangle(shape: Any, state: Any) -> Points | None:
         return None
     shift = getattr(shape, "origin_x_shift", 0.0)
     place, turn = position[None, :2], np.array([heading])
-    outline: Points = rectangles(place, turn, length, width, shift)[0]
+    outline: recorded.Points = rectangles(place, turn, length, width, shift)[0]
     return outline
 
 
-def _corners(occupancy: Any) -> Points:
+def _corners(occupancy: Any) -> recorded.Points:
     """Corners and side middles of a polygon, or of a group's polygons."""
     shape = occupancy.shapely_object
     outline = shape.convex_hull.exterior if shape.geom_type != "Polygon" else shape.exterior
@@ -91,10 +85,10 @@ def _corners(occupancy: Any) -> Points:
     return np.concatenate((corners[:-1], middles))
 
 
-def _state(state: Any, outline: Points) -> TrackState:
+def _state(state: Any, outline: recorded.Points) -> recorded.TrackState:
     position = state.position
     x, y = position[:2] if isinstance(position, np.ndarray) else outline.mean(axis=0)
-    return TrackState(
+    return recorded.TrackState(
         _number(float(x)),
         _number(float(y)),
         _number(state.orientation),
@@ -113,7 +107,9 @@ def _number(value: Any) -> float:
     return number
 
 
-def planning_problem(problem: Any, lanelets: Mapping[str, Lanelet]) -> PlanningProblem:
+def planning_problem(
+    problem: Any, lanelets: Mapping[str, recorded.Lanelet]
+) -> recorded.PlanningProblem:
     """A planning problem of the library's."""
     start = problem.initial_state
     outline = (
@@ -126,7 +122,7 @@ def planning_problem(problem: Any, lanelets: Mapping[str, Lanelet]) -> PlanningP
             for number in numbers
             if (lanelet := lanelets.get(str(number))) is not None
         ]
-    return PlanningProblem(
+    return recorded.PlanningProblem(
         str(problem.planning_problem_id),
         int(start.time_step),
         _state(start, outline),
@@ -134,7 +130,7 @@ def planning_problem(problem: Any, lanelets: Mapping[str, Lanelet]) -> PlanningP
     )
 
 
-def _goal(state: Any) -> Iterator[Points]:
+def _goal(state: Any) -> Iterator[recorded.Points]:
     position: Any = getattr(state, "position", None)
     if isinstance(position, np.ndarray):
         yield position[:2]

@@ -9,13 +9,7 @@ from math import cos, hypot, sin
 import numpy as np
 
 from rulec.diagnostics import RulecError, SourceLocation, named
-from rulec.scenario.recorded.recording import (
-    Participant,
-    PlanningProblem,
-    Points,
-    Recording,
-    TrackState,
-)
+from rulec.scenario.recorded import recording as recorded
 from rulec.scenario.recorded.route import lanelet_of
 from rulec.scenario.scenario_messages import NOT_IN_RECORDING
 from rulec.scenario.scenario_model import Choice
@@ -32,11 +26,11 @@ class EgoStart:
 
     participant: str | None
     step: int
-    state: TrackState
-    targets: Points
+    state: recorded.TrackState
+    targets: recorded.Points
 
 
-def ego_start(recording: Recording, choice: Choice, file: str) -> EgoStart:
+def ego_start(recording: recorded.Recording, choice: Choice, file: str) -> EgoStart:
     """The start of the chosen ego. Raises RulecError R0612 if it is not there."""
     problems = {problem.id: problem for problem in recording.problems}
     moving = {
@@ -69,7 +63,11 @@ def ego_start(recording: Recording, choice: Choice, file: str) -> EgoStart:
 
 
 def _of_problem(
-    problem: PlanningProblem, recording: Recording, choice: Choice, others: str, file: str
+    problem: recorded.PlanningProblem,
+    recording: recorded.Recording,
+    choice: Choice,
+    others: str,
+    file: str,
 ) -> EgoStart:
     if choice.at_s is not None and _step(recording, choice.at_s, file) != problem.step:
         raise choice_error(
@@ -85,14 +83,14 @@ def _of_problem(
     return EgoStart(next(own, None), problem.step, problem.start, problem.goals)
 
 
-def _is_ego(participant: Participant, problem: PlanningProblem) -> bool:
+def _is_ego(participant: recorded.Participant, problem: recorded.PlanningProblem) -> bool:
     """True if a participant is ego's own recorded drive, starting in ego's place."""
     state = participant.states.get(problem.step)
     place = problem.start
     return state is not None and hypot(state.x - place.x, state.y - place.y) < _SAME_PLACE_M
 
 
-def ego_size(recording: Recording, start: EgoStart, choice: Choice) -> tuple[float, float]:
+def ego_size(recording: recorded.Recording, start: EgoStart, choice: Choice) -> tuple[float, float]:
     """Ego's length and width (m), as chosen or else as recorded; 0 if not known."""
     length, width = 0.0, 0.0
     for participant in recording.participants:
@@ -106,7 +104,9 @@ def ego_size(recording: Recording, start: EgoStart, choice: Choice) -> tuple[flo
     return length, width if choice.ego_width_m is None else choice.ego_width_m
 
 
-def reference_lanelet(recording: Recording, choice: Choice, state: TrackState, file: str) -> str:
+def reference_lanelet(
+    recording: recorded.Recording, choice: Choice, state: recorded.TrackState, file: str
+) -> str:
     """The lanelet whose centre line is the reference line. Raises RulecError R0612."""
     if choice.reference is not None:
         reference = str(choice.reference)
@@ -123,7 +123,7 @@ def reference_lanelet(recording: Recording, choice: Choice, state: TrackState, f
     return own
 
 
-def _step(recording: Recording, at_s: float, file: str) -> int:
+def _step(recording: recorded.Recording, at_s: float, file: str) -> int:
     step = round(at_s / recording.step_s)
     if abs(step * recording.step_s - at_s) > 1e-6:
         message = f"the file has no states at {at_s:g} s"

@@ -11,13 +11,7 @@ from typing import IO, Any
 import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.trace.formats.json_line_problems import (
-    LONGEST_LINE_BYTES,
-    ONE_LINE,
-    Kind,
-    is_beginning,
-    middle_of,
-)
+from rulec.trace.formats import json_line_problems
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
 from rulec.trace.trace_model import State, Trace
 
@@ -41,7 +35,9 @@ class _Outline(_Header):
     states: list[msgspec.Raw]
 
 
-_TRACE = Kind("trace", _Record, 'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}')
+_TRACE = json_line_problems.Kind(
+    "trace", _Record, 'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}'
+)
 _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
 
@@ -56,7 +52,7 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
     number = result = 0
     read_state = _StateReader()
     torn: _Torn | None = None
-    for lines in lines_as_they_come(stream, LONGEST_LINE_BYTES):
+    for lines in lines_as_they_come(stream, json_line_problems.LONGEST_LINE_BYTES):
         chunk: list[Trace | RulecError] = []
         for line in lines:
             number += 1
@@ -76,7 +72,7 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
                     continue
                 chunk.append(torn.error(at_the_end=False))
                 torn = None
-            if isinstance(trace, RulecError) and is_beginning(line):
+            if isinstance(trace, RulecError) and json_line_problems.is_beginning(line):
                 torn = _Torn(line, place)
             else:
                 chunk.append(trace)
@@ -99,10 +95,12 @@ class _Torn:
 
     def error(self, *, at_the_end: bool) -> RulecError:
         """Diagnostic, which depends on the lines that follow."""
-        what = f"the line ends in the middle of {middle_of(self.line)}"
+        what = f"the line ends in the middle of {json_line_problems.middle_of(self.line)}"
         place = placed(self.place, self.line, len(self.line) - 1)
         if self.goes_on:
-            return _TRACE.bad(f"{what} and goes on below: a trace is one line", place, ONE_LINE)
+            return _TRACE.bad(
+                f"{what} and goes on below: a trace is one line", place, json_line_problems.ONE_LINE
+            )
         if at_the_end:
             message = f"{what.replace('line', 'file', 1)}: it has been cut short"
             return _TRACE.bad(message, place, "write or copy the file again")
@@ -118,14 +116,14 @@ def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
         )
     if {b"trace", b"step"} <= set(first[:_LONGEST_HEAD_BYTES].strip().split(b",")):
         return _TRACE.bad("these are no traces in JSON, but CSV", place, "add `--format csv`")
-    if first.startswith(b"[") and is_beginning(first):
+    if first.startswith(b"[") and json_line_problems.is_beginning(first):
         message = "these are no traces, a line each, but a list in JSON"
         return _TRACE.bad(message, place, _TRACE.no_list)
     return None
 
 
 def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trace | RulecError:
-    if read_state.pays and len(line) <= LONGEST_LINE_BYTES:
+    if read_state.pays and len(line) <= json_line_problems.LONGEST_LINE_BYTES:
         with suppress(msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
             outline = _OUTLINE_DECODER.decode(line)
             return _made(outline, [read_state[bytes(raw)] for raw in outline.states], place)
@@ -186,7 +184,7 @@ class _StateRecord(msgspec.Struct, forbid_unknown_fields=True):
     objects: dict[str, str] = {}
 
 
-_STATE = Kind(
+_STATE = json_line_problems.Kind(
     "state", _StateRecord, 'a state is a line such as {"state": {…}, "objects": {"v1": "vehicle"}}'
 )
 
@@ -197,7 +195,7 @@ def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
     For every line that is not blank there is a LiveState, or the RulecError (R0501) that says why
     it is none; the stream is called ``file`` in messages.
     """
-    lines = chain.from_iterable(lines_as_they_come(stream, LONGEST_LINE_BYTES))
+    lines = chain.from_iterable(lines_as_they_come(stream, json_line_problems.LONGEST_LINE_BYTES))
     for number, line in enumerate(lines, 1):
         if number == 1:
             line = line.removeprefix(b"\xef\xbb\xbf")
