@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from rulec.report.findings import code_pages
+from rulec.report.findings import code_registry
 
 
 def codes_page() -> str:
     """Render every code of a message, as ``rulec explain --all`` does in Markdown."""
-    return code_pages.as_page() + "\n"
+    return code_registry.as_page() + "\n"

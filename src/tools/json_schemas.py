@@ -21,7 +21,7 @@ from rulec.report.rulebooks.matrix_report import MatrixDocument
 from rulec.report.rulebooks.rule_json import RulesDocument
 from rulec.report.tests.example_json import ExamplesRun
 from rulec.report.text.listing import ListingDocument
-from rulec.report.verdicts.recording_json import NotDriven, RecordedNotJudged, RecordedVerdict
+from rulec.report.verdicts.recording_table import NotDriven, RecordedNotJudged, RecordedVerdict
 from rulec.report.verdicts.running_verdicts import StateRefused, StateVerdict
 from rulec.report.verdicts.verdict_json import TraceNotJudged, TraceVerdict
 

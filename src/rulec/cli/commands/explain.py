@@ -6,8 +6,7 @@ import click
 
 from rulec.cli.options.shell_completion import complete_codes
 from rulec.diagnostics import nearest_name
-from rulec.report.findings import code_pages
-from rulec.report.findings.code_registry import all_codes, code_named
+from rulec.report.findings import code_registry
 from rulec.report.text.console import print_result
 
 
@@ -25,14 +24,14 @@ def command(code: str | None, every: bool, output_format: str) -> None:
     """Explain CODE, such as R0104: what it means, a bad example, and the mended one."""
     if every == (code is not None):
         raise click.UsageError("give one code, or --all")
-    named = None if code is None else code_named(code.upper())
+    named = None if code is None else code_registry.code_named(code.upper())
     if code is not None and named is None:
-        near = nearest_name(code.upper(), all_codes())
+        near = nearest_name(code.upper(), code_registry.all_codes())
         raise click.UsageError(
             f"there is no code `{code}`; "
             + (f"did you mean `{near}`?" if near else "`rulec list codes` shows them all")
         )
-    codes = [*all_codes().values()] if named is None else [named]
+    codes = [*code_registry.all_codes().values()] if named is None else [named]
     match output_format:
         case "json":
             # Only this format needs msgspec, 8 of the 54 ms that the command takes.
@@ -40,8 +39,8 @@ def command(code: str | None, every: bool, output_format: str) -> None:
 
             print_result(codes_as_json(codes))
         case "markdown" if named is not None:
-            print_result(f"# {named.code}: {named.title}\n\n{code_pages.as_markdown(named)}")
+            print_result(f"# {named.code}: {named.title}\n\n{code_registry.as_markdown(named)}")
         case "markdown":
-            print_result(code_pages.as_page())
+            print_result(code_registry.as_page())
         case _:
-            print_result("\n\n\n".join(map(code_pages.as_text, codes)))
+            print_result("\n\n\n".join(map(code_registry.as_text, codes)))

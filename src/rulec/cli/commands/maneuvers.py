@@ -86,8 +86,7 @@ def command(
     # Maneuvers, 130 ms: not for --help.
     from rulec.planning.probability.rule_probability import alternative_counts, rule_probabilities
     from rulec.planning.trace_history import read_past
-    from rulec.report.maneuvers.maneuver_answers import ManeuverAnswers
-    from rulec.report.maneuvers.maneuver_report import as_text
+    from rulec.report.maneuvers.maneuver_report import ManeuverAnswers, as_text
 
     begin = time.perf_counter()
     rules = read_machines(rulebook, at)

@@ -164,7 +164,7 @@ class _Run:
         from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
         from rulec.monitoring.explain.explanation import explain
         from rulec.monitoring.verdict import NotJudged, Verdict
-        from rulec.report.verdicts import recording_json, verdict_report
+        from rulec.report.verdicts import recording_table, verdict_report
         from rulec.report.verdicts import recording_table as report
 
         try:
@@ -195,7 +195,7 @@ class _Run:
                     self.complaints.add(answer.answer.error)
                     self.not_answered = True
                 if self.json_output:
-                    print_result(recording_json.as_json(answer, judged, explained))
+                    print_result(recording_table.as_json(answer, judged, explained))
         if not self.json_output:
             print_result("\n".join([report.as_text(judged, tally), *blocks, report.summary(tally)]))
         self.violated |= bool(tally.violated)

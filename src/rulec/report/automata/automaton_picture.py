@@ -7,13 +7,7 @@ from itertools import pairwise
 from math import cos, pi, sin
 from typing import Literal
 
-from rulec.report.automata.automaton_layout import (
-    LINE,
-    AutomatonDrawing,
-    AutomatonState,
-    TransitionLine,
-    draw,
-)
+from rulec.report.automata import automaton_layout as layout
 from rulec.report.automata.automaton_model import Automaton, Fate, Transition
 from rulec.report.pictures.drawing import canvas
 
@@ -37,17 +31,19 @@ _LEGEND = {
 
 def as_picture(automaton: Automaton, title: str) -> canvas.Picture:
     """Draw an automaton below its title and above what the lines mean."""
-    drawing = draw(automaton)
+    drawing = layout.draw(automaton)
     used = {_line_style(transition) for transition in automaton.transitions}
     legend = [(style, text) for style, text in _LEGEND.items() if style in used]
     widest = max((canvas.text_width([text]) + 50 for _, text in legend), default=0)
     width = max(drawing.width, canvas.text_width([title]) * 1.1, widest) + 2 * canvas.MARGIN
-    height = drawing.height + 3 * canvas.MARGIN + LINE * (1 + len(legend))
+    height = drawing.height + 3 * canvas.MARGIN + layout.LINE * (1 + len(legend))
     right = (width - drawing.width) / 2
+    down = canvas.MARGIN + layout.LINE
+    drawn = (canvas.moved(mark, right, down) for mark in _marks(drawing, automaton))
     marks = [
         canvas.LabelText(title, (canvas.MARGIN, canvas.MARGIN + 6), style="strong"),
-        *(canvas.moved(mark, right, canvas.MARGIN + LINE) for mark in _marks(drawing, automaton)),
-        *_legend(legend, height - canvas.MARGIN - LINE * len(legend)),
+        *drawn,
+        *_legend(legend, height - canvas.MARGIN - layout.LINE * len(legend)),
     ]
     return canvas.Picture(title, width, height, tuple(marks))
 
@@ -56,7 +52,7 @@ def _line_style(transition: Transition) -> str:
     return "accepted" if transition.accepted else "rejected"
 
 
-def _marks(drawing: AutomatonDrawing, automaton: Automaton) -> Iterator[canvas.Mark]:
+def _marks(drawing: layout.AutomatonDrawing, automaton: Automaton) -> Iterator[canvas.Mark]:
     first = drawing.states[0]
     x, y = first.middle
     top = y - first.height / 2
@@ -68,7 +64,7 @@ def _marks(drawing: AutomatonDrawing, automaton: Automaton) -> Iterator[canvas.M
         yield from _state(state, automaton.fates[state.number])
 
 
-def _transition(line: TransitionLine) -> Iterator[canvas.Mark]:
+def _transition(line: layout.TransitionLine) -> Iterator[canvas.Mark]:
     transition = line.transition
     is_loop = transition.source == transition.target
     points, direction = _loop(line.points) if is_loop else _path(line.points)
@@ -123,7 +119,7 @@ def _head(tip: canvas.Point, direction: tuple[int, int], *, accepted: bool) -> c
     return canvas.Area((corners,), "ink" if accepted else "violated")
 
 
-def _state(state: AutomatonState, fate: Fate) -> Iterator[canvas.Mark]:
+def _state(state: layout.AutomatonState, fate: Fate) -> Iterator[canvas.Mark]:
     box = canvas.centred(state.middle, state.width / 2, state.height / 2)
     outline = canvas.corners(box) if fate == "violated" else tuple(_rounded(box))
     yield canvas.Area((outline,), _STYLES[fate])
@@ -145,11 +141,11 @@ def _text(
 ) -> Iterator[canvas.LabelText]:
     x, y = middle
     for number, text in enumerate(lines):
-        yield canvas.LabelText(text, (x, y + LINE * (number - (len(lines) - 1) / 2)), anchor)
+        yield canvas.LabelText(text, (x, y + layout.LINE * (number - (len(lines) - 1) / 2)), anchor)
 
 
 def _legend(entries: Sequence[tuple[str, str]], top: float) -> Iterator[canvas.Mark]:
     for number, (style, text) in enumerate(entries):
-        y = top + LINE * number
+        y = top + layout.LINE * number
         yield canvas.Polyline(((canvas.MARGIN, y), (canvas.MARGIN + 34, y)), style)
         yield canvas.LabelText(text, (canvas.MARGIN + 42, y))

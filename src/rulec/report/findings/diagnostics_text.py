@@ -148,12 +148,17 @@ def _block(diagnostic: Diagnostic, paint: _Paint) -> Iterator[str]:
     severity = _STYLES[diagnostic.severity]
     head = paint(f"{diagnostic.severity}[{diagnostic.code}]", severity)
     yield f"{head}{paint(f': {visible(diagnostic.message)}', 'bold')}"
-    width = _number_width(diagnostic)
+    files = _by_file(diagnostic)
+    width = max((len(str(mark.place.line or 0)) for marks in files for mark in marks), default=1)
     gutter = " " * width
-    for position, marks in enumerate(_by_file(diagnostic)):
+    for position, marks in enumerate(files):
         arrow = "-->" if position == 0 else ":::"
         yield f"{gutter}{paint(arrow, _FRAME)} {visible(address(marks[0].place))}"
-        shown = [mark for mark in marks if mark.place.line is not None and _worth_showing(mark)]
+        shown = [
+            mark
+            for mark in marks
+            if mark.place.line is not None and (mark.place.excerpt.strip() or mark.words)
+        ]
         if not shown:
             continue
         yield paint(f"{gutter} |", _FRAME)
@@ -171,10 +176,6 @@ def _block(diagnostic: Diagnostic, paint: _Paint) -> Iterator[str]:
             yield f"{gutter} {paint('=', _FRAME)} {paint(f'{word}:', 'bold')} {visible(text)}"
 
 
-def _worth_showing(mark: Underline) -> bool:
-    return bool(mark.place.excerpt.strip()) or bool(mark.words)
-
-
 def _by_file(diagnostic: Diagnostic) -> list[list[Underline]]:
     """The marks of a diagnostic by file, the primary place's file first."""
     marks = (
@@ -183,12 +184,6 @@ def _by_file(diagnostic: Diagnostic) -> list[list[Underline]]:
     marks += [Underline(label.place, label.message, "-") for label in diagnostic.labels]
     files = list(dict.fromkeys(mark.place.file for mark in marks))
     return [[mark for mark in marks if mark.place.file == file] for file in files]
-
-
-def _number_width(diagnostic: Diagnostic) -> int:
-    places = [diagnostic.place, *(label.place for label in diagnostic.labels)]
-    lines = [place.line for place in places if place is not None and place.line is not None]
-    return max((len(str(line)) for line in lines), default=1)
 
 
 def _lines(marks: Sequence[Underline], severity: str) -> Iterator[tuple[str, str, str]]:

@@ -12,14 +12,7 @@ FORMATS = ("full", "concise", "json", "github", "sarif")
 
 
 def render(diagnostics: Sequence[Diagnostic], wanted: str, *, color: bool, complete: bool) -> str:
-    """Render diagnostics; empty if the format has nothing for none.
-
-    Args:
-        diagnostics: those to render.
-        wanted: one of FORMATS.
-        color: may there be ANSI colours?
-        complete: was everything read that had to be?
-    """
+    """Render diagnostics in one of FORMATS; ``complete`` if all was read that had to be."""
     match wanted:
         case "concise":
             return as_lines(diagnostics)
@@ -45,13 +38,12 @@ def render(diagnostics: Sequence[Diagnostic], wanted: str, *, color: bool, compl
 def as_lines(diagnostics: Iterable[Diagnostic]) -> str:
     """``file:line:column: code message``; what has no place has no prefix either."""
     return "\n".join(
-        visible(f"{_address(diagnostic)}{diagnostic.code} {diagnostic.message}")
+        visible(
+            f"{'' if diagnostic.place is None else f'{address(diagnostic.place)}: '}"
+            f"{diagnostic.code} {diagnostic.message}"
+        )
         for diagnostic in diagnostics
     )
-
-
-def _address(diagnostic: Diagnostic) -> str:
-    return "" if diagnostic.place is None else f"{address(diagnostic.place)}: "
 
 
 def as_annotations(diagnostics: Iterable[Diagnostic]) -> str:
@@ -74,12 +66,9 @@ def _command(diagnostic: Diagnostic) -> str:
     written = ",".join(
         f"{name}={_property(str(value))}" for name, value in properties.items() if value is not None
     )
-    notes = (f"note: {note}" for note in diagnostic.notes)
-    lines = [
-        diagnostic.expected or diagnostic.message,
-        *([f"help: {diagnostic.help}"] if diagnostic.help else []),
-        *notes,
-    ]
+    lines = [diagnostic.expected or diagnostic.message]
+    lines += [f"help: {diagnostic.help}"] if diagnostic.help else []
+    lines += [f"note: {note}" for note in diagnostic.notes]
     message = "\n".join(visible(line) for line in lines)
     return f"::{diagnostic.severity} {written}::{_data(message)}"
 

@@ -13,8 +13,7 @@ from urllib.parse import quote
 
 from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.diagnostics.code import Code
-from rulec.report.findings.code_pages import as_markdown, as_plain_text
-from rulec.report.findings.code_registry import all_codes
+from rulec.report.findings.code_registry import all_codes, as_markdown, as_plain_text
 from rulec.version import __version__
 
 SCHEMA = (
@@ -23,12 +22,7 @@ SCHEMA = (
 
 
 def as_sarif(diagnostics: Sequence[Diagnostic], *, complete: bool = True) -> str:
-    """One run of rulec.
-
-    Args:
-        diagnostics: the results.
-        complete: was everything read that had to be?
-    """
+    """One run of rulec; ``complete`` if all was read that had to be."""
     codes = sorted({diagnostic.code for diagnostic in diagnostics})
     run = {
         "tool": {

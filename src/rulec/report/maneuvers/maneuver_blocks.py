@@ -14,7 +14,6 @@ from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
 from rulec.planning.probability.violation_events import MOST_WORLDS
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.text.terminal_text import shown_count, table_lines, visible
 
 # So many are shown in text; JSON has them all.
@@ -52,7 +51,8 @@ def ranked_block(maneuvers: Maneuvers, ranked: RankedManeuver) -> list[str]:
     """A maneuver at its place, with what it violates."""
     same = f"; {shown_count(ranked.members)} violate the same" if ranked.members > 1 else ""
     penalty = ", ".join(
-        f"{rank.strength} {_levels(rank)} {number_in_words(weight)}"
+        f"{rank.strength} {' = '.join(level or '(no level)' for level in rank.levels)} "
+        f"{number_in_words(weight)}"
         for rank, weight in ranked.penalty.items()
     )
     details = [f"   violates {penalty or 'no rule'}"]
@@ -63,10 +63,6 @@ def ranked_block(maneuvers: Maneuvers, ranked: RankedManeuver) -> list[str]:
     if len(ranked.violations) > MOST_VIOLATIONS:
         details.append(f"     and {len(ranked.violations) - MOST_VIOLATIONS} more")
     return maneuver_block(maneuvers.graph, ranked.place, ranked.maneuver, same, details)
-
-
-def _levels(rank: PenaltyRank) -> str:
-    return " = ".join(level or "(no level)" for level in rank.levels)
 
 
 def _violation_line(maneuvers: Maneuvers, violation: Violation) -> str:

@@ -16,12 +16,8 @@ from rulec.planning.probability.rule_probability import AlternativeCounts
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
-from rulec.report.maneuvers.maneuver_answers import (
-    ManeuverAnswers,
-    derived_signals,
-    horizon_s,
-    likeliest,
-)
+from rulec.report.maneuvers import maneuver_report
+from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
 from rulec.rulebook.rulebook_model import Strength
 from rulec.scenario import Account
 from rulec.scenario.scenario_model import Surface
@@ -203,7 +199,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             graph,
             scenario=scenario.name,
             rulebook=maneuvers.rules.name,
-            horizon_s=horizon_s(graph),
+            horizon_s=maneuver_report.horizon_s(graph),
             traces=maneuvers.traces,
             satisfying=maneuvers.satisfying,
             by_default=maneuvers.by_default,
@@ -216,7 +212,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
                 answers.listed,
                 lambda maneuver: _maneuver(graph, maneuver, chances=_chances(answers, maneuver)),
             ),
-            likeliest=likeliest(scenario) if several else UNSET,
+            likeliest=maneuver_report.likeliest(scenario) if several else UNSET,
             worlds=_each(answers.worlds, _world),
             rules=_each(answers.prunings, partial(_pruning, maneuvers)),
             classes=UNSET if answers.classes is None else _classes(maneuvers, *answers.classes),
@@ -234,7 +230,7 @@ def _world(world: AlternativeCounts) -> WorldData:
 
 
 def _scene(maneuvers: Maneuvers, account: Account) -> SceneData:
-    derived = derived_signals(maneuvers, account)
+    derived = maneuver_report.derived_signals(maneuvers, account)
     return filled(
         SceneData,
         account,

@@ -2,29 +2,65 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import prod
+from typing import Any
 
 from rulec.diagnostics import named
 from rulec.monitoring.verdict import Violation
-from rulec.planning import Maneuvers
-from rulec.planning.probability.rule_probability import AlternativeCounts
+from rulec.partition import NavigationGraph
+from rulec.planning import Maneuvers, RankedManeuver, RulePruning
+from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.maneuvers import maneuver_blocks
-from rulec.report.maneuvers.maneuver_answers import (
-    ManeuverAnswers,
-    derived_signals,
-    horizon_s,
-    likeliest,
-)
 from rulec.report.text.terminal_text import first_of, shown_count, styled, visible
-from rulec.scenario import Scenario
+from rulec.scenario import Account, Scenario
 
 MOST_VIOLATIONS = 6
 """So many of the past's are named in text; JSON has them all."""
 
 MOST_DEFAULTS = 4
 """So many of what has its default are named in text; JSON has them all."""
+
+
+@dataclass(frozen=True, slots=True)
+class ManeuverAnswers:
+    """Answers to further questions about maneuvers, None where not asked.
+
+    ``best`` are the least violating maneuvers, where none satisfies every hard rule and there is no
+    longer list of them in ``ranked``. ``chances`` are those of maneuvers, given by their nodes.
+    """
+
+    listed: Sequence[Maneuver] | None = None
+    best: Sequence[RankedManeuver] | None = None
+    ranked: Sequence[RankedManeuver] | None = None
+    prunings: Sequence[RulePruning] | None = None
+    classes: tuple[HomotopyClasses, Sequence[Variant]] | None = None
+    chances: Mapping[tuple[int, ...], RuleProbabilities] = field(default_factory=dict)
+    worlds: Sequence[AlternativeCounts] | None = None
+
+
+def horizon_s(graph: NavigationGraph) -> float:
+    """Time from the first layer's start to the last one's, in seconds."""
+    return float((len(graph.layers) - 1) * graph.step)
+
+
+def likeliest(scenario: Scenario) -> float:
+    """The probability that all obstacles do what is likeliest."""
+    return float(prod((obstacle.weight for obstacle in scenario.obstacles), start=Fraction(1)))
+
+
+def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[Any, str]]:
+    """Signals supplied by the recording, each with value and reason."""
+    supplied = maneuvers.paths.states[0][0]
+    return {
+        name: (supplied[name], because)
+        for name, because in account.derived.items()
+        if name in supplied
+    }
 
 
 def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
@@ -35,6 +71,8 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     horizon = f"{horizon_s(graph):g} s in steps of {graph.step_s:g} s"
     how = f"partition {graph.partition}, adjacency {graph.adjacency}"
     how += f", extent {graph.extent}" if graph.extent != "lane" else ""
+    defaults = first_of(maneuvers.by_default, MOST_DEFAULTS)
+    by_default = f"by default  {defaults}: the scenario does not say"
     lines = [
         f"scenario    {graph.scenario.name}: {horizon}, {how}",
         *_scene(maneuvers),
@@ -42,7 +80,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         f"maneuvers   {shown_count(maneuvers.traces)}",
         f"satisfying  {styled(shown_count(maneuvers.satisfying), 'bold')} by {by}",
         *_violated_before(maneuvers.violated_before or ()),
-        *_by_default(maneuvers.by_default),
+        *([visible(by_default)] if maneuvers.by_default else []),
         *_predictions(graph.scenario),
         *map(_world, answers.worlds or ()),
     ]
@@ -61,7 +99,8 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         lines += ["", *maneuver_blocks.pruning_lines(maneuvers, answers.prunings)]
     if answers.classes is not None:
         for number, variant in enumerate(answers.classes[1], 1):
-            remark = f"; class of {_members(variant)}"
+            members = f"{shown_count(variant.members)} satisfying members"
+            remark = f"; class of {'1 member' if variant.members == 1 else members}"
             lines += maneuver_blocks.maneuver_block(graph, number, variant.cheapest, remark)
     return "\n".join(lines)
 
@@ -96,18 +135,13 @@ def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
         yield f"            and {len(violations) - MOST_VIOLATIONS:,} more; --json has them all"
 
 
-def _by_default(names: Sequence[str]) -> Iterator[str]:
-    """A line for the inputs without information, taken at their defaults."""
-    if names:
-        yield visible(f"by default  {first_of(names, MOST_DEFAULTS)}: the scenario does not say")
-
-
 def _predictions(scenario: Scenario) -> Iterator[str]:
     """A line on what was counted, if obstacles have several predictions."""
     several = [obstacle for obstacle in scenario.obstacles if obstacle.alternatives]
     if several:
         whose = "1 obstacle has" if len(several) == 1 else f"{len(several)} obstacles have"
-        how = f"the likeliest world is counted, with probability {likeliest(scenario):.4g}"
+        probability = likeliest(scenario)
+        how = f"the likeliest world is counted, with probability {probability:.4g}"
         yield f"predictions {whose} several; {how}"
 
 
@@ -131,12 +165,6 @@ def _class_counts(maneuvers: Maneuvers, classes: HomotopyClasses) -> Iterator[st
             f"            {shown_count(classes.divided)} of these depending on how long one stays"
             f"{why if counting else ''}"
         )
-
-
-def _members(variant: Variant) -> str:
-    if variant.members == 1:
-        return "1 member"
-    return f"{shown_count(variant.members)} satisfying members"
 
 
 def _chances(answers: ManeuverAnswers, maneuver: Maneuver) -> list[str]:

@@ -7,15 +7,9 @@ from collections.abc import Iterator, Sequence
 from rulec.partition import NavigationGraph
 from rulec.planning.product.accepted_edges import AcceptedEdges
 from rulec.planning.ranking.cheapest import Maneuver
+from rulec.report.pictures import picture_captions as captions
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import LabelText, Mark, Picture, Point, Polyline
-from rulec.report.pictures.picture_captions import (
-    MOST_SPELLED,
-    in_full,
-    in_letters,
-    legend,
-    meaning,
-)
 
 _ROW = 34.0
 _TALLEST = 720.0
@@ -52,7 +46,9 @@ def graph_picture(
 ) -> Picture:
     """The picture; ``judged``: do rules tell satisfying maneuvers from others?"""
     cells = [list(enumerate(layer.cells)) for layer in graph.layers]
-    columns = _Columns([[f"{i} {in_letters(cell)}".strip() for i, cell in row] for row in cells])
+    columns = _Columns(
+        [[f"{i} {captions.in_letters(cell)}".strip() for i, cell in row] for row in cells]
+    )
     if not columns.legible:
         columns = _Columns([[str(i) for i, _ in row] for row in cells])
     marks: tuple[Mark, ...] = (
@@ -60,7 +56,9 @@ def graph_picture(
         *_nodes(graph, columns, edges, maneuver),
         *_times(graph, columns),
     )
-    below = legend(list(_entries(graph, edges, maneuver, judged=judged)), [_note(graph, columns)])
+    below = captions.legend(
+        list(_entries(graph, edges, maneuver, judged=judged)), [_note(graph, columns)]
+    )
     title = f"{graph.scenario.name}, the navigation graph"
     return canvas.stacked(title, [Picture(title, canvas.WIDTH, columns.bottom, marks), below])
 
@@ -72,19 +70,13 @@ def _edges(
     half, _ = columns.extent
     lines = []
     for p, successors in enumerate(graph.successors):
-        way = maneuver.nodes[p : p + 2] if maneuver else ()
+        way = {maneuver.nodes[p : p + 2]} if maneuver else set()
+        kinds = {"way": way, "satisfying": edges.accepted[p], "rejected": edges.possible[p]}
         for node, followers in enumerate(successors):
             for target in followers:
                 (x0, y0), (x1, y1) = columns.at(p, node), columns.at(p + 1, target)
-                style = (
-                    "way"
-                    if (node, target) == way
-                    else "satisfying"
-                    if (node, target) in edges.accepted[p]
-                    else "rejected"
-                    if (node, target) in edges.possible[p]
-                    else "unused"
-                )
+                step = (node, target)
+                style = next((kind for kind, steps in kinds.items() if step in steps), "unused")
                 lines.append(Polyline(((x0 + half, y0), (x1 - half, y1)), style))
     return sorted(lines, key=lambda line: _ORDER.index(line.style))
 
@@ -93,18 +85,13 @@ def _nodes(
     graph: NavigationGraph, columns: _Columns, edges: AcceptedEdges, maneuver: Maneuver | None
 ) -> Iterator[Mark]:
     for p, layer in enumerate(graph.layers):
+        way = {maneuver.nodes[p]} if maneuver else set()
+        kept, there = edges.accepted_nodes[p], edges.possible_nodes[p]
+        kinds = {"chosen": way, "node": kept, "violated": there}
         for node, cell in enumerate(layer.cells):
             middle = columns.at(p, node)
-            style = (
-                "chosen"
-                if maneuver and maneuver.nodes[p] == node
-                else "node"
-                if node in edges.accepted_nodes[p]
-                else "violated"
-                if node in edges.possible_nodes[p]
-                else "off"
-            )
-            tip = f"{layer.start_s:g} s, cell {node}: {in_full(cell)}"
+            style = next((kind for kind, nodes in kinds.items() if node in nodes), "off")
+            tip = f"{layer.start_s:g} s, cell {node}: {captions.in_full(cell)}"
             yield canvas.filled(canvas.centred(middle, *columns.extent), style, tip)
             if columns.legible:
                 ink = "faint" if style == "off" else "ink"
@@ -140,6 +127,6 @@ def _entries(
 def _note(graph: NavigationGraph, columns: _Columns) -> str:
     if not columns.legible:
         return "one mark a cell, numbered from below"
-    if 0 < len(graph.objects) <= MOST_SPELLED and " " in columns.labels[0][0]:
-        return f"a cell's number and signature: {meaning(graph)}"
+    if 0 < len(graph.objects) <= captions.MOST_SPELLED and " " in columns.labels[0][0]:
+        return f"a cell's number and signature: {captions.meaning(graph)}"
     return "the numbers of cells as in JSON"

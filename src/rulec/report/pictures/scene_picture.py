@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.report.pictures import road_marks
+from rulec.report.pictures import picture_captions as captions
 from rulec.report.pictures.drawing import canvas
-from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture
+from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.label_placement import Placing
-from rulec.report.pictures.picture_captions import (
-    MOST_SPELLED,
-    in_full,
-    in_letters,
-    legend,
-    meaning,
-)
-from rulec.report.pictures.road_marks import Frame
+from rulec.scenario import Box, Road
+from rulec.scenario.motion import span, swept
+
+_LANE_HEIGHT = 46.0
+"""Of a lane as wide as the road's lanes are on average, in px."""
 
 _TAKEN = {
     "lane": "the lanes of an obstacle",
@@ -51,16 +49,16 @@ def scene_legend(graph: NavigationGraph, maneuver: Maneuver | None) -> Picture:
     frame = _frame(graph)
     ratio = f"; across the road {frame.across / frame.along:.2g} times as large as along it"
     notes = [f"s along the road in m{ratio}"]
-    if len(graph.objects) > MOST_SPELLED:
+    if len(graph.objects) > captions.MOST_SPELLED:
         notes.insert(0, "numbers of cells as in the graph and in JSON")
     elif graph.objects:
-        notes.insert(0, meaning(graph))
-    return legend(entries, notes)
+        notes.insert(0, captions.meaning(graph))
+    return captions.legend(entries, notes)
 
 
-def _frame(graph: NavigationGraph) -> Frame:
+def _frame(graph: NavigationGraph) -> _Frame:
     road = graph.scenario.road
-    return Frame(road.outline, canvas.MARGIN + canvas.LINE_HEIGHT, len(road.lanes) - 1)
+    return _Frame(road.outline, canvas.MARGIN + canvas.LINE_HEIGHT, len(road.lanes) - 1)
 
 
 def _picture(graph: NavigationGraph, layer: int, maneuver: Maneuver | None) -> Picture:
@@ -74,22 +72,22 @@ def _picture(graph: NavigationGraph, layer: int, maneuver: Maneuver | None) -> P
         low, high, right, left = (round(x, 2) for x in (bounds.s_min, bounds.s_max, right, left))
         text = f"cell {chosen}: s {low:g} … {high:g} m, d {right:g} … {left:g} m"
         labels.append(LabelText(text, (canvas.WIDTH - canvas.MARGIN, canvas.MARGIN), "end"))
-    axis = list(road_marks.axis(frame))
+    axis = list(_axis(frame))
     placing = Placing([mark.bounds for mark in [*labels, *axis] if isinstance(mark, LabelText)])
     marks: list[Mark] = [*labels, canvas.filled(frame.box(road.outline), "taken")]
     marks += [canvas.filled(frame.box(hole), "ground") for hole in road.holes()]
     order = sorted(range(len(here.cells)), key=lambda i: i == chosen)
     marks += [_cell(frame, here.cells[i], i, i == chosen) for i in order]
-    marks += road_marks.lane_marks(frame, road)
-    marks += road_marks.obstacle_marks(graph, frame, layer)
+    marks += _lane_marks(frame, road)
+    marks += _obstacle_marks(graph, frame, layer)
     if layer == 0:
-        marks += road_marks.ego_marks(graph, frame, placing)
+        marks += _ego_marks(graph, frame, placing)
     if graph.scenario.goal and layer == len(graph.layers) - 1:
         marks.append(canvas.filled(frame.box(graph.scenario.goal), "goal"))
-    bodies = road_marks.bodies(graph, frame, layer)
+    bodies = _bodies(graph, frame, layer)
     outside = []
     for words, body in bodies:
-        if not road_marks.fits(words, body):
+        if not _fits(words, body):
             outside.append((words, body))
         elif placing.take(words):
             marks.append(replace(words, style="ink"))
@@ -97,7 +95,7 @@ def _picture(graph: NavigationGraph, layer: int, maneuver: Maneuver | None) -> P
     cell_labels, key = _labels(frame, here.cells, placing)
     marks += cell_labels
     for words, body in outside:
-        marks += placing.first_free(road_marks.beside(words, body))
+        marks += placing.first_free(_beside(words, body))
     marks += axis
     height = frame.bottom + 14 + canvas.LINE_HEIGHT
     numbered = "   ".join(entry.replace(" ", "\xa0") for entry in key)
@@ -106,24 +104,142 @@ def _picture(graph: NavigationGraph, layer: int, maneuver: Maneuver | None) -> P
     return Picture(heading, canvas.WIDTH, height, (*marks, *below))
 
 
-def _cell(frame: Frame, cell: Cell, number: int, chosen: bool) -> Area:
+def _cell(frame: _Frame, cell: Cell, number: int, chosen: bool) -> Area:
     polygon = cell.polygon
     rings = [polygon.exterior, *polygon.interiors]
     style = "chosen" if chosen else "crossing" if cell.surface == "crossing" else "cell"
     shape = tuple(tuple(frame.at(s, d) for s, d in list(ring.coords)[:-1]) for ring in rings)
-    return Area(shape, style, f"cell {number}: {in_full(cell)}")
+    return Area(shape, style, f"cell {number}: {captions.in_full(cell)}")
 
 
 def _labels(
-    frame: Frame, cells: Sequence[Cell], placing: Placing
+    frame: _Frame, cells: Sequence[Cell], placing: Placing
 ) -> tuple[list[LabelText], list[str]]:
     """The cells' labels, and explanations of those shortened to a number."""
     labels, key = [], []
     for number, cell in enumerate(cells):
-        letters = in_letters(cell)
+        letters = captions.in_letters(cell)
         texts = [letters, str(number)] if letters else [str(number)]
         label = placing.place(texts, [frame.box(box) for box in cell.boxes])
         labels += [label] if label is not None else []
         if letters and (label is None or label.text != letters):
             key.append(f"{number} {letters}")
     return labels, key
+
+
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """Mapping of places on the road to places in the picture."""
+
+    outline: Box
+    top: float
+    lanes: int
+
+    @property
+    def along(self) -> float:
+        """Px for a metre of s."""
+        return canvas.TEXT_WIDTH / (self.outline.s_max - self.outline.s_min)
+
+    @property
+    def across(self) -> float:
+        """Px for a metre of d."""
+        return _LANE_HEIGHT * self.lanes / (self.outline.d_max - self.outline.d_min)
+
+    @property
+    def bottom(self) -> float:
+        """The lower border of the road, in px."""
+        return self.top + _LANE_HEIGHT * self.lanes
+
+    def at(self, s: float, d: float) -> Point:
+        """A place on the road."""
+        return (
+            canvas.MARGIN + (s - self.outline.s_min) * self.along,
+            self.top + (self.outline.d_max - d) * self.across,
+        )
+
+    def box(self, box: Box) -> canvas.Rectangle:
+        """A box as far as it is on the road."""
+        outline = self.outline
+        left, top = self.at(max(box.s_min, outline.s_min), min(box.d_max, outline.d_max))
+        right, bottom = self.at(min(box.s_max, outline.s_max), max(box.d_min, outline.d_min))
+        return left, top, right, bottom
+
+
+def _axis(frame: _Frame) -> Iterator[Mark]:
+    """Metres of s below the road."""
+    y = frame.bottom
+    for s in captions.ticks(frame.outline.s_min, frame.outline.s_max, 12):
+        x, _ = frame.at(s, frame.outline.d_min)
+        yield Polyline(((x, y), (x, y + 4)), "axis")
+        text = f"{s:g}"
+        half = len(text) * canvas.CHARACTER / 2
+        x = min(max(x, half), canvas.WIDTH - half)
+        yield LabelText(text, (x, y + 11), "middle", "faint")
+
+
+def _lane_marks(frame: _Frame, road: Road) -> Iterator[Polyline]:
+    """Lines between lanes, where at least one of the two is there."""
+    ends = {s for gap in road.missing for s in gap.s if road.s[0] < s < road.s[1]}
+    for right, d in enumerate(road.lanes[1:-1], 1):
+        for start, end in pairwise([road.s[0], *sorted(ends), road.s[1]]):
+            gone = {gap.lane for gap in road.missing if gap.s[0] <= start and end <= gap.s[1]}
+            if not {right, right + 1} <= gone:
+                yield Polyline((frame.at(start, d), frame.at(end, d)), "lane")
+
+
+def _obstacle_marks(graph: NavigationGraph, frame: _Frame, layer: int) -> Iterator[Mark]:
+    """Area swept by each obstacle in the layer, and its initial place."""
+    start = graph.layers[layer].start_s
+    for name in graph.layers[layer].objects:
+        obstacle = graph.objects[name]
+        area = swept(obstacle, start, start + graph.step_s)
+        if area is not None:
+            tip = f"{name}, {obstacle.type}: what it sweeps"
+            yield canvas.filled(frame.box(area), "swept", tip)
+    for words, body in _bodies(graph, frame, layer):
+        yield canvas.filled(body, "body", f"{words.text}, {graph.objects[words.text].type}")
+
+
+def _bodies(
+    graph: NavigationGraph, frame: _Frame, layer: int
+) -> list[tuple[LabelText, canvas.Rectangle]]:
+    """Obstacles' names and bodies at the layer's start or their entry."""
+    result = []
+    for name in graph.layers[layer].objects:
+        obstacle = graph.objects[name]
+        moment = max(graph.layers[layer].start_s, span(obstacle.motion)[0])
+        body = swept(obstacle, moment, moment)
+        if body is not None and body.overlaps(frame.outline):
+            left, top, right, bottom = frame.box(body)
+            at = ((left + right) / 2, (top + bottom) / 2)
+            result.append((LabelText(name, at, "middle", "name"), (left, top, right, bottom)))
+    return result
+
+
+def _fits(words: LabelText, body: canvas.Rectangle) -> bool:
+    """Test for room for the words inside a body."""
+    left, top, right, bottom = words.bounds
+    return body[0] <= left and right <= body[2] and body[1] <= top and bottom <= body[3]
+
+
+def _beside(words: LabelText, body: canvas.Rectangle) -> Iterator[LabelText]:
+    """Places for a name beside its body, or just above or below."""
+    left, top, right, bottom = words.bounds
+    half, (x, y) = (right - left) / 2 + 5, words.at
+    lift = (body[3] - body[1] + bottom - top) / 2 + 1
+    after, before = body[2] + half, body[0] - half
+    middles = (x, y - lift), (x, y + lift), (after, y), (before, y)
+    for at in (*middles, (after, y - lift), (before, y + lift)):
+        if half <= at[0] <= canvas.WIDTH - half:
+            yield replace(words, at=at)
+
+
+def _ego_marks(graph: NavigationGraph, frame: _Frame, placing: Placing) -> Iterator[Mark]:
+    """Ego at the first layer's start, large enough to be seen."""
+    ego = graph.scenario.ego
+    middle = frame.at(ego.s, ego.d)
+    half_length, half_width = ego.length / 2 * frame.along, ego.width / 2 * frame.across
+    body = canvas.centred(middle, max(half_length, 4), max(half_width, 4))
+    yield canvas.filled(body, "ego", "ego at the start")
+    placing.taken.append(body)
+    yield from placing.first_free(_beside(LabelText("ego", middle, "middle", "name"), body))

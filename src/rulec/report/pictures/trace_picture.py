@@ -8,7 +8,7 @@ from itertools import groupby
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.report.pictures.drawing import canvas
-from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Polyline
+from rulec.report.pictures.drawing.canvas import LabelText, Mark, Picture, Polyline
 from rulec.report.pictures.drawing.label_placement import Placing
 from rulec.report.pictures.picture_captions import ticks
 from rulec.report.pictures.trace_ribbon import Ribbon, RibbonRow, extremes, in_words
@@ -46,8 +46,8 @@ def ribbon_picture(ribbon: Ribbon, rules: CompiledRulebook) -> Picture:
     y = top
     for row, title in zip(ribbon.rows, titles, strict=True):
         labels.append(LabelText(title, (left - 10, y + _ROW / 2), "end"))
-        marks += _segments(row, axis, y) if row.values else _curve(row, axis, y)
-        labels += _values(row, axis, y) if row.values else []
+        for mark in (_segments if row.values else _curve)(row, axis, y):
+            (labels if isinstance(mark, LabelText) else marks).append(mark)
         y += _ROW
     marks += [*_violations(ribbon, axis, top), *labels, *flags, *_times(axis, y)]
     explanations, bottom = _explanations(ribbon, rules, y + 2 * canvas.LINE_HEIGHT + 8)
@@ -117,21 +117,16 @@ def _violations(ribbon: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
                 yield Polyline(((x, y), (x, y + _ROW)), "violation", f"{n}: {violation.rule}")
 
 
-def _segments(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Area]:
-    for run in row.runs:
-        if run.value is not None:
-            box = (axis.x(run.first), y + 2, axis.x(run.last + 1), y + _ROW - 2)
-            style = f"value{row.values.index(run.value) % _COLOURS}"
-            when = f"{run.first * axis.step_s:g} s to {(run.last + 1) * axis.step_s:g} s"
-            yield canvas.filled(box, style, f"{row.title}: {in_words(run.value)}, {when}")
-
-
-def _values(row: RibbonRow, axis: _Axis, y: float) -> Iterator[LabelText]:
-    """Values of the segments with room for them."""
+def _segments(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
+    """A segment for each run of a value, and the value where there is room for it."""
     for run in row.runs:
         if run.value is not None:
             left, right = axis.x(run.first), axis.x(run.last + 1)
             text = in_words(run.value)
+            style = f"value{row.values.index(run.value) % _COLOURS}"
+            when = f"{run.first * axis.step_s:g} s to {(run.last + 1) * axis.step_s:g} s"
+            box = (left, y + 2, right, y + _ROW - 2)
+            yield canvas.filled(box, style, f"{row.title}: {text}, {when}")
             if canvas.text_width([text]) + 6 <= right - left:
                 yield LabelText(text, ((left + right) / 2, y + _ROW / 2), "middle", "name")
 

@@ -13,7 +13,7 @@ from rulec.monitoring.state_view import value_in
 from rulec.monitoring.verdict import Verdict, Violation
 from rulec.report.verdicts.violation_table import shown
 from rulec.trace import State, Trace, Value
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Vocabulary
+from rulec.vocabulary import Enumeration, Quantity, Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,17 +35,10 @@ class RibbonRow:
     ``values`` are those that there can be, in the vocabulary's order; none for a quantity.
     """
 
-    name: str
+    title: str
     objects: tuple[str, ...]
-    unit: str
     values: tuple[Value, ...]
     runs: tuple[ValueRun, ...]
-
-    @property
-    def title(self) -> str:
-        """The row's title in the words of a rule."""
-        about = f"({', '.join(self.objects)})" if self.objects else ""
-        return f"{self.name}{about}" + (f" in {self.unit}" if self.unit else "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +58,7 @@ class Ribbon:
 def ribbon(
     trace: Trace, rules: CompiledRulebook, verdict: Verdict, only: Collection[str] = ()
 ) -> Ribbon:
-    """Collect the rows that the rules read.
-
-    First what is about nobody, then object by object, then pairs.
+    """Collect the rows that the rules read, of nobody, of each object, then of pairs.
 
     What the trace does not speak of has a row only if a rule that is violated reads it. ``only``:
     the objects to tell of, if not of all.
@@ -131,8 +122,15 @@ def _row(
     ]
     if all(value is None for value in values):
         return None
-    unit = declaration.unit if isinstance(declaration, Quantity) else ""
-    return RibbonRow(name, objects, unit, _possible(declaration), tuple(_runs(values)))
+    title = f"{name}({', '.join(objects)})" if objects else name
+    possible: tuple[Value, ...] = (False, True)
+    match declaration:
+        case Enumeration():
+            possible = declaration.values
+        case Quantity():
+            possible = ()
+            title += f" in {declaration.unit}" if declaration.unit else ""
+    return RibbonRow(title, objects, possible, tuple(_runs(values)))
 
 
 def _said(state: State, name: str, objects: Sequence[str]) -> bool:
@@ -147,12 +145,6 @@ def _runs(values: Sequence[Value | None]) -> Iterator[ValueRun]:
     for value, same in groupby(values):
         first, at = at, at + sum(1 for _ in same)
         yield ValueRun(first, at - 1, value)
-
-
-def _possible(declaration: Declaration) -> tuple[Value, ...]:
-    if isinstance(declaration, Enumeration):
-        return declaration.values
-    return () if isinstance(declaration, Quantity) else (False, True)
 
 
 def extremes(row: RibbonRow) -> tuple[float, float]:

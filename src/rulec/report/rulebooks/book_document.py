@@ -5,14 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import groupby
 
-from rulec.analysis.audit.rulebook_audit import articles_of
-from rulec.analysis.lineage.rule_lineage import BookLineage
-from rulec.report.rulebooks import book_sections
-from rulec.report.rulebooks.book_rule import rule_heading, rule_section
-from rulec.report.text.markdown import Block, Heading, anchors, code, escaped, table, written
+from rulec.analysis.audit.rulebook_audit import articles_of, used_declarations
+from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
+from rulec.logic.english.atom_phrases import listed, spoken
+from rulec.logic.printing import formula_text
+from rulec.report.rulebooks.book_rule import WIDTH, rule_heading, rule_section
+from rulec.report.text import markdown
+from rulec.report.text.formula_lines import formula_lines
+from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, table
 from rulec.rulebook.loader import Loaded
+from rulec.rulebook.names.doc_comments import description
+from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.rulebook.rulebook_model import Rulebook
+from rulec.syntax import tree
+from rulec.syntax.tree_printer import print_in_force
 from rulec.version import __version__
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 NO_ADVICE = (
     "**This is no legal advice.** It paraphrases law so that a machine can read it. What counts is "
@@ -39,7 +47,7 @@ def as_markdown(loaded: Loaded, inherited: BookLineage) -> str:
     body = list(_body(loaded, inherited))
     index = Heading(2, "Index of provisions")
     headings = [heading for heading in (*top, *body, index) if isinstance(heading, Heading)]
-    names = anchors([heading.text for heading in headings])
+    names = markdown.anchors([heading.text for heading in headings])
     places = {id(heading): name for heading, name in zip(headings, names, strict=True)}
     contents = "\n".join(
         f"{'  ' * (heading.level - 2)}- [{escaped(heading.text)}](#{places[id(heading)]})"
@@ -47,8 +55,10 @@ def as_markdown(loaded: Loaded, inherited: BookLineage) -> str:
         if isinstance(heading, Heading) and heading.level in (2, 3)
     )
     rules = {heading.text: places[id(heading)] for heading in headings if heading.level == 3}
-    end = (*_index(rulebook, inherited, index, rules), *_made_from(rulebook))
-    return written([*top, contents, *body, *end])
+    sources = ", ".join(code(source.name) for source in rulebook.sources)
+    made_from = f"Made by rulec {__version__} from {sources}. {NO_ADVICE}"
+    end = (*_index(rulebook, inherited, index, rules), "---", made_from)
+    return markdown.written([*top, contents, *body, *end])
 
 
 def _top(rulebook: Rulebook) -> Iterator[Block]:
@@ -78,10 +88,10 @@ def _body(loaded: Loaded, inherited: BookLineage) -> Iterator[Block]:
     )
     for rule in rulebook.rules:
         yield from rule_section(rule, inherited, rulebook.vocabulary)
-    yield from book_sections.values_section(inherited, rulebook.at)
-    yield from book_sections.definitions_section(inherited)
-    yield from book_sections.left_out_section(inherited, rulebook.at)
-    yield from book_sections.words_section(loaded)
+    yield from _values_section(inherited, rulebook.at)
+    yield from _definitions_section(inherited)
+    yield from _left_out_section(inherited, rulebook.at)
+    yield from _words_section(loaded)
 
 
 def _index(
@@ -104,7 +114,123 @@ def _index(
         yield table(["provision", "rules"], rows)
 
 
-def _made_from(rulebook: Rulebook) -> Iterator[Block]:
-    names = ", ".join(code(source.name) for source in rulebook.sources)
-    yield "---"
-    yield f"Made by rulec {__version__} from {names}. {NO_ADVICE}"
+def _values_section(inherited: BookLineage, at: str) -> Iterator[Block]:
+    """Options and parameters that rules speak of, with all their values."""
+    rows = [
+        row
+        for provision in inherited.provisions
+        if provision.kind != "definition" and provision.used
+        for row in _values(provision)
+    ]
+    if rows:
+        yield Heading(2, "Options and parameters")
+        yield f"The value that counts on {at} is the one with a mark."
+        head = ["name", "kind", "value", "counts", "in force", "given by", "note"]
+        yield table(head, rows)
+
+
+def _values(constant_history: ConstantHistory) -> Iterator[list[str]]:
+    for setting in constant_history.settings:
+        dates = print_in_force(tree.InForce(setting.since, setting.until))
+        yield [
+            code(constant_history.name),
+            constant_history.kind,
+            code(setting.text),
+            "✔" if setting.current else "",
+            dates.removeprefix("in force").strip() or "always",
+            code(setting.book),
+            escaped(setting.note),
+        ]
+
+
+def _definitions_section(inherited: BookLineage) -> Iterator[Block]:
+    """Definitions that rules use, with final and earlier meanings."""
+    definitions = [
+        provision
+        for provision in inherited.provisions
+        if provision.kind == "definition" and provision.used
+    ]
+    if definitions:
+        yield Heading(2, "Definitions")
+    for definition in definitions:
+        *earlier, last = definition.settings
+        before = [f"in {code(setting.book)} {code(setting.text)}" for setting in earlier]
+        was = f" It was {listed(before)}." if before else ""
+        note = f" {escaped(last.note)}" if last.note else ""
+        yield f"{code(definition.name)} is defined by {code(last.book)}.{was}{note}"
+        written = f"define {definition.head} = {last.text}"
+        if len(written) > WIDTH:
+            meaning = "\n  ".join(formula_lines(last.text, WIDTH - 2))
+            written = f"define {definition.head} =\n  {meaning}"
+        yield fenced(written, "rulec")
+
+
+def _left_out_section(inherited: BookLineage, at: str) -> Iterator[Block]:
+    """Topics left out of the rulebook, with reasons."""
+    rows = list(_left_out(inherited, at))
+    if rows:
+        yield Heading(2, "What this rulebook leaves out")
+        yield table(["rule or topic", "what happened", "why"], rows)
+
+
+def _left_out(inherited: BookLineage, at: str) -> Iterator[list[str]]:
+    for rule in inherited.rules:
+        last = rule.last
+        if last.deed == "dropped":
+            yield [code(rule.name), f"dropped by {code(last.book)}", escaped(last.because)]
+        elif last.deed == "silent":
+            yield [code(rule.name), f"{code(last.book)} is silent on it", escaped(last.because)]
+        elif rule.rule is not None and not in_force(rule.rule.in_force, at):
+            assert rule.rule.in_force is not None, "what has no dates is in force"
+            dates = print_in_force(rule.rule.in_force)
+            yield [code(rule.name), f"not in force on {at}", dates]
+
+
+def _words_section(loaded: Loaded) -> Iterator[Block]:
+    """Words of the vocabulary that the rules use, and axioms."""
+    rulebook = loaded.rulebook
+    used = used_declarations(rulebook)
+    described = _descriptions(loaded)
+    rows = [
+        [code(name), _about(word), _kind(word), escaped(described.get(name, ""))]
+        for name, word in rulebook.vocabulary.declarations.items()
+        if name in used
+    ]
+    if rows:
+        yield Heading(2, "Vocabulary")
+        yield "What the rules speak of, and what it can be; the default is in parentheses."
+        yield table(["word", "is about", "what it can be", "description"], rows)
+    if rulebook.axioms:
+        yield Heading(2, "What always holds")
+        yield "Whatever the rules say, this is so in every state:"
+        axioms = [f"fact {formula_text(axiom.formula)}" for axiom in rulebook.axioms]
+        yield fenced("\n".join(axioms), "rulec")
+
+
+def _descriptions(loaded: Loaded) -> Mapping[str, str]:
+    result: dict[str, str] = {}
+    for file in (*loaded.vocabularies, *loaded.books):
+        for item in file.items:
+            match item:
+                case tree.SignalItem(signals=signals):
+                    result |= {signal.name.text: description(item.span) for signal in signals}
+                case tree.EnumerationItem(name=name) | tree.QuantityItem(name=name):
+                    result[name.text] = description(item.span)
+    return result
+
+
+def _about(item: Declaration) -> str:
+    types = " and ".join(code(spoken(parameter)) for parameter in item.parameters)
+    return f"every {types}" if types else "the world"
+
+
+def _kind(item: Declaration) -> str:
+    match item:
+        case Enumeration(values=values, default=default):
+            shown = [f"({code(value)})" if value == default else code(value) for value in values]
+            return f"one of {listed(shown)}"
+        case Signal(default=default):
+            return {None: "yes or no", True: "(yes) or no", False: "yes or (no)"}[default]
+        case Quantity(unit=unit, default=default):
+            usual = "" if default is None else f" ({repr(default).removesuffix('.0')})"
+            return f"a number of {code(unit)}{usual}"

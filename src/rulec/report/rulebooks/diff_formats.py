@@ -6,11 +6,10 @@ import csv
 import io
 from collections.abc import Iterable, Iterator, Sequence
 
-from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
+from rulec.analysis.diff.rulebook_comparison import RulebookDiff, RulePair
 from rulec.report.rulebooks import diff_text
 from rulec.report.rulebooks.diff_json import as_json
 from rulec.report.text.markdown import code, escaped, table
-from rulec.report.verdicts import trace_table_text
 
 CSV_COLUMNS = ("rule", "relation", "strength 1", "strength 2", "cite 1", "cite 2")
 
@@ -57,7 +56,12 @@ def _as_markdown(rulebook_diff: RulebookDiff) -> str:
         (rulebook_diff.only_second, other, one),
     ):
         if rules:
-            parts += [f"## Only in {code(has)}", _only(rules, lacks)]
+            only = (
+                f"- {one_sided.rule.strength} rule {code(one_sided.rule.name)}"
+                f"{escaped(diff_text.only_why(one_sided, lacks))}"
+                for one_sided in rules
+            )
+            parts += [f"## Only in {code(has)}", "\n".join(only)]
     if rulebook_diff.settings:
         rows = [
             [f"{setting.kind} {code(setting.name)}", code(setting.first), code(setting.second)]
@@ -83,19 +87,11 @@ def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
         )
     for forbids, allows, states in rulebook_diff.tables(pair):
         yield f"A trace that {code(forbids)} forbids and {code(allows)} allows:"
-        rows = trace_table_text.rows(states)
+        rows = diff_text.table_rows(states)
         yield table(
-            ["state", *trace_table_text.titles(states)],
+            ["state", *diff_text.state_titles(states)],
             [[*map(escaped, (title, *cells))] for title, cells in rows],
         )
-        rest = trace_table_text.left_out(states)
+        rest = diff_text.left_out(states)
         if rest:
             yield f"By default: {', '.join(map(code, rest))}."
-
-
-def _only(rules: Sequence[OneSided], lacks: str) -> str:
-    lines = []
-    for one_sided in rules:
-        rule, why = one_sided.rule, diff_text.only_why(one_sided, lacks)
-        lines.append(f"- {rule.strength} rule {code(rule.name)}{escaped(why)}")
-    return "\n".join(lines)

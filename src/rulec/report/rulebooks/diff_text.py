@@ -8,10 +8,15 @@ from textwrap import fill, wrap
 
 from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
-from rulec.report.text.terminal_text import styled, visible
-from rulec.report.verdicts.trace_table_text import as_lines
+from rulec.analysis.trace_display import TraceTable
+from rulec.report.text.terminal_text import styled, table_lines, visible
+from rulec.report.verdicts.violation_table import shown
 
 WIDTH = 100
+TABLE_WIDTH = 96
+
+MOST_ROWS = 8
+"""A table with more has no rows for what is by default in all its states."""
 
 COLOURS: dict[RuleRelation, str] = {
     "equal": "green",
@@ -33,7 +38,12 @@ def as_text(rulebook_diff: RulebookDiff) -> str:
     ]
     blocks += [_only(rulebook_diff.only_first, one, other)] if rulebook_diff.only_first else []
     blocks += [_only(rulebook_diff.only_second, other, one)] if rulebook_diff.only_second else []
-    blocks += [_settings(rulebook_diff)] if rulebook_diff.settings else []
+    if rulebook_diff.settings:
+        written = [
+            f"  {pair.kind} {pair.name}: {pair.first} in {one}, {pair.second} in {other}"
+            for pair in rulebook_diff.settings
+        ]
+        blocks.append("\n".join([styled("set otherwise", "bold"), *map(visible, written)]))
     same = [pair.name for pair in rulebook_diff.pairs if not is_worth_a_block(pair)]
     agreeing = f"the same in both: {', '.join(same)}"
     blocks += [fill(agreeing, WIDTH, subsequent_indent="  ")] if same else []
@@ -108,7 +118,7 @@ def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
     for forbids, allows, table in rulebook_diff.tables(pair):
         yield f"  {forbids} forbids, {allows} allows"
         if table.rows:
-            yield from as_lines(table, "    ")
+            yield from _table_lines(table, "    ")
         else:
             start, end = table.columns[0]
             yield f"    any trace of {end - start + 1} states"
@@ -121,15 +131,6 @@ def _only(rules: Sequence[OneSided], has: str, lacks: str) -> str:
     ]
     title = styled(f"only in {has}", "bold")
     return "\n".join([title, *lines])
-
-
-def _settings(rulebook_diff: RulebookDiff) -> str:
-    lines = [
-        f"  {setting.kind} {setting.name}: {setting.first} in {rulebook_diff.first.name}, "
-        f"{setting.second} in {rulebook_diff.second.name}"
-        for setting in rulebook_diff.settings
-    ]
-    return "\n".join([styled("set otherwise", "bold"), *map(visible, lines)])
 
 
 def only_why(one_sided: OneSided, lacks: str) -> str:
@@ -156,3 +157,36 @@ def summary(rulebook_diff: RulebookDiff) -> str:
     number = len(rulebook_diff.pairs)
     noun = "rule" if number == 1 else "rules"
     return f"{number:,} shared {noun}: {', '.join(parts) or 'nothing to compare'}"
+
+
+def state_titles(table: TraceTable) -> list[str]:
+    """The numbers of the states that each column stands for."""
+    return [str(first) if first == last else f"{first}-{last}" for first, last in table.columns]
+
+
+def table_rows(table: TraceTable) -> list[tuple[str, list[str]]]:
+    """Title and cells of each row."""
+    return [
+        (
+            visible(f"{row.title} in {row.unit}" if row.unit else row.title),
+            ["" if value is None else shown(value) for value in row.values],
+        )
+        for row in table.rows
+        if not (row.is_default and len(table.rows) > MOST_ROWS)
+    ]
+
+
+def left_out(table: TraceTable) -> list[str]:
+    """Names without a row, since all their values are defaults."""
+    usual = [visible(row.title) for row in table.rows if row.is_default]
+    return usual if len(table.rows) > MOST_ROWS else []
+
+
+def _table_lines(table: TraceTable, indent: str) -> list[str]:
+    whole = [("state", state_titles(table)), *table_rows(table)]
+    lines = table_lines(
+        [(f"{title} ", *cells) for title, cells in whole], indent=indent, ruled=(0,)
+    )
+    rest = left_out(table)
+    words = f"by default: {', '.join(rest)}" if rest else ""
+    return lines + [f"{indent}{line}" for line in wrap(words, TABLE_WIDTH - len(indent))]

@@ -148,7 +148,10 @@ def _provision(constant_history: rule_lineage.ConstantHistory, book: str, provis
     label = Text(visible(constant_history.head))
     here = provisions.add(label)
     for setting in constant_history.settings:
-        value, origin = _value_and_origin(setting, book)
+        dated = setting.since or setting.until
+        dates = f" {print_in_force(tree.InForce(setting.since, setting.until))}" if dated else ""
+        value = f"{setting.text}{dates}"
+        origin = "own" if setting.book == book else f"from {setting.book}"
         if setting.current:
             label.append(visible(f" = {value}  "))
             label.append(visible(origin), "dim")
@@ -156,13 +159,6 @@ def _provision(constant_history: rule_lineage.ConstantHistory, book: str, provis
             here.add(Text(visible(f"{value}  {origin}"), "dim"))
     if not any(setting.current for setting in constant_history.settings):
         label.append("  no value in force", "dim")
-
-
-def _value_and_origin(setting: rule_lineage.ConstantValue, book: str) -> tuple[str, str]:
-    dated = setting.since or setting.until
-    dates = f" {print_in_force(tree.InForce(setting.since, setting.until))}" if dated else ""
-    origin = "own" if setting.book == book else f"from {setting.book}"
-    return f"{setting.text}{dates}", origin
 
 
 def as_json(inherited: rule_lineage.BookLineage) -> str:

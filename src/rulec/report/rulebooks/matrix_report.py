@@ -178,7 +178,7 @@ def _as_json(matrix: ComparisonMatrix) -> str:
         MatrixDocument(
             books=[filled(BookData, book) for book in matrix.books],
             rules=[_shared_rule(rule, matrix) for rule in matrix.rules],
-            pairs=[_book_pair(matrix, first, second) for first, second in pairs(matrix.books)],
+            pairs=[_book_pair(matrix, *names) for names in pairs(matrix.books)],
         )
     )
 

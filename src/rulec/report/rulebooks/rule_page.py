@@ -133,14 +133,10 @@ def _formula(rule: Rule, width: int) -> list[str]:
 
 def head(rule: Rule, rulebook: str, width: int) -> str:
     """Title, origin and own sentence of the rule."""
-    lines = [styled(_title(rule), "bold")]
-    facts = [(name, value) for name, value in _facts(rule, rulebook) if value]
-    return "\n".join([*lines, *fact_lines(facts, width)])
-
-
-def _title(rule: Rule) -> str:
     variables = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
-    return f"{rule.strength} rule {rule.name}{f' ({variables})' if variables else ''}"
+    title = f"{rule.strength} rule {rule.name}{f' ({variables})' if variables else ''}"
+    facts = [(name, value) for name, value in _facts(rule, rulebook) if value]
+    return "\n".join([styled(title, "bold"), *fact_lines(facts, width)])
 
 
 def _facts(rule: Rule, rulebook: str) -> Iterator[tuple[str, str]]:

@@ -24,7 +24,13 @@ MOST_MISSING = 5
 
 def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
     """A line for each example, details of failures, and the numbers."""
-    lines = [_line(outcome, run.rulebook.name) for run in runs for outcome in run.outcomes]
+    verdicts = {True: styled("pass", "green"), False: styled("FAIL", "bold red")}
+    lines = [
+        f"{verdicts[outcome.passed]}  "
+        + visible(f"{run.rulebook.name} {outcome.rule.name}/{outcome.name}")
+        for run in runs
+        for outcome in run.outcomes
+    ]
     problems = [
         failure(outcome, run.rulebook.name)
         for run in runs
@@ -42,7 +48,11 @@ def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]
             ]
         together = percent(rule for rules in covered for rule in rules)
         lines.append(f"coverage {as_percent(together)}")
-    return "\n".join([*lines, _summary(runs)])
+    outcomes = [outcome for run in runs for outcome in run.outcomes]
+    passed = sum(outcome.passed for outcome in outcomes)
+    word = "example" if len(outcomes) == 1 else "examples"
+    counts = f"{passed:,} passed, {len(outcomes) - passed:,} failed"
+    return "\n".join([*lines, f"{len(outcomes):,} {word}: {counts}"])
 
 
 def failure(example_outcome: ExampleOutcome, rulebook: str) -> Diagnostic:
@@ -86,19 +96,6 @@ def shortcomings(
         if part < threshold:
             names.append(f"coverage is {as_percent(part)}, below the {threshold:g} % asked for")
     return names
-
-
-def _line(example_outcome: ExampleOutcome, rulebook: str) -> str:
-    verdict = styled("pass", "green") if example_outcome.passed else styled("FAIL", "bold red")
-    return f"{verdict}  {visible(f'{rulebook} {example_outcome.rule.name}/{example_outcome.name}')}"
-
-
-def _summary(runs: Sequence[ExampleRun]) -> str:
-    """The line that ends a run."""
-    outcomes = [outcome for run in runs for outcome in run.outcomes]
-    passed = sum(outcome.passed for outcome in outcomes)
-    word = "example" if len(outcomes) == 1 else "examples"
-    return f"{len(outcomes):,} {word}: {passed:,} passed, {len(outcomes) - passed:,} failed"
 
 
 def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Iterator[str]:

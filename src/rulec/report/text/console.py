@@ -101,12 +101,7 @@ _bar: _Bar | None = None
 def progress(what: str, total: float | None) -> Iterator[Callable[[float], None]]:
     """A progress bar on a terminal, nothing at all elsewhere.
 
-    Args:
-        what: what is going on.
-        total: how much there is to do; None if that is not known.
-
-    Yields:
-        A function that is told how much is done so far.
+    ``total`` is None if it is not known. Yields a function that is told how much is done so far.
     """
     global _bar
     if not sys.stderr.isatty():

@@ -70,12 +70,9 @@ class GuardWording:
         """Words for some digits of a read, and need of parentheses."""
         if isinstance(read, NumberRead):
             return self._number(read, allowed)
+        subject = Atom(read.name, read.variables)
         if not read.values:
-            atom = str(Atom(read.name, read.variables))
-            return (atom if 1 in allowed else f"not {atom}"), False
-        return self._enumeration(read, allowed)
-
-    def _enumeration(self, read: Read, allowed: frozenset[int]) -> tuple[str, bool]:
+            return f"{'' if 1 in allowed else 'not '}{subject}", False
         declaration = self._vocabulary.declarations[read.name]
         assert isinstance(declaration, Enumeration), "only an enumeration has values"
         inside = [value for value in declaration.values if read.digit(value) in allowed]
@@ -84,7 +81,6 @@ class GuardWording:
             return str(Atom(read.name, read.variables, inside[0])), False
         if len(outside) == 1:
             return f"not {Atom(read.name, read.variables, outside[0])}", False
-        subject = Atom(read.name, read.variables)
         if len(inside) <= len(outside):
             return f"{subject} is {any_of(inside)}", True
         if len(outside) == 2:

@@ -23,12 +23,9 @@ _LEXERS: dict[str, type[Lexer]] = {"rulec": RulecLexer, "diff": DiffLexer}
 
 
 def as_html(markdown: str, title: str, contents: str) -> str:
-    """The page.
+    """The page; HTML in the Markdown is shown as text.
 
-    Args:
-        markdown: what is on it; HTML in it is shown as text.
-        title: what the browser calls it.
-        contents: the heading below which the list of contents stands.
+    ``contents`` is the heading below which the list of contents stands.
     """
     parser = MarkdownIt("commonmark", {"html": False, "highlight": _highlighted}).enable("table")
     tokens = parser.parse(markdown)
@@ -61,12 +58,9 @@ def _highlighted(text: str, language: str, _: str) -> str:
 
 def _name_headings(tokens: Sequence[Token]) -> None:
     """Every heading can be linked to."""
-    result = [
-        (token, "".join(child.content for child in inline.children or ()))
-        for token, inline in pairwise(tokens)
-        if token.type == "heading_open"
-    ]
-    for (token, _), name in zip(result, anchors([text for _, text in result]), strict=True):
+    headings = [pair for pair in pairwise(tokens) if pair[0].type == "heading_open"]
+    texts = ["".join(child.content for child in inline.children or ()) for _, inline in headings]
+    for (token, _), name in zip(headings, anchors(texts), strict=True):
         token.attrSet("id", name)
 
 
@@ -78,12 +72,11 @@ def _scope_cells(tokens: Sequence[Token]) -> None:
             first = True
         elif token.type == "th_open":
             token.attrSet("scope", "col")
-        elif token.type == "td_open" and first:
+        elif token.type in ("td_open", "td_close") and first:
             token.tag = "th"
-            token.attrSet("scope", "row")
-        elif token.type == "td_close" and first:
-            token.tag = "th"
-            first = False
+            if token.type == "td_open":
+                token.attrSet("scope", "row")
+            first = token.type == "td_open"
 
 
 def _wrapped(tokens: Sequence[Token], contents: str) -> Iterator[Token]:

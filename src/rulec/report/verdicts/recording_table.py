@@ -1,15 +1,21 @@
-"""Verdicts on recorded vehicles, as a table of rules and vehicles."""
+"""Verdicts on recorded vehicles: a table of rules and vehicles, and JSON, a line for each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from textwrap import shorten
+from typing import Any
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from msgspec import UNSET, UnsetType
+from msgspec.structs import replace
+
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
+from rulec.monitoring.explain.explanation import Explanation
+from rulec.monitoring.verdict import NotJudged
+from rulec.report.json_document import JsonDocument, as_line
 from rulec.report.text.terminal_text import first_of, table_lines, visible
-from rulec.report.verdicts import verdict_report
+from rulec.report.verdicts import verdict_json, verdict_report
 
 MOST_DEFAULTS = 4
 """So many words that are taken by default are named for a rule; JSON has them all."""
@@ -21,8 +27,9 @@ LONGEST_RULE = 48
 def as_text(judged: RecordingVerdicts, tally: ViolationTally) -> str:
     """The recording in a few lines, and the table of violations."""
     recording = judged.recording
+    drives = f"{tally.judged:,} {'drive' if tally.judged == 1 else 'drives'}"
     lines = [
-        f"recording   {recording.name}: {_drives(tally.judged)} in steps of {recording.step_s:g} s",
+        f"recording   {recording.name}: {drives} in steps of {recording.step_s:g} s",
         *_not_judged(tally.not_judged),
     ]
     if judged.mirrored:
@@ -37,10 +44,6 @@ def as_text(judged: RecordingVerdicts, tally: ViolationTally) -> str:
     lines += [f"note        {remark}" for remark in recording.remarks]
     lines += _table(judged, tally)
     return "\n".join(visible(line) for line in lines)
-
-
-def _drives(count: int) -> str:
-    return f"{count:,} {'drive' if count == 1 else 'drives'}"
 
 
 def _not_judged(no_drives: Sequence[NoDrive]) -> Iterator[str]:
@@ -62,7 +65,8 @@ def _table(judged: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
         return
     defaults = judged.by_default(tally.words or frozenset())
     rules = [rule for rule in judged.rules.rules if rule.name in tally.first_s]
-    titles = [shorten(_title(rule), LONGEST_RULE, placeholder=" …]") for rule in rules]
+    names = [f"{rule.name} [{rule.cite}]" if rule.cite else rule.name for rule in rules]
+    titles = [shorten(name, LONGEST_RULE, placeholder=" …]") for name in names]
     rows = [("violated", "", " drives", "   first", "by")]
     for rule, title in zip(rules, titles, strict=True):
         times = tally.first_s[rule.name]
@@ -77,11 +81,72 @@ def _table(judged: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
             yield f"  by default: {first_of(defaults[rule.name], MOST_DEFAULTS)}"
 
 
-def _title(rule: CompiledRule) -> str:
-    return f"{rule.name} [{rule.cite}]" if rule.cite else rule.name
-
-
 def summary(tally: ViolationTally) -> str:
     """The line that ends a run."""
     line = verdict_report.summary(len(tally.satisfied), len(tally.violated), len(tally.not_judged))
     return line.replace("traces", "drives").replace("trace", "drive")
+
+
+class RecordedVerdict(verdict_json.TraceVerdict, frozen=True, kw_only=True):
+    """The verdict on the drive of vehicle ``trace``, in the recording's times."""
+
+    recording: str
+    mirrored: bool
+    remarks: Sequence[str] | UnsetType = UNSET
+    start_s: float
+    step_s: float
+    by_default: Sequence[str]
+
+
+class RecordedNotJudged(verdict_json.TraceNotJudged, frozen=True, kw_only=True):
+    """A drive that could not be judged."""
+
+    recording: str
+    mirrored: bool
+    remarks: Sequence[str] | UnsetType = UNSET
+    start_s: float
+    step_s: float
+    by_default: Sequence[str]
+
+
+class NotDriven(JsonDocument, frozen=True, kw_only=True):
+    """A vehicle without a drive to judge, and ``why_not``."""
+
+    trace: str
+    recording: str
+    mirrored: bool
+    remarks: Sequence[str] | UnsetType = UNSET
+    why_not: str
+
+
+def as_json(
+    result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
+) -> str:
+    """Write a vehicle's verdict with explanations of its first violations."""
+    recorded: dict[str, Any] = {
+        "recording": verdicts.recording.name,
+        "mirrored": verdicts.mirrored,
+        "remarks": verdicts.recording.remarks or UNSET,
+    }
+    if isinstance(result, NoDrive):
+        return as_line(NotDriven(trace=result.ego, why_not=result.why, **recorded))
+    drive, answer = result.drive, result.answer
+    recorded |= {
+        "start_s": drive.start_s,
+        "step_s": drive.trace.step_s,
+        "by_default": defaulted_names(verdicts, drive.words),
+    }
+    if isinstance(answer, NotJudged):
+        error = verdict_json.error_data(answer.error)
+        return as_line(RecordedNotJudged(trace=answer.trace, error=error, **recorded))
+    by_rule = verdicts.by_default(drive.words)
+    data = verdict_json.violations_data(answer, verdicts.rules, explained)
+    violations = [
+        replace(written, time_s=drive.time_s(violation.step), by_default=by_rule[violation.rule])
+        for violation, written in zip(answer.violations, data, strict=True)
+    ]
+    return as_line(
+        RecordedVerdict(
+            trace=answer.trace, satisfied=answer.satisfied, violations=violations, **recorded
+        )
+    )

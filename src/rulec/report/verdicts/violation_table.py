@@ -107,19 +107,14 @@ class _Table:
     values: list[tuple[str, ...]]
     columns: list[range]
 
-    @property
-    def title_width(self) -> int:
-        return max(len(title) for title in ("state", *self.titles))
-
 
 def _table(explanation: Explanation, decisive: int, every_part: bool) -> _Table:
     """Titles are cut before states are left out."""
-    table = _rows(explanation, decisive, every_part, WIDEST)
-    if every_part:
-        return table
     for widest in (WIDEST, NARROW):
         table = _rows(explanation, decisive, every_part, widest)
-        room = WIDTH - len(INDENT) - table.title_width - 1
+        if every_part:
+            return table
+        room = WIDTH - len(INDENT) - max(map(len, ("state", *table.titles))) - 1
         columns = fitting(table.values, explanation.states, decisive, room)
         if columns == table.columns:
             break
@@ -131,7 +126,7 @@ def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int
     whole = every_part or len(explanation.parts) <= MOST_PARTS
     facts = [fact for fact in explanation.facts if whole or fact.decides]
     parts = (titled if whole else folded)(explanation.parts, widest)
-    cells = [_marked(_cells(fact), decisive, fact.changed) for fact in facts]
+    cells = [_cells(fact, decisive) for fact in facts]
     cells += [[shown(value) for value in one.values] for _, one in parts]
     return _Table(
         [*(_title(fact, widest) for fact in facts), *(title for title, _ in parts)],
@@ -159,23 +154,13 @@ def _title(fact: Observation, widest: int) -> str:
     return f"{text} in {visible(fact.unit)}" if fact.unit else text
 
 
-def _cells(fact: Observation) -> list[str]:
+def _cells(fact: Observation, decisive: int) -> list[str]:
+    """Values, with the names of whom a count counts, as far as there is room."""
     cells = [shown(value) for value in fact.values]
-    if fact.objects is None:
-        return cells
-    return [_with_names(cell, names) for cell, names in zip(cells, fact.objects, strict=True)]
-
-
-def _with_names(number: str, names: tuple[str, ...]) -> str:
-    """A count and whom it counts, as far as there is room."""
-    if not names:
-        return number
-    text = visible(", ".join(names))
-    return f"{number}: {cut(text, MOST_OF_NAMES)}"
-
-
-def _marked(cells: list[str], decisive: int, changed: bool) -> list[str]:
-    return [f"{cell}*" if n == decisive and changed else cell for n, cell in enumerate(cells)]
+    for n, names in enumerate(fact.objects or ()):
+        cells[n] += f": {cut(visible(', '.join(names)), MOST_OF_NAMES)}" if names else ""
+    cells[decisive] += "*" * fact.changed
+    return cells
 
 
 def shown(value: Value) -> str:

@@ -81,13 +81,8 @@ _ON_LIGHT_AND_DARK = {
     "value5": ("#edcfdf", "#5c2f49"),
 }
 
-LIGHT: Mapping[str, str] = MappingProxyType(
-    {name: light for name, (light, _) in _ON_LIGHT_AND_DARK.items()}
-)
-
-DARK: Mapping[str, str] = MappingProxyType(
-    {name: dark for name, (_, dark) in _ON_LIGHT_AND_DARK.items()}
-)
+LIGHT = MappingProxyType({name: light for name, (light, _) in _ON_LIGHT_AND_DARK.items()})
+DARK = MappingProxyType({name: dark for name, (_, dark) in _ON_LIGHT_AND_DARK.items()})
 
 
 def as_css(used: Collection[str]) -> str:
