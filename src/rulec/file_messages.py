@@ -63,7 +63,6 @@ WRONG_SETTINGS = Code(
 
 
 def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
-    """A file in another encoding, or none at all."""
     way_out = "save the file as UTF-8"
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         place = SourceLocation(name, 1, 1, 1, 1)
@@ -86,7 +85,6 @@ def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
 
 
 def reason_in_words(problem: OSError | ValueError) -> str:
-    """The system's reason for refusing a file, in words."""
     if isinstance(problem, IsADirectoryError):
         return "it is a folder"
     known = problem.strerror if isinstance(problem, OSError) else None
@@ -94,7 +92,6 @@ def reason_in_words(problem: OSError | ValueError) -> str:
 
 
 def unwritable(path: Path, problem: OSError) -> Diagnostic:
-    """A file that the system does not let be written."""
     return UNWRITABLE_FILE.at(
         SourceLocation(str(path)), f"the file cannot be written: {reason_in_words(problem)}"
     )

@@ -36,7 +36,6 @@ RULE_NOT_EXERCISED = Code(
 
 
 def unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagnostic:
-    """A rule whose examples leave one of the verdicts out, or both."""
     kept, broken = True in missing, False in missing
     if not any_examples:
         message = f"rule `{rule.name}` has no example"

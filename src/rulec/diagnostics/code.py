@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict
 
 from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError, Severity
 from rulec.diagnostics.source_text import SourceLocation, Span
 from rulec.value_display import short_repr
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 ExampleKind: TypeAlias = Literal[
     "rules",
@@ -31,6 +34,16 @@ in an empty folder. ``python``: a program. ``circumstance``: no input makes it; 
 """
 
 
+class Details(TypedDict, total=False):
+    """What a diagnostic may say besides its message and its place."""
+
+    expected: str
+    help: str
+    labels: tuple[Label, ...]
+    notes: tuple[str, ...]
+    severity: Severity
+
+
 @dataclass(frozen=True, slots=True)
 class Code:
     """A kind of mistake, and what ``rulec explain`` says of it.
@@ -51,40 +64,14 @@ class Code:
     kind: ExampleKind = "rules"
 
     def at(
-        self,
-        place: SourceLocation | Span | None,
-        message: str,
-        *,
-        expected: str = "",
-        help: str = "",
-        labels: tuple[Label, ...] = (),
-        notes: tuple[str, ...] = (),
-        severity: Severity = "error",
+        self, place: SourceLocation | Span | None, message: str, **details: Unpack[Details]
     ) -> Diagnostic:
         """Make a diagnostic of this code, with a place if known."""
         where = place.place if isinstance(place, Span) else place
-        return Diagnostic(
-            code=self.code,
-            message=message,
-            place=where,
-            expected=expected,
-            help=help,
-            labels=labels,
-            notes=notes,
-            severity=severity,
-        )
+        return Diagnostic(self.code, message, where, **details)
 
     def error(
-        self,
-        place: SourceLocation | Span | None,
-        message: str,
-        *,
-        expected: str = "",
-        help: str = "",
-        labels: tuple[Label, ...] = (),
-        notes: tuple[str, ...] = (),
+        self, place: SourceLocation | Span | None, message: str, **details: Unpack[Details]
     ) -> RulecError:
         """Make an exception with one diagnostic of this code."""
-        return RulecError(
-            self.at(place, message, expected=expected, help=help, labels=labels, notes=notes)
-        )
+        return RulecError(self.at(place, message, **details))

@@ -20,7 +20,6 @@ SENSELESS_BOUND = Code(
 
 
 def two_units_of_time(bound: tree.BoundNode) -> Diagnostic:
-    """A bound from seconds to steps."""
     return SENSELESS_BOUND.at(
         bound.span,
         "a bound is in units of time or in steps, not in both",
@@ -63,7 +62,6 @@ def half_a_step(side: tree.NumberLiteral) -> Diagnostic:
 
 
 def no_time(side: tree.Amount, number: NumberByCases) -> Diagnostic:
-    """A bound that is no fixed time from 0 on."""
     if not number.is_constant:
         why = "changes from state to state"
     elif number.dimension is None or number.cases[0][1].constant < 0:

@@ -44,7 +44,6 @@ NO_SINGLE_VALUE = Code(
 
 
 def takes_no_object(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
-    """An option or a parameter with objects in parentheses."""
     return WRONG_ARITY.at(
         use.span,
         f"`{use.name.text}` is {'an' if kind == 'option' else 'a'} {kind} and about no object",
@@ -71,7 +70,6 @@ def object_as_relation(use: tree.AtomUse, scope: Scope) -> Diagnostic:
 
 
 def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagnostic:
-    """A definition used with too few or too many objects."""
     names = ", ".join(parameter.name.text for parameter in item.parameters)
     needed, given = len(item.parameters), len(use.arguments)
     things = {0: "nothing", 1: "one thing"}.get(needed, f"{needed} things")
@@ -86,7 +84,6 @@ def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagn
 
 
 def circle(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
-    """A definition or parameter that comes back to itself."""
     name = use.name.text
     names = [*(call.name for call in scope.calls), name]
     chain = " uses ".join(f"`{used}`" for used in names[names.index(name) :])
@@ -99,7 +96,6 @@ def circle(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
 
 
 def no_value_in_force(use: tree.AtomUse, values: Sequence[Value], day: str) -> Diagnostic:
-    """A parameter that has no value on the day."""
     name = use.name.text
     return NO_SINGLE_VALUE.at(
         use.span,
@@ -112,7 +108,6 @@ def no_value_in_force(use: tree.AtomUse, values: Sequence[Value], day: str) -> D
 
 
 def two_values_in_force(values: Sequence[Value], name: str, day: str) -> Diagnostic:
-    """A parameter with two values on one day."""
     return NO_SINGLE_VALUE.at(
         values[1].item.span,
         f"the parameter `{name}` has two values that are in force on {day}",
@@ -125,7 +120,6 @@ def two_values_in_force(values: Sequence[Value], name: str, day: str) -> Diagnos
 def parameter_of_another_kind(
     item: tree.ParamItem | tree.SetItem, number: NumberByCases, wanted: Dimension, first: tree.Name
 ) -> Diagnostic:
-    """A parameter's value of another dimension than it has."""
     assert not isinstance(item.value, bool), "only an option is on or off"
     return MIXED_DIMENSIONS.at(
         item.value.span,

@@ -51,25 +51,21 @@ MISPLACED_TEMPORAL_OPERATOR = Code(
 
 
 def kind_of(dimension: Dimension | None) -> str:
-    """A dimension in words."""
     return "a number" if dimension is None else f"a {dimension.name}"
 
 
 def short(node: tree.Formula) -> str:
-    """An expression as it is written, cut where it is long."""
     text = print_formula(node, "written")
     return text if len(text) <= 40 else f"{text[:39]}…"
 
 
 def what_of(operand: object) -> str:
-    """The kind of a meaning in words."""
     if isinstance(operand, NumberByCases):
         return kind_of(operand.dimension)
     return "true or false" if isinstance(operand, Formula) else "an object"
 
 
 def origins(scope: Scope, *nodes: tree.Formula) -> tuple[Label, ...]:
-    """Labels on the declarations of the names in expressions, each once."""
     return tuple(dict.fromkeys(label for node in nodes for label in _origins(node, scope)))
 
 
@@ -89,7 +85,6 @@ def _origins(node: tree.Formula, scope: Scope) -> Iterator[Label]:
 
 
 def number_for_truth(node: tree.Formula, number: NumberByCases, scope: Scope) -> Diagnostic:
-    """A number where a formula needs something true or false."""
     unit = scope.symbols.unit_text(node.name.text) if isinstance(node, tree.AtomUse) else ""
     inside = f" (in {unit})" if unit else ""
     test = f"< 5 {unit}" if unit else ">= 1" if isinstance(node, tree.Aggregate) else "< …"
@@ -103,7 +98,6 @@ def number_for_truth(node: tree.Formula, number: NumberByCases, scope: Scope) ->
 
 
 def object_for_truth(node: tree.Formula, scope: Scope) -> Diagnostic:
-    """A variable where a formula needs something true or false."""
     example = next(iter(scope.symbols.about_one()), "p")
     return NOT_BOOLEAN.at(
         node.span,
@@ -116,7 +110,6 @@ def object_for_truth(node: tree.Formula, scope: Scope) -> Diagnostic:
 def no_number(
     node: tree.Formula, operand: object, scope: Scope, around: tree.Compare | None
 ) -> Diagnostic:
-    """Something true or false, or an object, where a number is needed or is compared."""
     if around is None:
         expected = "expected a number"
         way_out = "a number is a quantity, a parameter, a count, or such as `1.5 m`"
@@ -156,7 +149,6 @@ def values_compared(
 
 
 def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
-    """Both sides of a comparison are true or false."""
     if isinstance(node.right, tree.TruthLiteral) and isinstance(node.left, tree.AtomUse):
         holds = node.right.value == (node.relation == "=")
         way_out = f"write `{'' if holds else 'not '}{short(node.left)}`"
@@ -179,7 +171,6 @@ def two_dimensions(
     right: NumberByCases,
     scope: Scope,
 ) -> Diagnostic:
-    """Numbers of two dimensions side by side."""
     if isinstance(node, tree.Conditional):
         first, second, sign = node.value, node.otherwise, "or"
     else:
@@ -200,7 +191,6 @@ def two_dimensions(
 
 
 def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
-    """A number without its unit."""
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     bare = isinstance(node, tree.NumberLiteral) and not node.unit
     return f"write the unit, such as `{short(node)} {unit}`" if bare and unit else ""
@@ -209,7 +199,6 @@ def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
 def _kind_help(
     first: tree.Formula, left: NumberByCases, second: tree.Formula, right: NumberByCases
 ) -> str:
-    """The factor that makes the two comparable."""
     if left.dimension is not None and right.dimension is not None:
         ratio = left.dimension / right.dimension
         if DIMENSIONS["time"] in (ratio, ratio**-1):
@@ -233,7 +222,6 @@ def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: S
 
 
 def too_long(node: tree.NumberLiteral) -> Diagnostic:
-    """A number with more digits than anyone could mean."""
     return NUMBER_TOO_LARGE.at(
         node.span,
         "this number has too many digits",
@@ -242,7 +230,6 @@ def too_long(node: tree.NumberLiteral) -> Diagnostic:
 
 
 def not_linear(node: tree.Arithmetic) -> Diagnostic:
-    """A product of two numbers that vary, or a quotient by one."""
     if node.operator == "*":
         why = "two numbers that change from state to state cannot be multiplied"
         where = "on one side"
@@ -258,7 +245,6 @@ def not_linear(node: tree.Arithmetic) -> Diagnostic:
 
 
 def divided_by_zero(node: tree.Arithmetic) -> Diagnostic:
-    """A division by 0."""
     return NOT_LINEAR.at(
         node.right.span,
         f"`{short(node)}` divides by 0",
@@ -268,7 +254,6 @@ def divided_by_zero(node: tree.Arithmetic) -> Diagnostic:
 
 
 def too_many_cases(node: tree.Formula) -> Diagnostic:
-    """A comparison with too many conditional numbers."""
     return FORMULA_TOO_LARGE.at(
         node.span,
         f"`{short(node)}` becomes too large, with parameters and conditions put in",
@@ -287,7 +272,6 @@ def objects_have_no_order(node: tree.Compare) -> Diagnostic:
 
 
 def temporal_in_count(node: tree.Prefix | tree.Infix) -> Diagnostic:
-    """A temporal operator in a count's body or a parameter."""
     return MISPLACED_TEMPORAL_OPERATOR.at(
         node.span,
         f"`{node.operator}` cannot stand here: a count, a parameter and a fact speak of one state",

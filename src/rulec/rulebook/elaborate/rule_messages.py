@@ -82,7 +82,6 @@ NOT_A_MULTIPLE = Code(
 
 
 def over_limit(limit: Limit, what: str, name: tree.Name) -> Diagnostic:
-    """A formula, definition or parameter that is too deep or too large when expanded."""
     subject = f"the {what}{' of' if what == 'formula' else ''} `{name.text}`"
     if limit == "deep":
         return FORMULA_TOO_DEEP.at(
@@ -113,7 +112,6 @@ def no_level(level: tree.Name, known: Sequence[str]) -> Diagnostic:
 
 
 def misfit(changed: tree.Name, first: Diagnostic) -> Diagnostic:
-    """Mistake: inherited examples do not fit the changed rule."""
     return replace(
         first,
         message=f"the examples that `{changed.text}` inherits do not fit it any more: "
@@ -126,7 +124,6 @@ def misfit(changed: tree.Name, first: Diagnostic) -> Diagnostic:
 
 
 def weightless(weight: tree.NumberLiteral) -> Diagnostic:
-    """A weight of 0."""
     return NOT_ABOVE_ZERO.at(
         weight.span,
         f"a weight of {weight.text} says that the rule does not count",
@@ -136,7 +133,6 @@ def weightless(weight: tree.NumberLiteral) -> Diagnostic:
 
 
 def no_step(line: tree.StepLine) -> Diagnostic:
-    """A step that is no time above 0."""
     return NOT_ABOVE_ZERO.at(
         line.amount.span,
         "the step is no time above 0",
@@ -148,7 +144,6 @@ def no_step(line: tree.StepLine) -> Diagnostic:
 def unused_variable(
     variable: tree.Parameter, owner: tree.RuleItem | tree.DefineItem | tree.Aggregate
 ) -> Diagnostic:
-    """A variable of a rule, definition or count that its formula says nothing about."""
     match owner:
         case tree.RuleItem(name=name):
             what, where = f"formula of `{name.text}`", "in `require`"
@@ -169,7 +164,6 @@ def unused_variable(
 
 
 def unused_provision(kind: str, name: tree.Name) -> Diagnostic:
-    """An option, a parameter or a definition that nothing uses."""
     return UNUSED_CONSTANT.at(
         name.span,
         f"no rule uses the {kind} `{name.text}`",
@@ -180,7 +174,6 @@ def unused_provision(kind: str, name: tree.Name) -> Diagnostic:
 
 
 def unfitting_exception(problem: str, item: tree.RuleItem) -> Diagnostic:
-    """An exception whose scope does not fit the rule, or one too many."""
     if problem == "no stretch":
         unless = next(unless for unless in item.unless if unless.scope != "initially")
         written = f"`{unless.scope}`" if unless.scope else "this exception"

@@ -48,7 +48,6 @@ NAME_NOT_FOUND = Code(
 
 
 def extends_circle(line: tree.ExtendsLine, way: Sequence[tree.File]) -> Diagnostic:
-    """A rulebook that extends itself, by way of others."""
     names = [f"`{file.name.text}`" if file.name else "a rulebook" for file in way]
     chain = " extends ".join([*names, f"`{line.name.text}`"])
     before = [file.extends for file in way if file.extends is not None and file.extends != line]
@@ -65,7 +64,6 @@ def extends_circle(line: tree.ExtendsLine, way: Sequence[tree.File]) -> Diagnost
 
 
 def not_the_vocabulary(use: tree.UseLine, file: tree.File, path: Path) -> Diagnostic:
-    """A file that should hold a vocabulary and holds something else."""
     assert file.name is not None, "only files with a name have another one"
     if file.kind == "rulebook":
         message = f"`{path.name}` is a rulebook, not a vocabulary"
@@ -80,7 +78,6 @@ def not_the_vocabulary(use: tree.UseLine, file: tree.File, path: Path) -> Diagno
 
 
 def vocabulary_for_rulebook(name: tree.Name, *, expected: str) -> Diagnostic:
-    """A vocabulary where a rulebook is needed."""
     return WRONG_KIND_OF_FILE.at(
         name.span,
         f"`{name.text}` is a vocabulary, not a rulebook",

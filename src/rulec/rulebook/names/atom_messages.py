@@ -231,7 +231,6 @@ def wrong_number(
     symbols: SymbolTable,
     variables: Sequence[str],
 ) -> Diagnostic:
-    """A known atom with too few or too many objects."""
     needed, given = len(item.parameters), len(use.arguments)
     objects = {0: "no object", 1: "one object"}.get(needed, f"{needed} objects")
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
@@ -283,7 +282,6 @@ def unknown_variable(
 
 
 def wrong_type(argument: tree.Name, kind: str, wanted: str, labels: Sequence[Label]) -> Diagnostic:
-    """An object of a type that the declaration is not about."""
     return WRONG_ARGUMENT_TYPE.at(
         argument.span,
         f"`{argument.text}` is of type `{kind}`, which is no `{wanted}`",
@@ -294,7 +292,6 @@ def wrong_type(argument: tree.Name, kind: str, wanted: str, labels: Sequence[Lab
 
 
 def two_types(name: tree.Name, wanted: str, known_type: str | None, known: Span) -> Diagnostic:
-    """Mistake: a fact's variable would need two types."""
     return WRONG_ARGUMENT_TYPE.at(
         name.span,
         f"`{name.text}` cannot be both a `{known_type}` and a `{wanted}`",

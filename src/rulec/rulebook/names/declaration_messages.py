@@ -95,7 +95,6 @@ _OTHER_DIMENSIONS: Final = {
 
 
 def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
-    """No type of that name."""
     if known:
         way_out = f"known are {named(known)}; declare another by `type {name.text}`"
     else:
@@ -109,7 +108,6 @@ def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
 
 
 def which_type(parameter: tree.Parameter, roots: Sequence[str]) -> Diagnostic:
-    """Mistake: the missing type of a parameter is not clear."""
     why = any_of([f"`{root}`" for root in roots]) if roots else "no type is declared"
     example = roots[0] if roots else "road_user"
     return PARAMETER_WITHOUT_TYPE.at(
@@ -121,7 +119,6 @@ def which_type(parameter: tree.Parameter, roots: Sequence[str]) -> Diagnostic:
 
 
 def no_such_value(name: tree.Name, chosen: tree.Name, values: tuple[str, ...]) -> Diagnostic:
-    """A default that is none of its enumeration's values."""
     return UNFITTING_DEFAULT.at(
         chosen.span,
         f"`{chosen.text}` is not a value of `{name.text}`",
@@ -131,7 +128,6 @@ def no_such_value(name: tree.Name, chosen: tree.Name, values: tuple[str, ...]) -
 
 
 def twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
-    """Mistake: a type, name, parameter or variable is declared again."""
     return DECLARED_TWICE.at(
         again.span,
         f"the {what} `{again.text}` is declared twice",
@@ -142,7 +138,6 @@ def twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
 
 
 def both_declare(names: Sequence[str], first: tree.UseLine, again: tree.UseLine) -> Diagnostic:
-    """Two vocabularies that cannot be used together, since they share names."""
     return DECLARED_TWICE.at(
         again.span,
         f"the vocabularies `{first.name.text}` and `{again.name.text}` both declare "
@@ -154,7 +149,6 @@ def both_declare(names: Sequence[str], first: tree.UseLine, again: tree.UseLine)
 
 
 def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
-    """Mistake: a unit is unknown or cannot be converted exactly."""
     refusal = unit_refusal(unit)
     if refusal is not None:
         of_quantity = f" of `{quantity}`" if quantity else ""
@@ -173,7 +167,6 @@ def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
 
 
 def unknown_dimension(name: tree.Name, known: Sequence[str]) -> Diagnostic:
-    """A kind of number that nobody knows."""
     synonym = _OTHER_DIMENSIONS.get(name.text.casefold())
     way_out = f"write `{synonym}`" if synonym else did_you_mean(name.text, known)
     return UNKNOWN_DIMENSION.at(

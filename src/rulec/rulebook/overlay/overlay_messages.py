@@ -70,7 +70,6 @@ _CHANGES = {"option": "set", "parameter": "set", "definition": "redefine"}
 
 
 def inherited_name(name: tree.Name, kind: str, known: tree.Name) -> Diagnostic:
-    """An option, parameter or definition that the rulebook inherits already."""
     return INHERITED_ALREADY.at(
         name.span,
         f"`{name.text}` is inherited already",
@@ -81,7 +80,6 @@ def inherited_name(name: tree.Name, kind: str, known: tree.Name) -> Diagnostic:
 
 
 def inherited_rule(item: tree.RuleItem, known: tree.RuleItem) -> Diagnostic:
-    """A rule by the name of an inherited one."""
     return INHERITED_ALREADY.at(
         item.name.span,
         f"a rule `{item.name.text}` is inherited already",
@@ -92,7 +90,6 @@ def inherited_rule(item: tree.RuleItem, known: tree.RuleItem) -> Diagnostic:
 
 
 def rule_twice(again: tree.RuleItem, first: tree.RuleItem) -> Diagnostic:
-    """Two rules of one name in one rulebook."""
     return RULE_TWICE.at(
         again.name.span,
         f"there are two rules `{again.name.text}`",
@@ -132,7 +129,6 @@ def own(name: tree.Name, kind: str, verb: str, known: tree.Name) -> Diagnostic:
 
 
 def changed_twice(name: tree.Name, kind: str, before: tree.Name) -> Diagnostic:
-    """A second line that changes the same thing in one rulebook."""
     return DECLARED_TWICE.at(
         name.span,
         f"the {kind} `{name.text}` is changed twice in this rulebook",
@@ -143,7 +139,6 @@ def changed_twice(name: tree.Name, kind: str, before: tree.Name) -> Diagnostic:
 
 
 def other_parameters(item: tree.DefineItem, before: tree.DefineItem) -> Diagnostic:
-    """A definition that is given another meaning for more or fewer things."""
     name = item.name.text
     needed, given = len(before.parameters), len(item.parameters)
     things = {0: "nothing", 1: "one thing"}
@@ -158,7 +153,6 @@ def other_parameters(item: tree.DefineItem, before: tree.DefineItem) -> Diagnost
 
 
 def lost_variables(item: tree.RuleItem, lost: Sequence[tree.Parameter]) -> Diagnostic:
-    """An override without variables that the clauses which it inherits speak of."""
     names = " and ".join(f"`{variable.name.text}`" for variable in lost)
     first = item.variables[0].span
     return UNKNOWN_VARIABLE.at(
@@ -184,7 +178,6 @@ def never_in_force(dates: tree.InForce) -> Diagnostic:
 
 
 def value_of_another_kind(item: tree.SetItem) -> Diagnostic:
-    """An option set to something else, or a parameter set to on or off."""
     name = item.name.text
     if isinstance(item.value, bool):
         what, expected = "a parameter, which is a number", "a number"
@@ -211,7 +204,6 @@ def soft_already(item: tree.SoftenItem, known: tree.RuleItem) -> Diagnostic:
 def priority_circle(
     higher: tree.Name, lower: tree.Name, sign: str, levels: dict[str, tree.Name]
 ) -> Diagnostic:
-    """A line that contradicts the order of the lines before."""
     placed = dict.fromkeys(name.text for name in (higher, lower) if name.text in levels)
     same = higher.text == lower.text
     against = "itself" if same else "the order so far"

@@ -68,7 +68,6 @@ def denied(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> Diagnos
 
 
 def contradiction(fact: tree.StateLiteral, what: Atom | QuantityTerm, first: Span) -> Diagnostic:
-    """Two values in one state."""
     if isinstance(what, Atom) and what.value is None:
         message = f"`{what}` cannot be both true and false in one state"
     else:
@@ -85,7 +84,6 @@ def contradiction(fact: tree.StateLiteral, what: Atom | QuantityTerm, first: Spa
 def left_open(
     state: tree.ExampleState, what: Atom | QuantityTerm, symbols: SymbolTable
 ) -> Diagnostic:
-    """Mistake: a state lacks a needed value that has no default."""
     item = symbols.items[what.name]
     if isinstance(what, QuantityTerm):
         ways = [f"`{term_text(what)} = … {symbols.unit_text(what.name)}`"]
@@ -103,7 +101,6 @@ def left_open(
 
 
 def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
-    """An option, a parameter or a definition in a state."""
     return NOT_BOOLEAN.at(
         use.span,
         f"`{use.name.text}` is {'an' if kind == 'option' else 'a'} {kind} of the rulebook, no fact "
@@ -115,7 +112,6 @@ def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
 
 
 def without_number(fact: tree.StateLiteral, what: QuantityTerm, symbols: SymbolTable) -> Diagnostic:
-    """A quantity without a value."""
     unit = symbols.unit_text(what.name)
     return NUMBER_OR_FORMULA.at(
         fact.span,
@@ -127,7 +123,6 @@ def without_number(fact: tree.StateLiteral, what: QuantityTerm, symbols: SymbolT
 
 
 def not_a_number(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> Diagnostic:
-    """A number for what is true or false."""
     return NUMBER_OR_FORMULA.at(
         fact.span,
         f"`{atom}` is true or false and has no number",
@@ -140,7 +135,6 @@ def not_a_number(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> D
 def other_dimension(
     fact: tree.StateLiteral, what: QuantityTerm, given: NumberByCases, unit: Unit
 ) -> Diagnostic:
-    """A value in a unit of another dimension."""
     assert fact.value is not None, "only a value has a unit"
     given_kind = given.dimension.name if given.dimension else "number"
     return MIXED_DIMENSIONS.at(
@@ -153,7 +147,6 @@ def other_dimension(
 
 
 def too_large(fact: tree.StateLiteral, what: QuantityTerm, unit: Unit) -> Diagnostic:
-    """A value beyond all numbers that a trace can have."""
     assert fact.value is not None, "only a value can be too large"
     return NUMBER_TOO_LARGE.at(
         fact.value.span,

@@ -48,7 +48,6 @@ def _comment(scene: ParseContext) -> str:
 
 
 def _misspelt(scene: ParseContext) -> str:
-    """Correction of a misspelt word, or of the word before it."""
     token, before = scene.unexpected, scene.before
     if token is None or token.kind != "word" or token.text.casefold() in RESERVED:
         return ""

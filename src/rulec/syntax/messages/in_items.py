@@ -48,7 +48,6 @@ def other_word(word: str) -> str:
 
 
 def advise_on_item(scene: ParseContext) -> str:
-    """The form of the item, or what is wrong with it."""
     if scene.kind != "item":
         return ""
     first, text = scene.first, scene.text

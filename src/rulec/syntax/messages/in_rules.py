@@ -47,7 +47,6 @@ def other_clause(word: str, others: Container[str] = ()) -> str:
 
 
 def advise_on_rule_head(scene: ParseContext) -> str:
-    """At a rule's head."""
     if scene.kind != "rule_head":
         return ""
     text = scene.text
@@ -70,7 +69,6 @@ def advise_on_rule_head(scene: ParseContext) -> str:
 
 
 def advise_on_clause(scene: ParseContext) -> str:
-    """At the word of a clause, or what is special to one."""
     if scene.kind == "example_head":
         return _example_head(scene)
     if scene.kind != "clause":
@@ -102,7 +100,6 @@ def _example_head(scene: ParseContext) -> str:
 
 
 def advise_on_state(scene: ParseContext) -> str:
-    """In a state of an example."""
     if scene.kind != "state":
         return ""
     text = scene.text

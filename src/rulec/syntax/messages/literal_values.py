@@ -43,7 +43,6 @@ NUMBER_TOO_LARGE = Code(
 
 
 def unknown_escape(place: Span, escaped: str) -> Diagnostic:
-    """A backslash before something that needs none."""
     return UNKNOWN_ESCAPE.at(
         place,
         f"`\\{escaped}` means nothing in a text",
@@ -52,17 +51,14 @@ def unknown_escape(place: Span, escaped: str) -> Diagnostic:
 
 
 def control_character(place: Span) -> Diagnostic:
-    """A character in a text that a reader cannot see."""
     return CONTROL_CHARACTER.at(
         place, "a text may not hold this invisible character", help="delete it, or type it as words"
     )
 
 
 def no_such_date(place: Span, date: str, reason: str) -> Diagnostic:
-    """A date that is not in the calendar."""
     return NO_SUCH_DATE.at(place, f"`{date}` is no date", help=reason)
 
 
 def number_too_large(place: Span) -> Diagnostic:
-    """A number beyond those of a computer."""
     return NUMBER_TOO_LARGE.at(place, "this number is too large", help="write a number below 1e308")

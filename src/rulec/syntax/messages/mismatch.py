@@ -81,7 +81,6 @@ _BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "th
 
 
 def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatch) -> Diagnostic:
-    """The diagnostic of a piece that cannot be parsed."""
     # A rulebook's name is a name, as far as messages are concerned.
     accepted = frozenset("NAME" if kind == "BOOK" else kind for kind in mismatch.accepted)
     inside = tokens[piece.first : piece.last]
@@ -115,7 +114,6 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
 
 
 def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnostic:
-    """The diagnostic of a piece in a rule with an unknown beginning."""
     token = tokens[piece.first]
     others = tokens[piece.first + 1 : piece.last]
     symbols = any(token.kind == "symbol" for token in (token, *others))
@@ -152,7 +150,6 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
 
 
 def too_deep(span: Span) -> Diagnostic:
-    """A formula with more levels than anyone can read."""
     return FORMULA_TOO_DEEP.at(
         span,
         f"the formula is nested more than {MAX_DEPTH} levels deep",
@@ -161,7 +158,6 @@ def too_deep(span: Span) -> Diagnostic:
 
 
 def too_long(span: Span, limit: int) -> Diagnostic:
-    """A piece with more tokens than are worth parsing."""
     return FORMULA_TOO_DEEP.at(
         span,
         f"this goes on for more than {limit:,} words and signs",
@@ -178,7 +174,6 @@ def _short(text: str) -> str:
 
 
 def _is_word_for_name(scene: ParseContext) -> bool:
-    """Tell whether a reserved word stands in place of a name."""
     token = scene.unexpected
     if token is None or token.kind != "word" or token.text not in keywords.RESERVED:
         return False

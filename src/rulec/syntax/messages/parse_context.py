@@ -118,36 +118,29 @@ class ParseContext:
 
     @property
     def before(self) -> Token | None:
-        """The token before that."""
         return self.token(self.at - 1)
 
     @property
     def first(self) -> str:
-        """The piece's first word."""
         return self.text_at(0)
 
     @property
     def text(self) -> str:
-        """The text of ``unexpected``."""
         return self.text_at(self.at)
 
     @property
     def text_before(self) -> str:
-        """The text of ``before``."""
         return self.text_at(self.at - 1)
 
     @property
     def text_behind(self) -> str:
-        """The text behind ``unexpected``."""
         return self.text_at(self.at + 1)
 
     def is_number(self, index: int) -> bool:
-        """Tell whether a number stands at an index."""
         token = self.token(index)
         return token is not None and token.kind == "number"
 
     def is_word(self) -> bool:
-        """Tell whether ``unexpected`` is a word."""
         return self.unexpected is not None and self.unexpected.kind == "word"
 
     def touches(self) -> bool:

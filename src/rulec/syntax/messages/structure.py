@@ -67,7 +67,6 @@ class StructureMessages:
         )
 
     def outside(self, index: int, closed: int | None) -> Diagnostic:
-        """The diagnostic of a clause or ``}`` behind a rule's end ``closed``."""
         labels: tuple[Label, ...] = ()
         if closed is not None:
             labels = (Label(self.place(closed), "what came before ended here"),)
@@ -88,7 +87,6 @@ class StructureMessages:
         )
 
     def behind_vocabulary(self, index: int, closed: int) -> Diagnostic:
-        """Something stands behind the vocabulary's closing brace."""
         return OUTSIDE_BRACES.at(
             self.place(index),
             "nothing can stand behind a vocabulary's `}`",

@@ -58,7 +58,6 @@ NOT_A_RULEBOOK = Code(
 
 
 def given_twice(what: str, again: Span, first: Span) -> Diagnostic:
-    """Something that can be given once."""
     return GIVEN_TWICE.at(
         again,
         f"{what} is given twice",
@@ -69,7 +68,6 @@ def given_twice(what: str, again: Span, first: Span) -> Diagnostic:
 
 
 def not_a_rulebook(first: Span) -> Diagnostic:
-    """A file that is not in the language at all."""
     return NOT_A_RULEBOOK.at(
         first,
         "the file is no rulebook",
