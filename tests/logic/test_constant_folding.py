@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given
 
-from rulec.logic.constant_folding import fold_constants
+from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
 from rulec.logic.printing import formula_text
 from rulec.logic.semantics import truth_values

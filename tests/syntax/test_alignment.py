@@ -1,7 +1,7 @@
 """Marks that stood in one column do so again, unless a row would become too long."""
 
-from rulec.syntax.formatting.alignment import align_marks
 from rulec.syntax.formatting.document import WIDTH, LaidOutLine
+from rulec.syntax.formatting.file_layout import align_marks
 
 LONG, SHORT = 10, 2
 

@@ -7,20 +7,11 @@ from fractions import Fraction
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import DISTANCE
 
-# As in the grammar: a larger number binds tighter.
-_BINDING = {
-    ltl.BinaryOperator.IFF: 1,
-    ltl.BinaryOperator.IMPLIES: 2,
-    ltl.BinaryOperator.THEN: 3,
-    ltl.BinaryOperator.XOR: 4,
-    ltl.BinaryOperator.OR: 5,
-    ltl.BinaryOperator.AND: 6,
-    ltl.BinaryOperator.UNTIL: 7,
-    ltl.BinaryOperator.RELEASE: 7,
-    ltl.BinaryOperator.WEAK_UNTIL: 7,
-    ltl.BinaryOperator.STRONG_RELEASE: 7,
-    ltl.BinaryOperator.SINCE: 7,
-}
+_LOOSEST_FIRST = ("iff", "implies", "then", "xor", "or", "and")
+"""As in the grammar; the others bind tighter, all alike."""
+
+_BINDING = dict.fromkeys(ltl.BinaryOperator, len(_LOOSEST_FIRST))
+_BINDING |= {ltl.BinaryOperator(word): at for at, word in enumerate(_LOOSEST_FIRST)}
 
 
 def formula_text(formula: ltl.Formula) -> str:

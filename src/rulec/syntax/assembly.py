@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import Final, Literal, TypeVar, cast
+from typing import Any, Final
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span, nearest_name
 from rulec.syntax import tree
-from rulec.syntax.building.rules import Clause
+from rulec.syntax.building.items import Clause
 from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS
-from rulec.syntax.messages import whole_file
+from rulec.syntax.messages import structure
 
 ClausePart = tuple[str, Clause | None, Span]
 """A clause's word, what it says (None if that could not be read), and the word's place."""
 
-Part = tree.FileLine | tree.HeaderLine | tree.Item
+_PLAIN = ("require", "cite", "says", "when", "source")
+"""Clauses that are the rule's field of that name."""
+
+Part = tree.HeaderLine | tree.Item
 """What stands at the top level of a file."""
-
-
-_Kind = TypeVar("_Kind")
 
 
 def assemble_rule(
@@ -38,28 +38,16 @@ def assemble_rule(
             first = first_given.setdefault(part[0], part)
             if first is not part and part[0] != "unless":
                 what = "in force" if part[0] == "in" else part[0]
-                mistakes.append(whole_file.given_twice(f"`{what}`", part[2], first[2]))
+                mistakes.append(structure.given_twice(f"`{what}`", part[2], first[2]))
     unread = any(part is None or (isinstance(part, tuple) and part[1] is None) for part in parts)
     complete = complete and not unread
     if "require" not in first_given and complete and not head.override:
         mistakes.append(_no_require(head, head_span))
         complete = False
-
-    def value(word: str, kind: type[_Kind]) -> _Kind | None:
-        result = first_given[word][1] if word in first_given else None
-        return result if isinstance(result, kind) else None
-
-    def formula(word: str) -> tree.Formula | None:
-        result = first_given[word][1] if word in first_given else None
-        clauses = tree.Text | tree.Unless | tree.InForce | str
-        return None if isinstance(result, clauses) else result
-
-    certainty = value("certainty", str)
+    given: dict[str, Any] = {word: content for word, content, _ in first_given.values()}
+    plain: dict[str, Any] = {word: given.get(word) for word in _PLAIN}
     rule = replace(
         head,
-        require=formula("require"),
-        cite=value("cite", tree.Text),
-        says=value("says", tree.Text),
         examples=tuple(part for part in parts if isinstance(part, tree.ExampleItem)),
         complete=complete,
         span=span,
@@ -68,10 +56,9 @@ def assemble_rule(
             for part in parts
             if isinstance(part, tuple) and isinstance(part[1], tree.Unless)
         ),
-        when=formula("when"),
-        source=value("source", tree.Text),
-        certainty=cast('Literal["", "verified", "secondary", "unverified"]', certainty or ""),
-        in_force=value("in", tree.InForce),
+        certainty=given.get("certainty") or "",
+        in_force=given.get("in"),
+        **plain,
     )
     return rule, mistakes
 
@@ -84,7 +71,7 @@ def assemble_file(source: Source, parts: Sequence[Part]) -> tuple[tree.File, lis
     kind = file_line.kind if file_line is not None else "rulebook"
     if file_line is None and not isinstance(first, tree.BrokenItem):
         mistakes.append(_no_file_line(first))
-    once = {
+    once: dict[str, list[Any]] = {
         word: [part for part in parts if isinstance(part, line)] for word, line in _ONCE.items()
     }
     if kind == "vocabulary":
@@ -92,7 +79,7 @@ def assemble_file(source: Source, parts: Sequence[Part]) -> tuple[tree.File, lis
     else:
         for word, lines in once.items():
             mistakes += [
-                whole_file.given_twice(f"`{word}`", line.span, lines[0].span) for line in lines[1:]
+                structure.given_twice(f"`{word}`", line.span, lines[0].span) for line in lines[1:]
             ]
         mistakes += _used_twice(parts)
         reported = {mistake.place for mistake in mistakes}
@@ -101,22 +88,15 @@ def assemble_file(source: Source, parts: Sequence[Part]) -> tuple[tree.File, lis
     file = tree.File(
         kind=kind,
         name=None if file_line is None else file_line.name,
-        title=_first(parts, tree.TitleLine),
-        law=_first(parts, tree.LawLine),
         uses=tuple(part for part in parts if isinstance(part, tree.UseLine)),
-        items=tuple(part for part in parts if not isinstance(part, _Header)),
+        items=tuple(part for part in parts if not isinstance(part, tree.HeaderLine)),
         complete=not any(isinstance(part, tree.BrokenItem) and _may_use(part) for part in parts),
         span=Span(source, 0, len(source.text)),
-        extends=_first(parts, tree.ExtendsLine),
-        traffic=_first(parts, tree.TrafficLine),
-        semantics=_first(parts, tree.SemanticsLine),
-        step=_first(parts, tree.StepLine),
         priorities=tuple(part for part in parts if isinstance(part, tree.PriorityLine)),
+        **{word: next(iter(lines), None) for word, lines in once.items()},
     )
     return file, mistakes
 
-
-_Header = tree.FileLine | tree.HeaderLine
 
 _ONCE: Final = {
     "title": tree.TitleLine,
@@ -126,10 +106,6 @@ _ONCE: Final = {
     "semantics": tree.SemanticsLine,
     "step": tree.StepLine,
 }
-
-
-def _first(parts: Sequence[Part], kind: type[_Kind]) -> _Kind | None:
-    return next((part for part in parts if isinstance(part, kind)), None)
 
 
 def _may_use(item: tree.BrokenItem) -> bool:
@@ -146,7 +122,7 @@ def _used_twice(parts: Sequence[Part]) -> Iterable[Diagnostic]:
         if isinstance(part, tree.UseLine):
             name = part.name.text
             if name in first:
-                yield whole_file.given_twice(f"`use {name}`", part.span, first[name])
+                yield structure.given_twice(f"`use {name}`", part.span, first[name])
             first.setdefault(name, part.span)
 
 
@@ -155,16 +131,16 @@ def _misplaced(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     item: Part | None = None
     for part in parts[1:]:
         if isinstance(part, tree.FileLine):
-            yield whole_file.MISPLACED_LINE.at(
+            yield structure.MISPLACED_LINE.at(
                 part.span,
                 f"`{part.kind} {part.name.text}` begins a second file in this one",
                 help="move it to a file of its own",
                 labels=(Label(parts[0].span.place, "the file begins here"),),
             )
-        elif not isinstance(part, _Header):
+        elif not isinstance(part, tree.HeaderLine):
             item = item or (None if isinstance(part, tree.BrokenItem) else part)
         elif item is not None:
-            yield whole_file.MISPLACED_LINE.at(
+            yield structure.MISPLACED_LINE.at(
                 part.span,
                 "header lines stand before declarations and rules",
                 expected="expected a declaration or a rule",
@@ -177,7 +153,7 @@ def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     # One that has none of its own offers something to those that extend it.
     enough = tree.RuleItem | tree.BrokenItem | tree.ExtendsLine | tree.Definition
     if not any(isinstance(part, enough) for part in parts):
-        yield whole_file.MISSING_PART.at(
+        yield structure.MISSING_PART.at(
             _start(parts[0].span),
             "the rulebook has no rule",
             help="a rule is written `hard rule NAME { require … }`",
@@ -186,8 +162,8 @@ def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 
 def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     for part in parts[1:]:
-        if isinstance(part, tree.RuleItem | tree.Definition | _Header):
-            yield whole_file.MISPLACED_LINE.at(
+        if isinstance(part, tree.RuleItem | tree.Definition | tree.HeaderLine):
+            yield structure.MISPLACED_LINE.at(
                 _start(part.span),
                 "a vocabulary holds declarations only",
                 expected="expected a declaration",
@@ -196,7 +172,7 @@ def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 
 
 def _no_require(head: tree.RuleItem, span: Span) -> Diagnostic:
-    return whole_file.MISSING_PART.at(
+    return structure.MISSING_PART.at(
         span,
         f"rule `{head.name.text}` requires nothing",
         expected="expected a `require` clause in this rule",
@@ -205,11 +181,11 @@ def _no_require(head: tree.RuleItem, span: Span) -> Diagnostic:
 
 
 def _no_file_line(first: Part) -> Diagnostic:
-    return whole_file.MISSING_PART.at(
+    return structure.MISSING_PART.at(
         _start(first.span),
         "the file does not say what it is",
-        expected=whole_file.EXPECTED_BEGINNING,
-        help=whole_file.HOW_TO_BEGIN,
+        expected=structure.EXPECTED_BEGINNING,
+        help=structure.HOW_TO_BEGIN,
     )
 
 

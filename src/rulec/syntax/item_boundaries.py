@@ -33,32 +33,26 @@ class Landmarks:
 
     tokens: list[Token]
 
+    def _text(self, index: int, kind: str) -> str:
+        """The text of a token of this kind; empty for any other."""
+        token = self.tokens[index] if 0 <= index < len(self.tokens) else None
+        return token.text if token is not None and token.kind == kind else ""
+
     def is_symbol(self, index: int, text: str) -> bool:
         """Tell whether a token is this symbol, outside of quotes."""
-        return (
-            index < len(self.tokens)
-            and self.tokens[index].text == text
-            and self.tokens[index].kind == "symbol"
-        )
+        return self._text(index, "symbol") == text
 
     def is_word(self, index: int, *texts: str) -> bool:
         """Tell whether a token is one of these words."""
-        return (
-            0 <= index < len(self.tokens)
-            and self.tokens[index].kind == "word"
-            and self.tokens[index].text in texts
-        )
+        return self._text(index, "word") in texts
 
     def is_name(self, index: int) -> bool:
         """Tell whether a token is a word that may be a name."""
-        return (
-            0 <= index < len(self.tokens)
-            and self.tokens[index].kind == "word"
-            and self.tokens[index].text not in keywords.RESERVED
-        )
+        word = self._text(index, "word")
+        return word != "" and word not in keywords.RESERVED
 
     def _is_number(self, index: int) -> bool:
-        return 0 <= index < len(self.tokens) and self.tokens[index].kind == "number"
+        return self._text(index, "number") != ""
 
     def wants_more(self, index: int) -> bool:
         """Tell whether the text must go on behind a token."""

@@ -86,18 +86,10 @@ UNARY_OPERATORS: Final = (
     *("once", "historically", "previously", "weak previously"),
 )
 
+_LOOSEST_FIRST: Final = ("iff", "implies", "then", "xor", "or", "and")
 PRECEDENCE: Final = {
-    "iff": 1,
-    "implies": 2,
-    "then": 3,
-    "xor": 4,
-    "or": 5,
-    "and": 6,
-    "until": 7,
-    "release": 7,
-    "weak until": 7,
-    "strong release": 7,
-    "since": 7,
+    **{word: level for level, word in enumerate(_LOOSEST_FIRST, 1)},
+    **dict.fromkeys(("until", "release", "weak until", "strong release", "since"), 7),
 }
 """Binary operator -> how tightly it binds; every unary operator binds tighter."""
 

@@ -10,12 +10,12 @@ from typing import TypeVar, cast
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
 from rulec.syntax import tree
 from rulec.syntax.assembly import Part, assemble_file, assemble_rule
-from rulec.syntax.building import formulas, items, rules
-from rulec.syntax.building.values import NodeValues
+from rulec.syntax.building import formulas, items
+from rulec.syntax.building.formulas import NodeValues
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.grammar import Mismatch, ParseNode, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
-from rulec.syntax.messages import whole_file
+from rulec.syntax.messages import structure
 from rulec.syntax.scanner import Token, checked, scan
 from rulec.syntax.split_file import FileSplitter
 
@@ -42,11 +42,11 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     except RulecError as error:
         return _NOTHING, error.diagnostics
     if not tokens:
-        empty = whole_file.EMPTY_FILE.at(
+        empty = structure.EMPTY_FILE.at(
             Span(source, 0, 0),
             "the file is empty",
-            expected=whole_file.EXPECTED_BEGINNING,
-            help=whole_file.HOW_TO_BEGIN,
+            expected=structure.EXPECTED_BEGINNING,
+            help=structure.HOW_TO_BEGIN,
         )
         return _NOTHING, (empty,)
     reader = _Reader(source, tokens)
@@ -56,7 +56,7 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
         for part in splitter.split()
     ]
     if _is_something_else(parts):
-        return _NOTHING, (whole_file.not_a_rulebook(Span(source, tokens[0].start, tokens[0].end)),)
+        return _NOTHING, (structure.not_a_rulebook(Span(source, tokens[0].start, tokens[0].end)),)
     file, order_mistakes = assemble_file(source, parts)
     mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes)
     return file, tuple(sorted(mistakes, key=_position))
@@ -150,7 +150,7 @@ class _Reader:
     def rule(self, pieces: RulePieces) -> tree.RuleItem | tree.BrokenItem:
         span = span_of(self.source, self.tokens, pieces)
         head_span = span_of(self.source, self.tokens, pieces.head)
-        head = self.read("rule_head", pieces.head, rules.rule_head)
+        head = self.read("rule_head", pieces.head, items.rule_head)
         parts = [
             self._example(part) if isinstance(part, ExamplePieces) else self._clause(part)
             for part in pieces.body
@@ -162,17 +162,17 @@ class _Reader:
         self.mistakes.extend(mistakes)
         return rule
 
-    def _clause(self, piece: Piece) -> tuple[str, rules.Clause | None, Span]:
+    def _clause(self, piece: Piece) -> tuple[str, items.Clause | None, Span]:
         keyword = self.tokens[piece.first].text
         span = self._first_token(piece)
         if piece.kind == "junk":
             self.mistakes.append(_messages().unknown_clause(self.source, self.tokens, piece))
             return keyword, None, span
-        return keyword, self.read("clause", piece, rules.clause), span
+        return keyword, self.read("clause", piece, items.clause), span
 
     def _example(self, pieces: ExamplePieces) -> tree.ExampleItem | None:
-        head = self.read("example_head", pieces.head, rules.example_head)
-        states = [self.read("state", piece, rules.state) for piece in pieces.states]
+        head = self.read("example_head", pieces.head, items.example_head)
+        states = [self.read("state", piece, items.state) for piece in pieces.states]
         if head is None or not states or None in states:
             return None
         span = span_of(self.source, self.tokens, pieces)

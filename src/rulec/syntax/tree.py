@@ -155,18 +155,8 @@ class Aggregate(_SyntaxNode):
     body: Formula
 
 
-Formula = (
-    AtomUse
-    | TruthLiteral
-    | NumberLiteral
-    | Prefix
-    | Infix
-    | Compare
-    | Arithmetic
-    | Minus
-    | Conditional
-    | Aggregate
-)
+Operation = Prefix | Infix | Compare | Arithmetic | Minus | Conditional
+Formula = AtomUse | TruthLiteral | NumberLiteral | Operation | Aggregate
 
 
 @dataclass(frozen=True, slots=True)
@@ -375,7 +365,12 @@ Definition = OptionItem | ParamItem | SetItem | DefineItem | DropItem | SoftenIt
 
 
 @dataclass(frozen=True, slots=True)
-class FileLine(_SyntaxNode):
+class HeaderLine(_SyntaxNode):
+    """A line of a file's header."""
+
+
+@dataclass(frozen=True, slots=True)
+class FileLine(HeaderLine):
     """``rulebook NAME`` or ``vocabulary NAME``."""
 
     kind: Literal["rulebook", "vocabulary"]
@@ -383,14 +378,14 @@ class FileLine(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class TitleLine(_SyntaxNode):
+class TitleLine(HeaderLine):
     """``title "…"``."""
 
     text: Text
 
 
 @dataclass(frozen=True, slots=True)
-class LawLine(_SyntaxNode):
+class LawLine(HeaderLine):
     """Header line of the law: ``law "…" as of DATE``.
 
     The date is ISO text, empty when not given.
@@ -401,42 +396,42 @@ class LawLine(_SyntaxNode):
 
 
 @dataclass(frozen=True, slots=True)
-class UseLine(_SyntaxNode):
+class UseLine(HeaderLine):
     """``use NAME``: a vocabulary."""
 
     name: Name
 
 
 @dataclass(frozen=True, slots=True)
-class ExtendsLine(_SyntaxNode):
+class ExtendsLine(HeaderLine):
     """``extends NAME``: the rulebook that this one builds upon."""
 
     name: Name
 
 
 @dataclass(frozen=True, slots=True)
-class TrafficLine(_SyntaxNode):
+class TrafficLine(HeaderLine):
     """``traffic left`` or ``traffic right``."""
 
     side: Literal["left", "right"]
 
 
 @dataclass(frozen=True, slots=True)
-class SemanticsLine(_SyntaxNode):
+class SemanticsLine(HeaderLine):
     """``semantics stutter`` or ``semantics finite``."""
 
     kind: Literal["stutter", "finite"]
 
 
 @dataclass(frozen=True, slots=True)
-class StepLine(_SyntaxNode):
+class StepLine(HeaderLine):
     """``step 0.5 s``: how far the states of examples are apart."""
 
     amount: NumberLiteral
 
 
 @dataclass(frozen=True, slots=True)
-class PriorityLine(_SyntaxNode):
+class PriorityLine(HeaderLine):
     """Order of priority levels: ``priority a > b = c``.
 
     ``relations[i]`` stands between levels i and i + 1.
@@ -444,18 +439,6 @@ class PriorityLine(_SyntaxNode):
 
     levels: tuple[Name, ...]
     relations: tuple[Literal[">", "="], ...]
-
-
-HeaderLine = (
-    TitleLine
-    | LawLine
-    | UseLine
-    | ExtendsLine
-    | TrafficLine
-    | SemanticsLine
-    | StepLine
-    | PriorityLine
-)
 
 
 @dataclass(frozen=True, slots=True)

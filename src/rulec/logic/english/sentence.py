@@ -12,8 +12,7 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 
 from rulec.logic import formula as ltl
-from rulec.logic.english import atom_phrases
-from rulec.logic.english.temporal_phrases import adverb, pattern_of
+from rulec.logic.english import wording
 
 MOST_IN_A_LINE = 3
 """Longer chains of ``and``, ``or`` and ``then`` become lists."""
@@ -99,8 +98,8 @@ def _for_every(variables: Sequence[tuple[str, str]], related: Related) -> str:
     named = []
     for number, (name, of_type) in enumerate(variables):
         other = any(related(of_type, earlier) for _, earlier in variables[:number])
-        named.append(f"every {'other ' if other else ''}{atom_phrases.spoken(of_type)} {name}")
-    return f"for {atom_phrases.listed(named)}: "
+        named.append(f"every {'other ' if other else ''}{wording.spoken(of_type)} {name}")
+    return f"for {wording.listed(named)}: "
 
 
 def phrase(formula: ltl.Formula, *, inside: bool) -> Phrase:
@@ -115,7 +114,9 @@ def phrase(formula: ltl.Formula, *, inside: bool) -> Phrase:
         case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             return _after("it is not the case that", phrase(operand, inside=inside))
         case ltl.Unary(operator, operand, bound):
-            return _after(adverb(operator, bound, inside=inside), phrase(operand, inside=True))
+            return _after(
+                wording.adverb(operator, bound, inside=inside), phrase(operand, inside=True)
+            )
         case ltl.Binary(ltl.BinaryOperator.AND | ltl.BinaryOperator.OR):
             return _chain(formula, inside=inside)
         case ltl.Binary(ltl.BinaryOperator.THEN):
@@ -127,9 +128,11 @@ def phrase(formula: ltl.Formula, *, inside: bool) -> Phrase:
         case ltl.Binary(ltl.BinaryOperator.XOR, left, right):
             return _between("either {} or {}, but not both", left, right, inside=inside)
         case ltl.Binary(operator, left, right, bound):
-            return _between(pattern_of(operator, bound, inside=inside), left, right, inside=True)
-        case ltl.Comparison() if (count := atom_phrases.single_count(formula)) is not None:
-            there_are = atom_phrases.counted(formula, count)
+            return _between(
+                wording.pattern_of(operator, bound, inside=inside), left, right, inside=True
+            )
+        case ltl.Comparison() if (count := wording.single_count(formula)) is not None:
+            there_are = wording.counted(formula, count)
             lead = there_are if inside else f"at the start {there_are}"
             return _after(lead, phrase(count.body, inside=True))
     clause = _clause(formula, holds=True)
@@ -138,15 +141,15 @@ def phrase(formula: ltl.Formula, *, inside: bool) -> Phrase:
 
 
 def _counts(formula: ltl.Formula) -> bool:
-    return isinstance(formula, ltl.Comparison) and atom_phrases.single_count(formula) is not None
+    return isinstance(formula, ltl.Comparison) and wording.single_count(formula) is not None
 
 
 def _clause(formula: ltl.Formula, *, holds: bool) -> str | None:
     match formula:
         case ltl.Atom():
-            return atom_phrases.atom_in_english(formula, holds=holds)
+            return wording.atom_in_english(formula, holds=holds)
         case ltl.Comparison():
-            return atom_phrases.comparison_in_english(formula, holds=holds)
+            return wording.comparison_in_english(formula, holds=holds)
         case ltl.Constant(value):
             verb = "holds" if holds else "does not hold"
             return f"“{'true' if value else 'false'}” {verb}"
@@ -236,7 +239,7 @@ def _phases(formula: ltl.Binary) -> Phrase:
     phases: list[tuple[Phrase, str]] = []
     rest: ltl.Formula = formula
     while isinstance(rest, ltl.Binary) and rest.operator is ltl.BinaryOperator.THEN:
-        lasts = "" if rest.bound is None else f" {atom_phrases.lasting(rest.bound)}"
+        lasts = "" if rest.bound is None else f" {wording.lasting(rest.bound)}"
         phases.append((phrase(rest.left, inside=True), lasts))
         rest = rest.right
     phases.append((phrase(rest, inside=True), ""))

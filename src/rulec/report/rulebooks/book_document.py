@@ -7,7 +7,7 @@ from itertools import groupby
 
 from rulec.analysis.audit.rulebook_audit import articles_of, used_declarations
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
-from rulec.logic.english.atom_phrases import listed, spoken
+from rulec.logic.english.wording import listed, spoken
 from rulec.logic.printing import formula_text
 from rulec.report.rulebooks.book_rule import WIDTH, rule_heading, rule_section
 from rulec.report.text import markdown

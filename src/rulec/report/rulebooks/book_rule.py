@@ -8,9 +8,9 @@ from textwrap import wrap
 
 from rulec.analysis.lineage.rule_lineage import BookLineage, RuleHistory
 from rulec.logic.bounds import has_seconds
-from rulec.logic.english.atom_phrases import amount, listed, number_text, spoken
 from rulec.logic.english.sentence import Phrase
 from rulec.logic.english.sentence_layout import lines
+from rulec.logic.english.wording import amount, listed, number_text, spoken
 from rulec.logic.printing import formula_text
 from rulec.report.rulebooks.rule_page import phrase_of, restrictions_of
 from rulec.report.rulebooks.rule_provenance import provenance

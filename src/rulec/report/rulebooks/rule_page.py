@@ -8,10 +8,10 @@ from fractions import Fraction
 from textwrap import wrap
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.logic.constant_folding import fold_constants
-from rulec.logic.english.atom_phrases import amount, number_text, plural, spoken
 from rulec.logic.english.sentence import Phrase, Shape, condition, exemption, sentence
 from rulec.logic.english.sentence_layout import lines
+from rulec.logic.english.wording import amount, number_text, plural, spoken
+from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Constant, Unary, UnaryOperator
 from rulec.logic.printing import formula_text
 from rulec.report.automata import automaton_text

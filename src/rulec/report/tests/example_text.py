@@ -10,7 +10,7 @@ from rulec.automata.thresholds import exact
 from rulec.book_tests.example_coverage import RuleCoverage, UncoveredEdge, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_warning
 from rulec.diagnostics import Diagnostic
-from rulec.logic.constant_folding import fold_constants
+from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Atom, Constant
 from rulec.logic.printing import formula_text, number_in_words
 from rulec.report.findings.diagnostics_text import render_diagnostics
