@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-from rulec.diagnostics.code import Code
 from rulec.logic import formula as ltl
 
 MOST_PARTS = 20_000
@@ -49,18 +48,3 @@ def _parts(formula: ltl.Formula) -> tuple[ltl.Formula, ...]:
             return tuple(term.body for _, term in terms if isinstance(term, ltl.Count))
         case _:
             return ()
-
-
-FORMULA_TOO_LARGE = Code(
-    "R0323",
-    title="a formula grows too large when definitions, conditions and exceptions are put in",
-    why="Each is put in the place where it is used. Definitions that use others twice, conditional "
-    "numbers beside each other, and exceptions that hold throughout multiply.",
-    bad="rulebook example\nsignal wet, a, b, c, d, e\nhard rule r {\n  require never (wet then "
-    "not wet)\n"
-    "  unless a throughout unless b throughout unless c throughout\n"
-    "  unless d throughout unless e throughout\n}\n",
-    good="rulebook example\nsignal wet, a, b, c, d, e\nhard rule r {\n  require never (wet then "
-    "not wet)\n"
-    "  unless a or b or c or d or e throughout\n}\n",
-)

@@ -8,7 +8,7 @@ from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean
 from rulec.diagnostics.code import Code
 from rulec.logic.formula import Formula
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
-from rulec.rulebook.arithmetic.size_limits import FORMULA_TOO_LARGE
+from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.elaborate.scope import SIDES, Scope
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
 from rulec.syntax import tree

@@ -9,7 +9,8 @@ from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
 from rulec.diagnostics.code import Code
 from rulec.logic.bounds import NotAMultipleError
 from rulec.logic.printing import time_in_words
-from rulec.rulebook.arithmetic.size_limits import DEEPEST, FORMULA_TOO_LARGE, MOST_PARTS, Limit
+from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, Limit
+from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.rulebook_model import Rule
 from rulec.syntax import tree
 from rulec.syntax.messages.mismatch import FORMULA_TOO_DEEP

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.rulebook.arithmetic.size_limits import FORMULA_TOO_LARGE
+from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.files import reference_messages as say
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.rulebook_model import SourceFile

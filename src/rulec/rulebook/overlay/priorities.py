@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise, product
 
 from rulec.diagnostics import Diagnostic
-from rulec.rulebook.arithmetic.size_limits import FORMULA_TOO_LARGE
+from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.overlay.overlay_messages import priority_circle
 from rulec.syntax import tree
 
