@@ -37,12 +37,8 @@ def to_data(formula: ltl.Formula) -> Any:
         case ltl.Atom(name, arguments, value):
             return {"name": name, "variables": list(arguments), "value": value}
         case ltl.Comparison(terms, relation, limit, text):
-            return {
-                "terms": terms_to_data(terms),
-                "relation": relation,
-                "limit": str(limit),
-                "text": text,
-            }
+            kept = {"relation": relation, "limit": str(limit), "text": text}
+            return {"terms": terms_to_data(terms), **kept}
         case ltl.Same(left, right):
             return {"same": [left, right]}
         case ltl.Constant(value):
@@ -84,12 +80,9 @@ def from_data(data: Any, depth: int = 0) -> ltl.Formula:
             len(data) == 3
         ):
             return ltl.Atom(name, _names(variables), value)
-        case {
-            "terms": terms,
-            "relation": str(relation),
-            "limit": limit,
-            "text": str(text),
-        } if len(data) == 4 and relation in _RELATIONS:
+        case {"terms": terms, "relation": str(relation), "limit": limit, "text": str(text)} if (
+            len(data) == 4 and relation in _RELATIONS
+        ):
             read = terms_from_data(terms, depth + 1)
             return ltl.Comparison(read, _RELATIONS[relation], number_from_data(limit), text)
         case {"same": [str(left), str(right)]} if len(data) == 1:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from operator import eq, ge, gt, le, lt, ne
+from typing import get_args
 
 from rulec.logic.formula import Comparison, Constant, Relation, Term
 from rulec.logic.printing import term_text
@@ -38,14 +39,9 @@ def comparison(
     )
 
 
-_RELATIONS: dict[Relation, Callable[[Fraction, Fraction], bool]] = {
-    "<": lt,
-    "<=": le,
-    "=": eq,
-    "!=": ne,
-    ">=": ge,
-    ">": gt,
-}
+_RELATIONS: dict[Relation, Callable[[Fraction, Fraction], bool]] = dict(
+    zip(get_args(Relation), (lt, le, eq, ne, ge, gt), strict=True)
+)
 
 
 def stands(number: Fraction, relation: Relation, limit: Fraction) -> bool:

@@ -134,67 +134,61 @@ class _Found:
         return _is_present(formula) and unsettled.isdisjoint(ltl.atoms_of(formula))
 
 
-def _present(formula: ltl.Formula, _found: _Found) -> ltl.Formula:
-    match formula:
-        case ltl.Atom() | ltl.Comparison() | ltl.Same() | ltl.Constant():
-            return formula
-        case ltl.Unary(operator, operand, bound):
-            inner = _present(operand, _found)
-            if operator not in PAST:
-                return ltl.Unary(operator, inner, bound)
-            span = range_of(formula)
-            if operator in (ltl.UnaryOperator.WEAK_PREVIOUSLY, ltl.UnaryOperator.HISTORICALLY):
-                return ltl.Unary(
-                    NOT, _since(ltl.Constant(True), ltl.Unary(NOT, inner), span, _found)
-                )
-            return _since(ltl.Constant(True), inner, span, _found)
-        case ltl.Binary(operator, left, right, bound):
-            first, second = _present(left, _found), _present(right, _found)
-            if operator not in PAST:
-                return ltl.Binary(operator, first, second, bound)
-            return _since(first, second, range_of(formula), _found)
+def _present(formula: ltl.Formula, found: _Found) -> ltl.Formula:
+    if not isinstance(formula, ltl.Unary | ltl.Binary):
+        return formula
+    operation = ltl.with_operands(formula, lambda operand: _present(operand, found))
+    if operation.operator not in PAST:
+        return operation
+    span = range_of(operation)
+    if isinstance(operation, ltl.Binary):
+        return _since(operation.left, operation.right, span, found)
+    inner = operation.operand
+    if operation.operator in (ltl.UnaryOperator.WEAK_PREVIOUSLY, ltl.UnaryOperator.HISTORICALLY):
+        return ltl.Unary(NOT, _since(ltl.Constant(True), ltl.Unary(NOT, inner), span, found))
+    return _since(ltl.Constant(True), inner, span, found)
 
 
-def _since(left: ltl.Formula, right: ltl.Formula, span: Range, _found: _Found) -> ltl.Formula:
-    if _found.is_settled(left) and _found.is_settled(right):
+def _since(left: ltl.Formula, right: ltl.Formula, span: Range, found: _Found) -> ltl.Formula:
+    if found.is_settled(left) and found.is_settled(right):
         # The same operator on the same operands needs no second register.
         key = (left, right, span)
-        if key not in _found.registers:
-            _found.registers[key] = Register(_found.fresh("register"), left, right, span)
-        return _found.registers[key].atom
-    return _unfolded(left, right, span, _found)
+        if key not in found.registers:
+            found.registers[key] = Register(found.fresh("register"), left, right, span)
+        return found.registers[key].atom
+    return _unfolded(left, right, span, found)
 
 
-def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, _found: _Found) -> ltl.Formula:
+def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, found: _Found) -> ltl.Formula:
     """``left since right`` in terms of the present and one instant ago.
 
     From the shortest range to the wanted one, each says by the one before what was one instant ago.
     """
     key = (left, right, span)
-    known = _found.sinces.get(key)
+    known = found.sinces.get(key)
     if known is not None:
         return known
     low, high = span
     if high is None:
-        before = _found.fresh("memory")
+        before = found.fresh("memory")
         now: ltl.Formula = ltl.Binary(OR, right, ltl.Binary(AND, left, before))
-        _found.memories[now] = Memory(before, now)
+        found.memories[now] = Memory(before, now)
     else:
         now = right
         for _ in range(high - low):
-            now = ltl.Binary(OR, right, ltl.Binary(AND, left, _one_ago(now, _found)))
+            now = ltl.Binary(OR, right, ltl.Binary(AND, left, _one_ago(now, found)))
     for _ in range(low):
-        now = ltl.Binary(AND, left, _one_ago(now, _found))
-    _found.sinces[key] = now
+        now = ltl.Binary(AND, left, _one_ago(now, found))
+    found.sinces[key] = now
     return now
 
 
-def _one_ago(formula: ltl.Formula, _found: _Found) -> ltl.Formula:
-    if _found.is_settled(formula):
-        return _since(ltl.Constant(True), formula, Range(1, 1), _found)
-    if formula not in _found.memories:
-        _found.memories[formula] = Memory(_found.fresh("memory"), formula)
-    return _found.memories[formula].atom
+def _one_ago(formula: ltl.Formula, found: _Found) -> ltl.Formula:
+    if found.is_settled(formula):
+        return _since(ltl.Constant(True), formula, Range(1, 1), found)
+    if formula not in found.memories:
+        found.memories[formula] = Memory(found.fresh("memory"), formula)
+    return found.memories[formula].atom
 
 
 def _is_present(formula: ltl.Formula) -> bool:

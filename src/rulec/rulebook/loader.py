@@ -145,11 +145,7 @@ def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
 
 
 def diagnose(
-    name: str,
-    data: bytes,
-    path: Path | None = None,
-    search_path: Sequence[Path] = (),
-    at: str = "",
+    name: str, data: bytes, path: Path | None = None, search_path: Sequence[Path] = (), at: str = ""
 ) -> Diagnosis:
     """All errors and warnings about a rulebook or a vocabulary.
 

@@ -23,10 +23,7 @@ MAX_DEPTH = 200
 """Operators and parentheses inside one another: far above any law, far below Python's stack."""
 
 _LEVELS = frozenset(
-    (
-        *("infix", "prefix", "group", "compare"),
-        *("arithmetic", "minus", "conditional", "aggregate"),
-    )
+    (*("infix", "prefix", "group", "compare"), *("arithmetic", "minus", "conditional", "aggregate"))
 )
 
 

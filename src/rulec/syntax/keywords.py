@@ -19,10 +19,7 @@ ITEM_WORDS: Final = frozenset(
     (*HEADER_WORDS, *DECLARATION_WORDS, *PROVISION_WORDS, *RULE_WORDS, "rule", "override")
 )
 CLAUSE_WORDS: Final = frozenset(
-    (
-        *("cite", "says", "source", "certainty"),
-        *("require", "unless", "when", "accept", "reject"),
-    )
+    (*("cite", "says", "source", "certainty"), *("require", "unless", "when", "accept", "reject"))
 )
 """The first words of a rule's clauses, but for ``in force``, which begins with ``in``."""
 

@@ -106,12 +106,10 @@ def phrase(formula: ltl.Formula, *, inside: bool) -> Phrase:
     """A formula as a phrase. ``inside``: it speaks of another time than the start of the trace."""
     at_start = "" if inside else " at the start"
     match formula:
-        case ltl.Unary(ltl.UnaryOperator.NOT, operand) if not _counts(operand):
-            denied = _clause(operand, holds=False)
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
+            denied = None if _counts(operand) else _clause(operand, holds=False)
             if denied is not None:
                 return Phrase(f"{denied}{at_start}", Shape.CLAUSE)
-            return _after("it is not the case that", phrase(operand, inside=inside))
-        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             return _after("it is not the case that", phrase(operand, inside=inside))
         case ltl.Unary(operator, operand, bound):
             return _after(

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from rulec.diagnostics import Label, Span, did_you_mean, named
+from rulec.diagnostics import Label, RulecError, Span, did_you_mean, named
 from rulec.files import MAX_SOURCE_BYTES, opened
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
@@ -89,16 +89,11 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
 
     Raises RulecError R0703 at the ``use`` line.
     """
-    found = locate_vocabulary(name, user, search_path)
-    if found is not None:
-        return found
-    known = [path.stem for path in available_vocabularies(search_path, user)]
-    raise NAME_NOT_FOUND.error(
-        use,
-        f"there is no vocabulary `{name}`",
-        expected="expected the name of a vocabulary",
-        help=_suggest(name, known),
-    )
+    path = locate_vocabulary(name, user, search_path)
+    if path is None:
+        known = [path.stem for path in available_vocabularies(search_path, user)]
+        raise _not_found("vocabulary", name, use, known)
+    return path
 
 
 def locate_vocabulary(name: str, user: Path | None, search_path: Sequence[Path]) -> Path | None:
@@ -115,16 +110,23 @@ def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Pa
 
     Raises RulecError R0703 at the ``extends`` line.
     """
-    found = locate_base(name, user, search_path)
-    if found is not None:
-        return found
-    looked = f"`{name}{_SUFFIX}` is looked for beside this file, on the search path, and in rulec"
-    raise NAME_NOT_FOUND.error(
-        line,
-        f"there is no rulebook `{name}`",
-        expected="expected the name of a rulebook",
-        help=_suggest(name, available_rulebooks([*_around(user), *search_path])),
-        notes=(looked,),
+    path = locate_base(name, user, search_path)
+    if path is None:
+        known = available_rulebooks([*_around(user), *search_path])
+        looked = (
+            f"`{name}{_SUFFIX}` is looked for beside this file, on the search path, and in rulec"
+        )
+        raise _not_found("rulebook", name, line, known, looked)
+    return path
+
+
+def _not_found(kind: str, name: str, place: Span, known: Sequence[str], *notes: str) -> RulecError:
+    return NAME_NOT_FOUND.error(
+        place,
+        f"there is no {kind} `{name}`",
+        expected=f"expected the name of a {kind}",
+        help=_suggest(name, known),
+        notes=notes,
     )
 
 

@@ -117,8 +117,7 @@ def symbol_table(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolT
     """Symbol table of the used vocabularies, then of the using file."""
     vocabularies = {file.span.source for file in files if file.name and file.kind == "vocabulary"}
     symbols = SymbolTable(
-        of_vocabularies=vocabularies,
-        opaque=opaque or not all(file.complete for file in files),
+        of_vocabularies=vocabularies, opaque=opaque or not all(file.complete for file in files)
     )
     for file in files:
         for item in file.items:
@@ -250,10 +249,7 @@ def _add(symbols: SymbolTable, name: tree.Name, item: Declaration) -> None:
 
 
 def _parameter_types(
-    symbols: SymbolTable,
-    name: tree.Name,
-    parameters: tuple[tree.Parameter, ...],
-    roots: list[str],
+    symbols: SymbolTable, name: tree.Name, parameters: tuple[tree.Parameter, ...], roots: list[str]
 ) -> tuple[str, ...]:
     types: list[str] = []
     seen: dict[str, Span] = {}

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, get_args
 
 from rulec.syntax import tree
 from rulec.syntax.building.formulas import NodeValues, amount, atom, formula, parameters
 from rulec.syntax.grammar import ParseLeaf, ParseNode
+from rulec.syntax.keywords import token_kind
 
 
 def item(
@@ -134,13 +135,7 @@ def weight(values: NodeValues, node: ParseNode) -> tree.NumberLiteral | None:
     return None
 
 
-_SCOPES: dict[str, tree.Scope] = {
-    "INITIALLY": "initially",
-    "AT_START": "at start",
-    "THROUGHOUT": "throughout",
-    "AT_SOME_POINT": "at some point",
-    "AT_END": "at end",
-}
+_SCOPES: dict[str, tree.Scope] = {token_kind(scope): scope for scope in get_args(tree.Scope)}
 
 
 Clause = tree.Text | tree.Formula | tree.Unless | tree.InForce | str

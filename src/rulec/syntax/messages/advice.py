@@ -25,10 +25,7 @@ from rulec.syntax.messages.in_items import (
 from rulec.syntax.messages.parse_context import ParseContext, spelling
 
 _BOOLEAN: Final = frozenset(
-    (
-        *("not", "and", "or", "implies", "iff", "xor"),
-        *("!", "&", "&&", "|", "||", "->", "<->", "^"),
-    )
+    (*("not", "and", "or", "implies", "iff", "xor"), *("!", "&", "&&", "|", "||", "->", "<->", "^"))
 )
 OVER_TIME: Final = (OPERATOR_WORDS | OPERATOR_LETTERS | {"[]", "<>"}) - _BOOLEAN
 _BETWEEN: Final = ("to", "-", ",", ";", ":", "...", "and", "until")

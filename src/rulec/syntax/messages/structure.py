@@ -73,10 +73,7 @@ def given_twice(what: str, again: Span, first: Span) -> Diagnostic:
 
 def not_a_rulebook(first: Span) -> Diagnostic:
     return NOT_A_RULEBOOK.at(
-        first,
-        "the file is no rulebook",
-        expected=EXPECTED_BEGINNING,
-        help=HOW_TO_BEGIN,
+        first, "the file is no rulebook", expected=EXPECTED_BEGINNING, help=HOW_TO_BEGIN
     )
 
 
