@@ -31,20 +31,10 @@ def machines(
     than it says, for one. ``at`` is the day (ISO) whose law it is; if empty, that of the rulebook's
     `law` line or else today.
     """
+    # On every trace that is judged, so a rulebook that is compiled already comes first.
     if isinstance(rules, CompiledRulebook):
         return rules
-    if isinstance(rules, str | Path):
-        if Path(rules).suffix == ".json":
-            from rulec.automata.bundle.bundle_file import read_compiled
-
-            return read_compiled(Path(rules))
-        from rulec.pipeline import compile_source
-
-        return compile_source(rules, search_path, at, any_step=True, on_warning=warn)
-    from rulec.automata.compiler import lower
-    from rulec.automata.step_compilation import StepCompiler, build_automata
-
-    return build_automata(lower(rules, any_step=True), StepCompiler(rules))
+    return compile_rulebook(rules, search_path, warn, at=at, any_step=True)
 
 
 def compile_rulebook(
@@ -53,26 +43,32 @@ def compile_rulebook(
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     step_s: Fraction | float | None = None,
     at: str = "",
+    *,
+    any_step: bool = False,
 ) -> CompiledRulebook:
     """Compile rules for one step, or for that of their examples.
 
     ``step_s`` (above 0, a float meaning the decimal that is written) is that step; without it rules
-    with bounds in seconds are compiled for the step of their own examples. R0407 for a bound that
-    is no multiple of the step, R0507 if the rules have been compiled for another one.
+    with bounds in seconds are compiled for the step of their own examples, which with ``any_step``
+    they need not have. R0407 for a bound that is no multiple of the step, R0507 if the rules have
+    been compiled for another one.
     """
     from rulec.automata.thresholds import exact
 
     step = None if step_s is None else exact(step_s)
-    if isinstance(reference, CompiledRulebook) or (
-        isinstance(reference, str | Path) and Path(reference).suffix == ".json"
-    ):
-        compiled = machines(reference)
-        return compiled if step is None else compiled.at_step(step)
     if isinstance(reference, str | Path):
-        from rulec.pipeline import compile_source
+        if Path(reference).suffix != ".json":
+            from rulec.pipeline import compile_source
 
-        return compile_source(reference, search_path, at, step, on_warning=warn)
+            return compile_source(
+                reference, search_path, at, step, any_step=any_step, on_warning=warn
+            )
+        from rulec.automata.bundle.bundle_file import read_compiled
+
+        reference = read_compiled(Path(reference))
+    if isinstance(reference, CompiledRulebook):
+        return reference if step is None else reference.at_step(step)
     from rulec.automata.compiler import lower
     from rulec.automata.step_compilation import StepCompiler, build_automata
 
-    return build_automata(lower(reference, step), StepCompiler(reference))
+    return build_automata(lower(reference, step, any_step=any_step), StepCompiler(reference))
