@@ -39,54 +39,45 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
     # The parser of rulebooks, 75 ms: not for --help.
     from rulec.rulebook.batch.batch_format import format_files, formatted, replace_files
 
+    writes = not (check or diff)
     if "-" in paths:
         if len(paths) > 1:
             raise click.UsageError("`-` is standard input and stands alone")
-        source = sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1)
-        return _standard_output(formatted("standard input", None, source), check=check, diff=diff)
+        file = formatted("standard input", None, sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1))
+        if writes:
+            # Not as text: in the terminal's encoding it might be another one.
+            sys.stdout.buffer.write(file.after)
+            return ExitStatus.OK
+        _show([file] if file.changed else [], diff=diff)
+        return ExitStatus.after(failed=file.changed)
     files, refused = format_files(paths or ["."], search_path())
     changed = [file for file in files if file.changed]
     in_form = len(files) - len(changed)
-    if diff or check:
-        _show(changed, check=check, diff=diff)
-    else:
+    if writes:
         unwritten = replace_files(changed)
         named = {diagnostic.place.file for diagnostic in unwritten if diagnostic.place is not None}
         changed = [file for file in changed if file.name not in named]
         refused = (*refused, *unwritten)
+    else:
+        _show(changed, diff=diff)
     print_diagnostics(refused)
-    if changed or in_form:
-        print_aside(_summary(len(changed), in_form, would=diff or check))
-    return ExitStatus.after(answered=not refused, failed=bool(changed) and (diff or check))
-
-
-def _standard_output(file: Formatted, *, check: bool, diff: bool) -> int:
-    if not (check or diff):
-        # Not as text: in the terminal's encoding it might be another one.
-        sys.stdout.buffer.write(file.after)
-        return ExitStatus.OK
-    if not file.changed:
-        return ExitStatus.OK
-    _show([file], check=check, diff=diff)
-    return ExitStatus.FOUND
-
-
-def _show(changed: Sequence[Formatted], *, check: bool, diff: bool) -> None:
-    for file in changed:
-        if diff:
-            text = as_diff(file.name, file.before.decode(), file.after.decode())
-            if sys.stdout.isatty():
-                print_result(for_terminal(text))
-            else:
-                sys.stdout.buffer.write(text.encode())
-        elif check:
-            print_result(f"would change {file.name}")
-
-
-def _summary(changed: int, unchanged: int, *, would: bool) -> str:
     parts = []
     if changed:
-        parts.append(f"{counted(changed, 'file')} {'would change' if would else 'changed'}")
-    if unchanged:
-        parts.append(f"{counted(unchanged, 'file')} in form already")
-    return ", ".join(parts)
+        parts.append(f"{counted(len(changed), 'file')} {'changed' if writes else 'would change'}")
+    if in_form:
+        parts.append(f"{counted(in_form, 'file')} in form already")
+    if parts:
+        print_aside(", ".join(parts))
+    return ExitStatus.after(answered=not refused, failed=bool(changed) and not writes)
+
+
+def _show(changed: Sequence[Formatted], *, diff: bool) -> None:
+    for file in changed:
+        if not diff:
+            print_result(f"would change {file.name}")
+            continue
+        text = as_diff(file.name, file.before.decode(), file.after.decode())
+        if sys.stdout.isatty():
+            print_result(for_terminal(text))
+        else:
+            sys.stdout.buffer.write(text.encode())
