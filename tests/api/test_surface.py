@@ -87,7 +87,6 @@ def test_every_command_can_be_called():
     commands = {file.stem for file in folder.glob("*.py")} - {
         "__init__",
         "completion",
-        "draw_trace",
     }
     assert {COMMANDS.get(name, name) for name in commands} <= set(rulec.__all__)
 

@@ -5,12 +5,7 @@ from __future__ import annotations
 import click
 
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.shared_options import (
-    at_option,
-    findings_options,
-    only_sources,
-    rulebooks_argument,
-)
+from rulec.cli.options import shared_options as shared
 from rulec.cli.output import counted, print_findings
 from rulec.cli.project import errors_added_to, open_session
 from rulec.diagnostics import Diagnostic
@@ -18,9 +13,9 @@ from rulec.report.text.console import progress
 
 
 @click.command()
-@rulebooks_argument
-@findings_options
-@at_option
+@shared.rulebooks_argument
+@shared.findings_options
+@shared.at_option
 def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: str) -> int:
     """Find out what is odd in RULEBOOKs (names, or paths of sources) by their automata.
 
@@ -33,7 +28,7 @@ def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: st
     # Automata and their analysis, 150 ms: not for --help.
     from rulec.analysis.lint.finding_messages import NOT_DECIDED
 
-    only_sources(rulebooks, "cannot be analyzed")
+    shared.only_sources(rulebooks, "cannot be analyzed")
     findings: list[Diagnostic] = []
     unread: list[Diagnostic] = []
     for rulebook in dict.fromkeys(rulebooks):

@@ -10,7 +10,7 @@ import click
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.shared_options import at_option, only_sources, rulebooks_argument
+from rulec.cli.options import shared_options as shared
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.project import answer_or_print, open_session
 from rulec.report.text.console import page_width, print_result
@@ -18,17 +18,11 @@ from rulec.report.text.console import page_width, print_result
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
 
-FORMATS = ("text", "markdown", "json")
-
 
 @click.command()
-@rulebooks_argument
-@click.option(
-    "--output-format",
-    type=click.Choice(FORMATS),
-    default="text",
-    show_default=True,
-    help="Text, tables in Markdown, or JSON.",
+@shared.rulebooks_argument
+@shared.choice_option(
+    "--output-format", ["text", "markdown", "json"], "Text, tables in Markdown, or JSON."
 )
 @click.option(
     "--fail-on",
@@ -46,7 +40,7 @@ FORMATS = ("text", "markdown", "json")
     shell_complete=complete_rulebooks,
     help="Say what has changed since an older audit (.json), or against another rulebook.",
 )
-@at_option
+@shared.at_option
 def command(
     rulebooks: tuple[str, ...],
     output_format: str,
@@ -70,7 +64,7 @@ def command(
     def audit(rulebook: str) -> Audit:
         return open_session(at).audit(rulebook, run_examples=run)
 
-    only_sources(rulebooks, "cannot be audited")
+    shared.only_sources(rulebooks, "cannot be audited")
     older = None
     if compare is not None:
         saved = Path(compare).suffix == ".json"

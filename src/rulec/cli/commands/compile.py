@@ -6,14 +6,14 @@ from fractions import Fraction
 
 import click
 
-from rulec.cli.options.shared_options import at_option, rulebook_argument, step_option
+from rulec.cli.options import shared_options as shared
 from rulec.cli.project import open_session
 from rulec.report.text.console import print_result
 
 
 @click.command()
-@rulebook_argument
-@step_option(
+@shared.rulebook_argument
+@shared.step_option(
     "The step of the traces to be judged, in s: a decimal, or a fraction such as 1/3. It "
     "matters to rules with bounds in seconds.  [default: that of their examples]",
 )
@@ -24,7 +24,7 @@ from rulec.report.text.console import print_result
     metavar="DIR",
     help="The folder for the files, made if need be.",
 )
-@at_option
+@shared.at_option
 def command(rulebook: str, output: str, step_s: Fraction | None, at: str) -> None:
     """Compile RULEBOOK: a name, or the path of a source.
 

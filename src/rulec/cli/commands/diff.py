@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.shared_options import (
-    at_option,
-    only_sources,
-    rules_option,
-    step_option,
-    text_output_option,
-)
+from rulec.cli.options import shared_options as shared
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import counted
 from rulec.cli.project import answer_or_print, open_session
 from rulec.files import written_whole
 from rulec.report.text.console import print_aside, progress, put_result
 from rulec.settings import search_path
-
-if TYPE_CHECKING:
-    from rulec.rulebook.rulebook_model import Rulebook
 
 
 @click.command()
@@ -37,41 +27,38 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Compare every two of the rulebooks named, or of all that there are.",
 )
-@rules_option("Only rules like PATTERN; `*` and `?` are wild. May be given several times.")
-@step_option(
+@shared.rules_option("Only rules like PATTERN; `*` and `?` are wild. May be given several times.")
+@shared.step_option(
     "The step of the traces that rules with bounds in seconds are compared on, in s.  "
     "[default: one that divides the steps of their examples]",
 )
-@click.option(
+@shared.number_option(
     "--witnesses",
-    "most",
-    type=click.IntRange(1, 100),
+    "n_witnesses",
+    least=1,
+    most=100,
     default=3,
-    show_default=True,
-    metavar="N",
-    help="Show up to N traces for every difference, each for a reason of its own.",
+    help_text="Show up to N traces for every difference, each for a reason of its own.",
 )
-@click.option(
+@shared.choice_option(
     "--output-format",
-    type=click.Choice(["text", "markdown", "json", "html", "csv"]),
-    default="text",
-    show_default=True,
-    help="Text, Markdown, JSON, a page, or a table with a line for each rule.",
+    ["text", "markdown", "json", "html", "csv"],
+    "Text, Markdown, JSON, a page, or a table with a line for each rule.",
 )
-@text_output_option()
+@shared.text_output_option()
 @click.option(
     "--witness",
     type=click.Path(dir_okay=False),
     metavar="FILE",
     help="Write the traces that one forbids and the other allows to FILE, as JSON Lines.",
 )
-@at_option
+@shared.at_option
 def command(
     rulebooks: tuple[str, ...],
     every: bool,
     patterns: tuple[str, ...],
     step_s: Fraction | None,
-    most: int,
+    n_witnesses: int,
     output_format: str,
     output: str | None,
     witness: str | None,
@@ -91,7 +78,7 @@ def command(
     from rulec.rulebook.loader import load_rulebook
     from rulec.trace.formats.json_lines import write_traces
 
-    only_sources(rulebooks, "cannot be compared")
+    shared.only_sources(rulebooks, "cannot be compared")
     if every:
         if witness is not None:
             raise click.UsageError("--witness is for two rulebooks, not for --all")
@@ -102,8 +89,13 @@ def command(
         books = sorted(
             (book for book in answers if book is not None), key=lambda book: len(book.extends)
         )
-        alone = [] if rulebooks else _sharing_no_rule(books)
-        books = [book for book in books if book.name not in alone]
+        alone = []
+        if not rulebooks:
+            uses = Counter(rule.name for book in books for rule in book.rules)
+            alone = [
+                book.name for book in books if all(uses[rule.name] == 1 for rule in book.rules)
+            ]
+            books = [book for book in books if book.name not in alone]
         if len(books) < 2:
             print_aside("there are no two rulebooks to compare")
             return ExitStatus.NOT_ANSWERED
@@ -118,7 +110,7 @@ def command(
         raise click.UsageError("name the two rulebooks that are to be compared, or say --all")
     with progress("comparing", None) as tell:
         difference = open_session(at).diff(
-            *rulebooks, patterns=patterns, step_s=step_s, witnesses=most, on_progress=tell
+            *rulebooks, patterns=patterns, step_s=step_s, witnesses=n_witnesses, on_progress=tell
         )
     if witness is not None:
         with written_whole(Path(witness)) as stream:
@@ -126,13 +118,3 @@ def command(
         print_aside(f"wrote {counted(number, 'trace')} to {witness}")
     put_result(diff_formats.render(difference, output_format), output)
     return ExitStatus.after(answered=difference.is_complete, failed=not difference.is_none)
-
-
-def _sharing_no_rule(books: Sequence[Rulebook]) -> list[str]:
-    """The names of rulebooks that share no rule's name with any other."""
-    rules_of = {book.name: {rule.name for rule in book.rules} for book in books}
-    return [
-        name
-        for name, rules in rules_of.items()
-        if not any(rules & rules_of[partner] for partner in rules_of if partner != name)
-    ]

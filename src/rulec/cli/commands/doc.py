@@ -7,12 +7,7 @@ from typing import Literal, TypeAlias, get_args
 
 import click
 
-from rulec.cli.options.shared_options import (
-    at_option,
-    only_sources,
-    rulebook_argument,
-    text_output_option,
-)
+from rulec.cli.options import shared_options as shared
 from rulec.cli.project import open_session
 from rulec.report.text.console import put_result
 
@@ -25,8 +20,8 @@ OTHERS = (".pdf", ".doc", ".docx", ".odt", ".rtf")
 
 
 @click.command()
-@rulebook_argument
-@text_output_option()
+@shared.rulebook_argument
+@shared.text_output_option()
 @click.option(
     "--format",
     "output_format",
@@ -34,14 +29,14 @@ OTHERS = (".pdf", ".doc", ".docx", ".odt", ".rtf")
     help="One page for a browser and for paper, or Markdown.  [default: markdown for a FILE that "
     "ends in .md, else html]",
 )
-@at_option
+@shared.at_option
 def command(rulebook: str, output: str | None, output_format: Format | None, at: str) -> None:
     """Write a RULEBOOK (a name, or the path of a source) as a document for lawyers.
 
     It has every rule with its provision, in plain English, as a formula and by its examples; what
     was changed of inherited rules and what was left out; values, definitions, words and an index.
     """
-    only_sources([rulebook], "cannot be made a document of")
+    shared.only_sources([rulebook], "cannot be made a document of")
     if output_format is None:
         if Path(output or "").suffix.lower() in OTHERS:
             raise click.UsageError(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
+from fnmatch import fnmatchcase
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,38 +12,43 @@ from typing import TYPE_CHECKING, Any
 import click
 
 import rulec
-from rulec.cli.commands.draw_trace import trace
-from rulec.cli.options.picture_options import picture_options, write
+from rulec.cli.options import shared_options as shared
 from rulec.cli.options.scenario_options import graph_options, read_scene
-from rulec.cli.options.shared_options import (
-    RULEBOOK_HELP,
-    at_option,
-    combined,
-    rulebook_option,
-)
+from rulec.cli.output import output_stream, print_written
 from rulec.cli.project import read_machines
+from rulec.diagnostics import RulecError, named
 from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.partition import NavigationGraph
     from rulec.planning import Maneuvers
     from rulec.planning.ranking.cheapest import Maneuver
+    from rulec.report.pictures.drawing.picture_formats import Drawing
+    from rulec.trace import Trace
 
     Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
 
+_picture_options = shared.combined(
+    shared.output_option,
+    click.option(
+        "--format",
+        "form",
+        type=click.Choice(["svg", "png", "html"]),
+        help="The format of the picture.  [default: what the file's name ends with, else svg]",
+    ),
+)
 
-_judging_options = combined(
-    [
-        rulebook_option(RULEBOOK_HELP + " Left out, nothing is judged.", required=False),
-        click.option(
-            "--maneuver",
-            "number",
-            type=click.IntRange(min=1),
-            metavar="N",
-            help="Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a rulebook]",
-        ),
-        at_option,
-    ]
+_judging_options = shared.combined(
+    shared.rulebook_option(shared.RULEBOOK_HELP + " Left out, nothing is judged.", required=False),
+    shared.number_option(
+        "--maneuver",
+        "number",
+        least=1,
+        help_text="Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a "
+        "rulebook]",
+    ),
+    shared.at_option,
 )
 
 
@@ -54,21 +61,64 @@ def command() -> None:
     """
 
 
-command.add_command(trace)
+@command.command()
+@click.argument("file")
+@shared.rulebook_option()
+@click.option(
+    "--trace", "trace_id", metavar="ID", help="Draw the trace with this id.  [default: the first]"
+)
+@shared.rules_option(
+    "Only what rules like PATTERN read; `*` and `?` are wild. May be given several times."
+)
+@click.option(
+    "--object",
+    "objects",
+    multiple=True,
+    metavar="ID",
+    help="Of the objects only this one. May be given several times.",
+)
+@shared.at_option
+@_picture_options
+def trace(
+    file: str,
+    rulebook: str,
+    trace_id: str | None,
+    patterns: tuple[str, ...],
+    objects: tuple[str, ...],
+    at: str,
+    output: Path,
+    form: str | None,
+) -> None:
+    """Draw a trace of FILE (JSON Lines, CSV or Parquet): what a rulebook reads in it, over time.
+
+    Violations are marked where they are decided, with the rule and its article.
+    """
+    # Verdicts and pictures, 150 ms: not for --help.
+    from rulec.api.pictures import trace_drawing
+    from rulec.monitoring.verify import rulebook_for_trace
+
+    rules = read_machines(rulebook, at)
+    drawn = _trace(file, trace_id)
+    for item in objects:
+        if item not in drawn.objects:
+            raise click.UsageError(
+                f"trace `{drawn.id}` has no object `{item}`; it has {named(list(drawn.objects))}."
+            )
+    used = _only(rulebook_for_trace(drawn, rules), patterns)
+    _write(trace_drawing(drawn, used, objects, patterns), output, form)
 
 
 @command.command()
 @graph_options
 @_judging_options
-@click.option(
+@shared.number_option(
     "--layer",
     "layers",
     multiple=True,
-    type=click.IntRange(min=0),
     metavar="P",
-    help="Draw layer P alone, counted from 0; may be repeated.  [default: all]",
+    help_text="Draw layer P alone, counted from 0; may be repeated.  [default: all]",
 )
-@picture_options
+@_picture_options
 def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: Any) -> None:
     """Draw SCENARIO (a name or a file) over time: cells with signatures, obstacles, a maneuver.
 
@@ -83,13 +133,13 @@ def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: An
     if layers and max(layers) > last:
         raise click.UsageError(f"There is no layer {max(layers)}; they are 0 to {last}.")
     number = options["number"] or 1
-    write(scene_drawing(graph, maneuvers, maneuver, layers, number), output, form)
+    _write(scene_drawing(graph, maneuvers, maneuver, layers, number), output, form)
 
 
 @command.command()
 @graph_options
 @_judging_options
-@picture_options
+@_picture_options
 def graph(output: Path, form: str | None, **options: Any) -> None:
     """Draw the navigation graph of SCENARIO (a name or a file), layer by layer.
 
@@ -99,7 +149,33 @@ def graph(output: Path, form: str | None, **options: Any) -> None:
     # As for ``scene``.
     from rulec.api.pictures import graph_drawing
 
-    write(graph_drawing(*_judged(**options)), output, form)
+    _write(graph_drawing(*_judged(**options)), output, form)
+
+
+def _trace(file: str, trace_id: str | None) -> Trace:
+    """The wanted trace. Raises RulecError for an unreadable one up to it."""
+    names: list[str] = []
+    for item in rulec.read_traces(file):
+        if isinstance(item, RulecError):
+            raise item
+        if trace_id in (None, item.id):
+            return item
+        names.append(item.id)
+    some = ", ".join(f"`{name}`" for name in names[:5]) + (", …" if len(names) > 5 else "")
+    raise click.UsageError(f"`{file}` has no trace `{trace_id}`; it has {some}.")
+
+
+def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRulebook:
+    """The rulebook restricted to rules that match a pattern, if any."""
+    kept = [
+        rule
+        for rule in rules.rules
+        if not patterns or any(fnmatchcase(rule.name, pattern) for pattern in patterns)
+    ]
+    if not kept:
+        choice = " or ".join(f"`{pattern}`" for pattern in patterns)
+        raise click.UsageError(f"{rules.name} has no rule like {choice}.")
+    return replace(rules, rules=tuple(kept))
 
 
 def _judged(
@@ -117,13 +193,24 @@ def _judged(
         return rulec.navigation_graph(scene, **options), None, None
     rules = read_machines(rulebook, at)
     maneuvers = rulec.find_maneuvers(read_scene(scenario, options), rules, **options)
-    wanted = number or 1
+    place = number or 1
     maneuver = None
-    if wanted <= min(maneuvers.satisfying, sys.maxsize):
-        maneuver = next(islice(cheapest(maneuvers.product), wanted - 1, None))
+    if place <= min(maneuvers.satisfying, sys.maxsize):
+        maneuver = next(islice(cheapest(maneuvers.product), place - 1, None))
     if maneuver is None and number is not None:
         raise click.UsageError(
             f"There is no maneuver {number}: "
             f"{shown_count(maneuvers.satisfying)} satisfy the rulebook."
         )
     return maneuvers.graph, maneuvers, maneuver
+
+
+def _write(drawing: Drawing, output: Path, form: str | None) -> None:
+    """Write a picture in the given format, else the file name's."""
+    # Fonts and layout, 5 ms: not for --help.
+    from rulec.report.pictures.drawing.picture_formats import as_bytes, format_of
+
+    data = as_bytes(drawing, form or format_of(str(output)), str(output))
+    with output_stream(output) as (stream, _):
+        stream.write(data)
+    print_written(str(output), output)

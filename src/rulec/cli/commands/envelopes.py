@@ -9,13 +9,8 @@ import click
 
 import rulec
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.options import shared_options as shared
 from rulec.cli.options.scenario_options import graph_options, read_scene
-from rulec.cli.options.shared_options import (
-    at_option,
-    output_option,
-    rulebook_option,
-    table_format_option,
-)
 from rulec.cli.output import output_stream, print_written
 from rulec.cli.project import read_machines
 from rulec.report.text.terminal_text import shown_count
@@ -26,19 +21,17 @@ if TYPE_CHECKING:
 
 @click.command()
 @graph_options
-@rulebook_option()
-@output_option
-@click.option(
+@shared.rulebook_option()
+@shared.output_option
+@shared.number_option(
     "--list",
     "number",
-    type=click.IntRange(min=1),
+    least=1,
     default=1,
-    show_default=True,
-    metavar="N",
-    help="Write the N cheapest satisfying maneuvers.",
+    help_text="Write the N cheapest satisfying maneuvers.",
 )
-@table_format_option("table")
-@at_option
+@shared.table_format_option("table")
+@shared.at_option
 def command(
     scenario: str,
     rulebook: str,

@@ -10,29 +10,21 @@ import click
 
 import rulec
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.options import shared_options as shared
 from rulec.cli.options.scenario_options import graph_options, read_scene
-from rulec.cli.options.shared_options import at_option, json_option, rulebook_option
 from rulec.cli.project import answer_or_print, read_machines
 from rulec.report.text.console import print_result
 
 
 @click.command()
 @graph_options
-@rulebook_option()
-@click.option(
-    "--list",
-    "n_listed",
-    type=click.IntRange(min=0),
-    metavar="N",
-    help="List the N cheapest satisfying maneuvers.",
-)
-@click.option(
+@shared.rulebook_option()
+@shared.number_option("--list", "n_listed", help_text="List the N cheapest satisfying maneuvers.")
+@shared.number_option(
     "--rank",
     "n_ranked",
-    type=click.IntRange(min=0),
-    metavar="N",
-    help="List the N best maneuvers: by what they violate, hard rules above soft ones, by levels "
-    "and weights; then by cost.",
+    help_text="List the N best maneuvers: by what they violate, hard rules above soft ones, by "
+    "levels and weights; then by cost.",
 )
 @click.option(
     "--why",
@@ -40,12 +32,10 @@ from rulec.report.text.console import print_result
     help="Say for every rule how many maneuvers violate it, how many violate no other hard rule, "
     "and give an example.",
 )
-@click.option(
+@shared.number_option(
     "--classes",
     "n_classes",
-    type=click.IntRange(min=0),
-    metavar="N",
-    help="Count the homotopy classes, and list the cheapest satisfying maneuver of N of them.",
+    help_text="Count the homotopy classes, and list the cheapest satisfying maneuver of N of them.",
 )
 @click.option(
     "--worlds",
@@ -53,14 +43,12 @@ from rulec.report.text.console import print_result
     help="Where obstacles have several predictions: count also what is left if one of them does "
     "something less likely.",
 )
-@click.option(
+@shared.file_option(
     "--after",
-    metavar="FILE",
-    type=click.Path(dir_okay=False, path_type=Path),
-    help="What was before: a file with one trace, or a monitor that was saved (.json).",
+    help_text="What was before: a file with one trace, or a monitor that was saved (.json).",
 )
-@json_option
-@at_option
+@shared.json_option
+@shared.at_option
 def command(
     scenario: str,
     rulebook: str,

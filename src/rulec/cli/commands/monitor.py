@@ -9,12 +9,7 @@ from pathlib import Path
 import click
 
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.shared_options import (
-    at_option,
-    json_option,
-    rulebook_argument,
-    step_option,
-)
+from rulec.cli.options import shared_options as shared
 from rulec.cli.project import open_session
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.report.findings.diagnostics_text import Complaints
@@ -22,25 +17,17 @@ from rulec.report.text.console import print_result
 
 
 @click.command()
-@rulebook_argument
-@step_option(
+@shared.rulebook_argument
+@shared.step_option(
     "Seconds from one state to the next: a decimal, or a fraction such as 1/3. It matters to "
     "rules with bounds in seconds.  [default: that of their examples, or of --restore]",
 )
-@click.option(
-    "--restore",
-    metavar="FILE",
-    type=click.Path(dir_okay=False, path_type=Path),
-    help="Go on where the monitor stood that was saved in FILE.",
+@shared.file_option("--restore", help_text="Go on where the monitor stood that was saved in FILE.")
+@shared.file_option(
+    "--save", help_text="Save in FILE where the monitor stands when it ends, however it ends."
 )
-@click.option(
-    "--save",
-    metavar="FILE",
-    type=click.Path(dir_okay=False, path_type=Path),
-    help="Save in FILE where the monitor stands when it ends, however it ends.",
-)
-@json_option
-@at_option
+@shared.json_option
+@shared.at_option
 def command(
     rulebook: str,
     step_s: Fraction | None,

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 import rulec
-from rulec.cli.options.shared_options import (
-    at_option,
-    json_option,
-    rulebook_argument,
-    text_output_option,
-)
+from rulec.cli.options import shared_options as shared
 from rulec.cli.options.shell_completion import complete_rules
 from rulec.diagnostics import named, nearest_name
 from rulec.report.text.console import PAGE_WIDTH, page_width, put_result
@@ -25,8 +20,6 @@ if TYPE_CHECKING:
     from rulec.report.automata.automaton_model import Automaton
     from rulec.rulebook.rulebook_model import Rule, Rulebook
 
-FORMATS = ("text", "dot", "svg")
-
 SUFFIXES = {".dot": "dot", ".gv": "dot", ".svg": "svg"}
 
 OTHERS = (".pdf", ".png", ".jpg", ".jpeg")
@@ -34,19 +27,19 @@ OTHERS = (".pdf", ".png", ".jpg", ".jpeg")
 
 
 @click.command()
-@rulebook_argument
+@shared.rulebook_argument
 @click.argument("rule", required=False, shell_complete=complete_rules)
 @click.option(
     "--automaton",
     "automaton_format",
-    type=click.Choice(FORMATS),
+    type=click.Choice(["text", "dot", "svg"]),
     help="The rule's automaton alone: as text, for Graphviz, or as a picture.",
 )
-@text_output_option(
+@shared.text_output_option(
     "Write to FILE. One that ends in .svg, .dot or .gv gets the automaton in that format.",
 )
-@json_option
-@at_option
+@shared.json_option
+@shared.at_option
 def command(
     rulebook: str,
     rule: str | None,
@@ -97,28 +90,17 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
     """Load a rulebook; a file compiled earlier comes with its automata."""
     # Rulebooks, 130 ms: not for --help.
     from rulec.automata.bundle.bundle_file import read_compiled
+    from rulec.automata.bundle.compiled_rulebook import CompiledRule
     from rulec.rulebook.rulebook_model import Rule, Rulebook
 
     if Path(reference).suffix != ".json":
         return rulec.Session(search_path(), at).load_rulebook(reference), None
     compiled = read_compiled(Path(reference))
-    rules = tuple(
-        Rule(
-            name=rule.name,
-            strength=rule.strength,
-            variables=rule.variables,
-            formula=rule.formula,
-            cite=rule.cite,
-            says=rule.says,
-            level=rule.level,
-            weight=rule.weight,
-            source=rule.source,
-            certainty=rule.certainty,
-            book=rule.book or compiled.name,
-        )
-        for rule in compiled.rules
-    )
-    return Rulebook(compiled.name, compiled.vocabulary, rules), compiled
+    # What a compiled rule has besides is its automaton, and the one step that this is for.
+    names = {field.name for field in fields(CompiledRule)} - {"machine", "hoa", "step_s"}
+    rules = [Rule(**{name: getattr(rule, name) for name in names}) for rule in compiled.rules]
+    in_books = tuple(replace(rule, book=rule.book or compiled.name) for rule in rules)
+    return Rulebook(compiled.name, compiled.vocabulary, in_books), compiled
 
 
 def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:

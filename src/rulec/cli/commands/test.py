@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.shared_options import at_option, only_sources, rulebooks_argument
+from rulec.cli.options import shared_options as shared
 from rulec.cli.project import answer_or_print, open_session
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_aside, print_result
@@ -28,7 +28,7 @@ def _number(
 
 
 @click.command()
-@rulebooks_argument
+@shared.rulebooks_argument
 @click.option(
     "--run",
     "pattern",
@@ -36,13 +36,7 @@ def _number(
     help="Run the examples whose RULE or RULE/LABEL this matches; * and ? are wild. "
     "One without a label goes by its number.",
 )
-@click.option(
-    "--output-format",
-    type=click.Choice(["full", "json", "junit"]),
-    default="full",
-    show_default=True,
-    help="Text, JSON, or JUnit XML.",
-)
+@shared.choice_option("--output-format", ["full", "json", "junit"], "Text, JSON, or JUnit XML.")
 @click.option("--fail-on-empty", is_flag=True, help="Fail if there is no example to run.")
 @click.option(
     "--coverage",
@@ -58,7 +52,7 @@ def _number(
     metavar="PERCENT",
     help="Fail if the examples cover less; implies --coverage.",
 )
-@at_option
+@shared.at_option
 def command(
     rulebooks: tuple[str, ...],
     pattern: str | None,
@@ -83,7 +77,7 @@ def command(
         print_diagnostics([*run.warnings, *uncovered_verdicts(run)])
         return run
 
-    only_sources(rulebooks, "has no examples")
+    shared.only_sources(rulebooks, "has no examples")
     answers = [answer_or_print(partial(run_examples, rulebook)) for rulebook in rulebooks]
     runs = [answer for answer in answers if answer is not None]
     measured = with_coverage or threshold is not None

@@ -10,13 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 import rulec
-from rulec.cli.options.recording_options import (
-    drives_options,
-    given_drives_option,
-    requested_drives,
-)
-from rulec.cli.options.scenario_options import graph_options, read_scene
-from rulec.cli.options.shared_options import output_option, rulebook_option, table_format_option
+from rulec.cli.options import scenario_options
+from rulec.cli.options import shared_options as shared
 from rulec.cli.output import output_stream, print_written
 from rulec.cli.project import read_machines
 from rulec.diagnostics import SourceLocation
@@ -31,16 +26,15 @@ MOST_TRACES = 10_000_000
 
 
 @click.command()
-@graph_options
-@rulebook_option(
+@scenario_options.graph_options
+@shared.rulebook_option(
     "Write the traces in this rulebook's words, with the partition that it reads.", required=False
 )
-@output_option
-@click.option(
+@shared.output_option
+@shared.number_option(
     "--limit",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help=f"Write the first N only; needed where there are more than {MOST_TRACES:,}.",
+    least=1,
+    help_text=f"Write the first N only; needed where there are more than {MOST_TRACES:,}.",
 )
 @click.option(
     "--recorded",
@@ -48,8 +42,8 @@ MOST_TRACES = 10_000_000
     help="Of recorded traffic: write what its vehicles did, every one or that of --ego, instead of "
     "what ego could do.",
 )
-@table_format_option("traces")
-@drives_options
+@shared.table_format_option("traces")
+@scenario_options.drives_options
 def command(
     scenario: str,
     rulebook: str | None,
@@ -57,9 +51,6 @@ def command(
     limit: int | None,
     recorded: bool,
     form: Format | None,
-    thresholds: tuple[str, ...],
-    assumed: tuple[str, ...],
-    as_recorded: bool,
     **options: Any,
 ) -> None:
     """Write every maneuver of SCENARIO (a name or a file) as a trace: JSON Lines, CSV or Parquet.
@@ -67,26 +58,20 @@ def command(
     With --recorded, what the vehicles of recorded traffic did. `rulec verify` reads the file. It
     appears whole or not at all.
     """
-    about = {"thresholds": thresholds, "assumed": assumed, "as_recorded": as_recorded}
     if recorded:
         _write_drives(
-            Path(scenario),
-            output,
-            rulebook=rulebook,
-            limit=limit,
-            form=form,
-            options=options,
-            about=about,
+            Path(scenario), output, rulebook=rulebook, limit=limit, form=form, options=options
         )
         return
-    if option := given_drives_option(about):
+    about = {name: options.pop(name) for name in ("thresholds", "assumed", "as_recorded")}
+    if option := scenario_options.given_drives_option(about):
         raise click.UsageError(f"{option} is for drives: add --recorded.")
     # Maneuvers and the formats of traces, 130 ms: not for --help, and not for recordings.
     from rulec.planning.product.graph_product import count_paths
     from rulec.trace.formats.trace_files import format_of, kinds_in, write_traces
     from rulec.trace.trace_model import all_traces
 
-    scene = read_scene(scenario, options)
+    scene = scenario_options.read_scene(scenario, options)
     if rulebook is None:
         options["partition"] = options["partition"] or "paper"
         graph = rulec.navigation_graph(scene, **options).trace_graph()
@@ -108,8 +93,8 @@ def command(
     print_written(f"{wanted:,} of {shown_count(total)} traces to {output}", output)
 
 
-_OF_DRIVES = {"ego", "net"}
-"""The options for recorded scenes that mean something for drives, too."""
+_OF_DRIVES = {"ego", "net", "thresholds", "assumed", "as_recorded"}
+"""The options that mean something for drives."""
 
 
 def _write_drives(
@@ -120,7 +105,6 @@ def _write_drives(
     limit: int | None,
     form: Format | None,
     options: Mapping[str, Any],
-    about: Mapping[str, Any],
 ) -> None:
     """Write what the vehicles of a recording did."""
     # numpy and shapely, 200 ms: only for recordings.
@@ -137,7 +121,7 @@ def _write_drives(
     egos = () if options["ego"] is None else (options["ego"],)
     result = selected_drives(
         read_recording(file, options["net"]),
-        requested_drives(egos, about, vocabulary),
+        scenario_options.requested_drives(egos, options, vocabulary),
         str(file),
         "" if book is None else book.traffic,
         vocabulary,
@@ -168,12 +152,15 @@ def _given_maneuvers_option(options: Mapping[str, Any]) -> str | None:
     """A given option that means nothing for recorded drives, if any."""
     context = click.get_current_context()
     typed = click.core.ParameterSource.COMMANDLINE
-    for parameter in context.command.params:
-        name = parameter.name or ""
-        is_typed = context.get_parameter_source(name) is typed
-        if is_typed and name in options and name not in _OF_DRIVES:
-            return parameter.opts[0]
-    return None
+    names = options.keys() - _OF_DRIVES
+    return next(
+        (
+            parameter.opts[0]
+            for parameter in context.command.params
+            if parameter.name in names and context.get_parameter_source(parameter.name) is typed
+        ),
+        None,
+    )
 
 
 def _counted_aloud(traces: Iterable[Trace], tell: Callable[[float], None]) -> Iterator[Trace]:

@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from rulec.cli.options.shared_options import at_option, json_option, only_sources
+from rulec.cli.options import shared_options as shared
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.project import open_session
 from rulec.report.text.console import page_width, print_result
@@ -22,8 +22,8 @@ from rulec.settings import search_path
     metavar="PATTERN",
     help="Show only the rules whose name this matches; * and ? are wild.",
 )
-@json_option
-@at_option
+@shared.json_option
+@shared.at_option
 def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, at: str) -> None:
     """Show what a RULEBOOK inherits, overrides, softens and drops, and which book set what.
 
@@ -36,7 +36,7 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, 
     from rulec.report.rulebooks import lineage_tree
     from rulec.rulebook.files.catalogue import rulebook_trees
 
-    only_sources(rulebooks, "cannot be taken apart")
+    shared.only_sources(rulebooks, "cannot be taken apart")
     width, color = page_width(), wants_color(sys.stdout)
     if len(rulebooks) == 1:
         inherited = lineage_tree.chosen(open_session(at).tree(rulebooks[0]), pattern)

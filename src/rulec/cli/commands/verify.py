@@ -8,25 +8,14 @@ import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, cast
 
 import click
 
 import rulec
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options.recording_options import (
-    drives_options,
-    egos_option,
-    given_drives_option,
-    requested_drives,
-)
-from rulec.cli.options.shared_options import (
-    at_option,
-    json_option,
-    net_option,
-    rulebook_option,
-    table_format_option,
-)
+from rulec.cli.options import scenario_options
+from rulec.cli.options import shared_options as shared
 from rulec.cli.project import read_machines
 from rulec.diagnostics import RulecError
 from rulec.files import opened
@@ -36,6 +25,7 @@ from rulec.report.text.console import print_result, progress
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.extraction.selection import RequestedDrives
+    from rulec.monitoring.explain.explanation import Explanation
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
@@ -45,25 +35,29 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@rulebook_option()
-@click.option(
+@shared.rulebook_option()
+@shared.number_option(
     "--explain",
     "n_explained",
-    type=click.IntRange(min=0),
-    metavar="N",
-    help="Explain the first N violations state by state.  [default: 1; with --json 0]",
+    help_text="Explain the first N violations state by state.  [default: 1; with --json 0]",
 )
 @click.option(
     "--every-part",
     is_flag=True,
     help="Explain by every part of a formula and every state, however large the table becomes.",
 )
-@table_format_option("traces")
-@egos_option
-@drives_options
-@net_option
-@json_option
-@at_option
+@shared.table_format_option("traces")
+@click.option(
+    "--ego",
+    "egos",
+    multiple=True,
+    metavar="ID",
+    help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
+)
+@scenario_options.drives_options
+@scenario_options.net_option
+@shared.json_option
+@shared.at_option
 def command(
     files: tuple[str, ...],
     rulebook: str,
@@ -92,13 +86,17 @@ def command(
     rules = read_machines(rulebook, at)
     recordings = [file for file in files if is_recording(file)]
     if not recordings and (
-        option := "--net" if net else "--ego" if egos else given_drives_option(options)
+        option := "--net"
+        if net
+        else "--ego"
+        if egos
+        else scenario_options.given_drives_option(options)
     ):
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
     run = _Run(rules, json_output, Complaints(), to_explain, every_part)
     if recordings:
-        about = requested_drives(egos, options, rules.vocabulary)
+        about = scenario_options.requested_drives(egos, options, rules.vocabulary)
         for file in recordings:
             run.recording(file, net, about)
     if len(recordings) < len(files):
@@ -123,83 +121,81 @@ class _Run:
         """Judge the traces of files, with one summary for all of them."""
         # Tables of automata and verdicts, 230 ms: not for --help, and not for recordings alone.
         from rulec.monitoring.batch.batch_verify import rulebook_for
-        from rulec.monitoring.explain.explanation import explain
-        from rulec.monitoring.verdict import Verdict
+        from rulec.monitoring.verdict import NotJudged
         from rulec.report.verdicts import verdict_json, verdict_report
-        from rulec.trace import Trace
 
         satisfied = violated = not_judged = 0
         for traces, place, answer in _answers(files, form, self.rules):
-            if isinstance(answer, Verdict):
-                satisfied += answer.satisfied
-                violated += not answer.satisfied
-                if not (answer.violations or self.json_output):
-                    continue
+            if isinstance(answer, NotJudged):
+                not_judged += 1
+                self._complain(answer.error)
+                if self.json_output:
+                    print_result(verdict_json.not_judged_as_json(answer))
+                continue
+            satisfied += answer.satisfied
+            violated += not answer.satisfied
+            if answer.violations or self.json_output:
                 used = rulebook_for(traces, place, self.rules)
-                explained = []
-                chosen = answer.violations[: self.to_explain]
-                if chosen:
-                    self.to_explain -= len(chosen)
-                    trace = traces[place]
-                    assert isinstance(trace, Trace), "what has a verdict is a trace"
-                    explained = [explain(violation, trace, used) for violation in chosen]
+                explained = self._explained(answer, traces[place], used)
                 print_result(
                     verdict_json.as_json(answer, used, explained)
                     if self.json_output
                     else verdict_report.as_text(answer, used, explained, every_part=self.every_part)
                 )
-            else:
-                not_judged += 1
-                self.complaints.add(answer.error)
-                if self.json_output:
-                    print_result(verdict_json.not_judged_as_json(answer))
         if not self.json_output:
             print_result(verdict_report.summary(satisfied, violated, not_judged))
         self.violated |= violated > 0
-        self.not_answered |= not_judged > 0
 
-    def recording(self, file: str, net: Path | None, wanted: RequestedDrives) -> None:
+    def recording(self, file: str, net: Path | None, request: RequestedDrives) -> None:
         """Judge every drive of a recording."""
         # numpy and shapely, 250 ms: only for recordings.
         from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
-        from rulec.monitoring.explain.explanation import explain
-        from rulec.monitoring.verdict import NotJudged, Verdict
+        from rulec.monitoring.verdict import NotJudged
         from rulec.report.verdicts import recording_table, verdict_report
-        from rulec.report.verdicts import recording_table as report
 
         try:
-            judged = rulec.verify_recording(file, self.rules, wanted, net)
+            drives = rulec.verify_recording(file, self.rules, request, net)
         except RulecError as error:
-            self.complaints.add(error)
-            self.not_answered = True
+            self._complain(error)
             return
         tally = ViolationTally()
         blocks = []
-        with progress(f"judging {file}", len(judged.egos)) as tell:
-            for number, answer in enumerate(judged.answers(), 1):
+        with progress(f"judging {file}", len(drives.egos)) as tell:
+            for number, answer in enumerate(drives.answers(), 1):
                 tell(number)
                 tally.add(answer)
-                explained = []
-                if isinstance(answer, DriveVerdict) and isinstance(answer.answer, Verdict):
-                    chosen = answer.answer.violations[: self.to_explain]
-                    self.to_explain -= len(chosen)
-                    explained = [
-                        explain(violation, answer.drive.trace, judged.rules) for violation in chosen
-                    ]
-                    if explained:
+                explained: list[Explanation] = []
+                if isinstance(answer, DriveVerdict):
+                    verdict = answer.answer
+                    if isinstance(verdict, NotJudged):
+                        self._complain(verdict.error)
+                    elif explained := self._explained(verdict, answer.drive.trace, drives.rules):
                         details = verdict_report.as_text(
-                            answer.answer, judged.rules, explained, every_part=self.every_part
+                            verdict, drives.rules, explained, every_part=self.every_part
                         )
                         blocks.append(f"\n{details}")
-                elif isinstance(answer, DriveVerdict) and isinstance(answer.answer, NotJudged):
-                    self.complaints.add(answer.answer.error)
-                    self.not_answered = True
                 if self.json_output:
-                    print_result(recording_table.as_json(answer, judged, explained))
+                    print_result(recording_table.as_json(answer, drives, explained))
         if not self.json_output:
-            print_result("\n".join([report.as_text(judged, tally), *blocks, report.summary(tally)]))
+            table, summary = recording_table.as_text(drives, tally), recording_table.summary(tally)
+            print_result("\n".join([table, *blocks, summary]))
         self.violated |= bool(tally.violated)
         self.not_answered |= not tally.judged
+
+    def _explained(
+        self, verdict: Verdict, trace: Trace | RulecError, rules: CompiledRulebook
+    ) -> list[Explanation]:
+        """The first violations explained, as many as are still to be."""
+        # Tables of automata, as for ``traces``.
+        from rulec.monitoring.explain.explanation import explain
+
+        chosen = verdict.violations[: self.to_explain]
+        self.to_explain -= len(chosen)
+        return [explain(violation, cast("Trace", trace), rules) for violation in chosen]
+
+    def _complain(self, error: RulecError) -> None:
+        self.complaints.add(error)
+        self.not_answered = True
 
 
 def _answers(

@@ -1,18 +1,21 @@
-"""Arguments for a scenario's partition and for choices in recorded scenes."""
+"""Arguments for a scenario's partition, for recorded scenes and for recorded drives."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.options.shared_options import combined, net_option
+from rulec.cli.options.shared_options import choice_option, combined, file_option
 from rulec.cli.options.shell_completion import complete_scenarios
 
 if TYPE_CHECKING:
+    from rulec.extraction.selection import RequestedDrives
     from rulec.scenario import Scenario
+    from rulec.vocabulary import Vocabulary
 
 _WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
 
@@ -40,56 +43,60 @@ def _prediction(
     return fractions
 
 
+net_option = file_option(
+    "--net",
+    help_text="For SUMO's floating-car data: the net.  [default: the one they name, or the only "
+    "one ending in .net.xml beside them]",
+)
+
 _scene_options = combined(
-    [
-        click.option(
-            "--ego",
-            metavar="ID",
-            help="In a recorded scene: the planning problem or the vehicle that is ego.  "
-            "[default: the first planning problem]",
-        ),
-        click.option(
-            "--at-time",
-            "at_s",
-            type=float,
-            metavar="S",
-            help="In a recorded scene: the moment to start from, in s.  [default: that of the "
-            "planning problem, or the vehicle's first]",
-        ),
-        click.option(
-            "--reference",
-            metavar="LANELET",
-            help="In a recorded scene: the lanelet whose middle is the line along the road.  "
-            "[default: the one ego is on]",
-        ),
-        click.option(
-            "--prediction",
-            callback=_prediction,
-            default="recorded",
-            show_default=True,
-            metavar="KIND",
-            help="In a recorded scene: others move as `recorded`, or with `constant` acceleration, "
-            "or do the one or the other, as in `recorded=0.7,constant=0.3`.",
-        ),
-        click.option(
-            "--ego-width",
-            "ego_width_m",
-            type=click.FloatRange(min=0, max=100),
-            metavar="M",
-            help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
-            "[default: as wide as the vehicle that it is, if any; else a point]",
-        ),
-        click.option(
-            "--congested-below",
-            "congested_below_kmh",
-            type=click.FloatRange(min=0),
-            default=30.0,
-            show_default=True,
-            metavar="KMH",
-            help="In a recorded scene: traffic counts as congested below this median speed.",
-        ),
-        net_option,
-    ]
+    click.option(
+        "--ego",
+        metavar="ID",
+        help="In a recorded scene: the planning problem or the vehicle that is ego.  "
+        "[default: the first planning problem]",
+    ),
+    click.option(
+        "--at-time",
+        "at_s",
+        type=float,
+        metavar="S",
+        help="In a recorded scene: the moment to start from, in s.  [default: that of the "
+        "planning problem, or the vehicle's first]",
+    ),
+    click.option(
+        "--reference",
+        metavar="LANELET",
+        help="In a recorded scene: the lanelet whose middle is the line along the road.  "
+        "[default: the one ego is on]",
+    ),
+    click.option(
+        "--prediction",
+        callback=_prediction,
+        default="recorded",
+        show_default=True,
+        metavar="KIND",
+        help="In a recorded scene: others move as `recorded`, or with `constant` acceleration, "
+        "or do the one or the other, as in `recorded=0.7,constant=0.3`.",
+    ),
+    click.option(
+        "--ego-width",
+        "ego_width_m",
+        type=click.FloatRange(min=0, max=100),
+        metavar="M",
+        help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
+        "[default: as wide as the vehicle that it is, if any; else a point]",
+    ),
+    click.option(
+        "--congested-below",
+        "congested_below_kmh",
+        type=click.FloatRange(min=0),
+        default=30.0,
+        show_default=True,
+        metavar="KMH",
+        help="In a recorded scene: traffic counts as congested below this median speed.",
+    ),
+    net_option,
 )
 """What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
 
@@ -107,40 +114,83 @@ def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
 
 
 graph_options = combined(
-    [
-        click.argument("scenario", shell_complete=complete_scenarios),
-        click.option(
-            "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
-        ),
-        click.option(
-            "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
-        ),
-        click.option(
-            "--partition",
-            type=click.Choice(["paper", "fine"]),
-            help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
-            "paper without one]",
-        ),
-        click.option(
-            "--extent",
-            type=click.Choice(["lane", "body"]),
-            default="lane",
-            show_default=True,
-            help="How wide obstacles are: all of the lanes that they touch, or what they sweep, "
-            "and half of ego's width to either side.",
-        ),
-        click.option(
-            "--adjacency",
-            type=click.Choice(["touch", "edge", "forward"]),
-            default="touch",
-            show_default=True,
-            help="Which cells are neighbours: those that meet in a point, along a border, "
-            "or along a border and not only behind.",
-        ),
-        _scene_options,
-    ]
+    click.argument("scenario", shell_complete=complete_scenarios),
+    click.option("--step", "step_s", type=float, metavar="S", help="The planning interval, in s."),
+    click.option(
+        "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
+    ),
+    click.option(
+        "--partition",
+        type=click.Choice(["paper", "fine"]),
+        help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
+        "paper without one]",
+    ),
+    choice_option(
+        "--extent",
+        ["lane", "body"],
+        "How wide obstacles are: all of the lanes that they touch, or what they sweep, "
+        "and half of ego's width to either side.",
+    ),
+    choice_option(
+        "--adjacency",
+        ["touch", "edge", "forward"],
+        "Which cells are neighbours: those that meet in a point, along a border, "
+        "or along a border and not only behind.",
+    ),
+    _scene_options,
 )
-"""The scenario, and how it is cut into cells: step, horizon, partition, adjacency.
+"""The scenario, and how it is cut into cells; the rest is what ``read_scene`` takes out again."""
 
-Also what can be chosen about a recorded scene, which ``read_scene`` takes out again.
-"""
+drives_options = combined(
+    click.option(
+        "--assume",
+        "assumed",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="In recorded traffic: what holds all along, such as built_up=true.",
+    ),
+    click.option(
+        "--threshold",
+        "thresholds",
+        multiple=True,
+        metavar="NAME=NUMBER",
+        help="In recorded traffic: one of the numbers by which words are derived.",
+    ),
+    click.option(
+        "--as-recorded",
+        is_flag=True,
+        help="In recorded traffic: do not mirror it where the rulebook's traffic keeps to the "
+        "other side.",
+    ),
+)
+"""How the drives of a recording become traces; ``requested_drives`` takes their values."""
+
+
+def given_drives_option(options: Mapping[str, Any]) -> str | None:
+    """One of ``drives_options`` that has been given, if any."""
+    names = {"assumed": "--assume", "thresholds": "--threshold", "as_recorded": "--as-recorded"}
+    return next((names[name] for name, value in options.items() if value), None)
+
+
+def requested_drives(
+    egos: tuple[str, ...], options: Mapping[str, Any], vocabulary: Vocabulary | None
+) -> RequestedDrives:
+    """The drives of these vehicles, with the values of ``drives_options``.
+
+    Raises:
+        click.UsageError: an assumption or a threshold is none.
+    """
+    # numpy and shapely, 150 ms: only for recordings.
+    from rulec.extraction.selection import RequestedDrives, assumption_options, threshold_options
+
+    if options["assumed"] and vocabulary is None:
+        raise click.UsageError("--assume needs a rulebook, in whose words it is: --rulebook R")
+    try:
+        return RequestedDrives(
+            egos,
+            threshold_options(options["thresholds"]),
+            {} if vocabulary is None else assumption_options(options["assumed"], vocabulary),
+            options["as_recorded"],
+        )
+    except ValueError as problem:
+        raise click.UsageError(f"{problem}.") from None

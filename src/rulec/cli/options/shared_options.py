@@ -20,7 +20,7 @@ RULEBOOK_HELP = "A rulebook: its name, its source (.rules) or a compiled one (.j
 _SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
 
 
-def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], Decorated]:
+def combined(*options: Callable[[Any], Any]) -> Callable[[Decorated], Decorated]:
     """Combine several options into one decorator, in the order of the help."""
 
     def decorate(function: Decorated) -> Decorated:
@@ -29,6 +29,30 @@ def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], D
         return function
 
     return decorate
+
+
+def choice_option(
+    name: str, choices: Sequence[str], help_text: str
+) -> Callable[[Decorated], Decorated]:
+    """One of several words, of which the first is the default."""
+    kind = click.Choice(choices)
+    return click.option(name, type=kind, default=choices[0], show_default=True, help=help_text)
+
+
+def number_option(
+    *names: str, help_text: str, least: int = 0, metavar: str = "N", **settings: Any
+) -> Callable[[Decorated], Decorated]:
+    """A whole number of at least ``least``, with further settings of click."""
+    kind = click.IntRange(least, settings.pop("most", None))
+    return click.option(
+        *names, type=kind, metavar=metavar, show_default=True, help=help_text, **settings
+    )
+
+
+def file_option(*names: str, help_text: str) -> Callable[[Decorated], Decorated]:
+    """The path of a file that is read or written beside the main ones."""
+    kind = click.Path(dir_okay=False, path_type=Path)
+    return click.option(*names, metavar="FILE", type=kind, help=help_text)
 
 
 def _seconds(
@@ -128,23 +152,12 @@ at_option = click.option(
 )
 
 findings_options = combined(
-    [
-        click.option(
-            "--output-format",
-            type=click.Choice(FORMATS),
-            default="full",
-            show_default=True,
-            help="Text with the lines in question, a line each, JSON, GitHub annotations, "
-            "SARIF 2.1.0.",
-        ),
-        click.option(
-            "--fail-on",
-            type=click.Choice(["error", "warning"]),
-            default="error",
-            show_default=True,
-            help="What makes the exit status 1.",
-        ),
-    ]
+    choice_option(
+        "--output-format",
+        FORMATS,
+        "Text with the lines in question, a line each, JSON, GitHub annotations, SARIF 2.1.0.",
+    ),
+    choice_option("--fail-on", ["error", "warning"], "What makes the exit status 1."),
 )
 """How findings are written, and which of them make the exit status 1."""
 
@@ -159,12 +172,3 @@ def table_format_option(content: str) -> Callable[[Decorated], Decorated]:
         type=click.Choice(["jsonl", "csv", "parquet"]),
         help=f"The format of the {content}.  [default: what the file's name ends with, else jsonl]",
     )
-
-
-net_option = click.option(
-    "--net",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE",
-    help="For SUMO's floating-car data: the net.  [default: the one they name, or the only one "
-    "ending in .net.xml beside them]",
-)
