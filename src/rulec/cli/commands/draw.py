@@ -30,25 +30,31 @@ if TYPE_CHECKING:
     Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
 
 _picture_options = shared.combined(
-    shared.output_option,
-    click.option(
-        "--format",
-        "form",
-        type=click.Choice(["svg", "png", "html"]),
-        help="The format of the picture.  [default: what the file's name ends with, else svg]",
-    ),
+    [
+        shared.output_option,
+        click.option(
+            "--format",
+            "form",
+            type=click.Choice(["svg", "png", "html"]),
+            help="The format of the picture.  [default: what the file's name ends with, else svg]",
+        ),
+    ]
 )
 
 _judging_options = shared.combined(
-    shared.rulebook_option(shared.RULEBOOK_HELP + " Left out, nothing is judged.", required=False),
-    shared.number_option(
-        "--maneuver",
-        "number",
-        least=1,
-        help_text="Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a "
-        "rulebook]",
-    ),
-    shared.at_option,
+    [
+        shared.rulebook_option(
+            shared.RULEBOOK_HELP + " Left out, nothing is judged.", required=False
+        ),
+        shared.number_option(
+            "--maneuver",
+            "number",
+            least=1,
+            help_text="Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a "
+            "rulebook]",
+        ),
+        shared.at_option,
+    ]
 )
 
 

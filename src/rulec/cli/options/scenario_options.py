@@ -50,53 +50,55 @@ net_option = file_option(
 )
 
 _scene_options = combined(
-    click.option(
-        "--ego",
-        metavar="ID",
-        help="In a recorded scene: the planning problem or the vehicle that is ego.  "
-        "[default: the first planning problem]",
-    ),
-    click.option(
-        "--at-time",
-        "at_s",
-        type=float,
-        metavar="S",
-        help="In a recorded scene: the moment to start from, in s.  [default: that of the "
-        "planning problem, or the vehicle's first]",
-    ),
-    click.option(
-        "--reference",
-        metavar="LANELET",
-        help="In a recorded scene: the lanelet whose middle is the line along the road.  "
-        "[default: the one ego is on]",
-    ),
-    click.option(
-        "--prediction",
-        callback=_prediction,
-        default="recorded",
-        show_default=True,
-        metavar="KIND",
-        help="In a recorded scene: others move as `recorded`, or with `constant` acceleration, "
-        "or do the one or the other, as in `recorded=0.7,constant=0.3`.",
-    ),
-    click.option(
-        "--ego-width",
-        "ego_width_m",
-        type=click.FloatRange(min=0, max=100),
-        metavar="M",
-        help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
-        "[default: as wide as the vehicle that it is, if any; else a point]",
-    ),
-    click.option(
-        "--congested-below",
-        "congested_below_kmh",
-        type=click.FloatRange(min=0),
-        default=30.0,
-        show_default=True,
-        metavar="KMH",
-        help="In a recorded scene: traffic counts as congested below this median speed.",
-    ),
-    net_option,
+    [
+        click.option(
+            "--ego",
+            metavar="ID",
+            help="In a recorded scene: the planning problem or the vehicle that is ego.  "
+            "[default: the first planning problem]",
+        ),
+        click.option(
+            "--at-time",
+            "at_s",
+            type=float,
+            metavar="S",
+            help="In a recorded scene: the moment to start from, in s.  [default: that of the "
+            "planning problem, or the vehicle's first]",
+        ),
+        click.option(
+            "--reference",
+            metavar="LANELET",
+            help="In a recorded scene: the lanelet whose middle is the line along the road.  "
+            "[default: the one ego is on]",
+        ),
+        click.option(
+            "--prediction",
+            callback=_prediction,
+            default="recorded",
+            show_default=True,
+            metavar="KIND",
+            help="In a recorded scene: others move as `recorded`, or with `constant` acceleration, "
+            "or do the one or the other, as in `recorded=0.7,constant=0.3`.",
+        ),
+        click.option(
+            "--ego-width",
+            "ego_width_m",
+            type=click.FloatRange(min=0, max=100),
+            metavar="M",
+            help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
+            "[default: as wide as the vehicle that it is, if any; else a point]",
+        ),
+        click.option(
+            "--congested-below",
+            "congested_below_kmh",
+            type=click.FloatRange(min=0),
+            default=30.0,
+            show_default=True,
+            metavar="KMH",
+            help="In a recorded scene: traffic counts as congested below this median speed.",
+        ),
+        net_option,
+    ]
 )
 """What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
 
@@ -114,54 +116,60 @@ def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
 
 
 graph_options = combined(
-    click.argument("scenario", shell_complete=complete_scenarios),
-    click.option("--step", "step_s", type=float, metavar="S", help="The planning interval, in s."),
-    click.option(
-        "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
-    ),
-    click.option(
-        "--partition",
-        type=click.Choice(["paper", "fine"]),
-        help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
-        "paper without one]",
-    ),
-    choice_option(
-        "--extent",
-        ["lane", "body"],
-        "How wide obstacles are: all of the lanes that they touch, or what they sweep, "
-        "and half of ego's width to either side.",
-    ),
-    choice_option(
-        "--adjacency",
-        ["touch", "edge", "forward"],
-        "Which cells are neighbours: those that meet in a point, along a border, "
-        "or along a border and not only behind.",
-    ),
-    _scene_options,
+    [
+        click.argument("scenario", shell_complete=complete_scenarios),
+        click.option(
+            "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
+        ),
+        click.option(
+            "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
+        ),
+        click.option(
+            "--partition",
+            type=click.Choice(["paper", "fine"]),
+            help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
+            "paper without one]",
+        ),
+        choice_option(
+            "--extent",
+            ["lane", "body"],
+            "How wide obstacles are: all of the lanes that they touch, or what they sweep, "
+            "and half of ego's width to either side.",
+        ),
+        choice_option(
+            "--adjacency",
+            ["touch", "edge", "forward"],
+            "Which cells are neighbours: those that meet in a point, along a border, "
+            "or along a border and not only behind.",
+        ),
+        _scene_options,
+    ]
 )
 """The scenario, and how it is cut into cells; the rest is what ``read_scene`` takes out again."""
 
 drives_options = combined(
-    click.option(
-        "--assume",
-        "assumed",
-        multiple=True,
-        metavar="NAME=VALUE",
-        help="In recorded traffic: what holds all along, such as built_up=true.",
-    ),
-    click.option(
-        "--threshold",
-        "thresholds",
-        multiple=True,
-        metavar="NAME=NUMBER",
-        help="In recorded traffic: one of the numbers by which words are derived.",
-    ),
-    click.option(
-        "--as-recorded",
-        is_flag=True,
-        help="In recorded traffic: do not mirror it where the rulebook's traffic keeps to the "
-        "other side.",
-    ),
+    [
+        click.option(
+            "--assume",
+            "assumed",
+            multiple=True,
+            metavar="NAME=VALUE",
+            help="In recorded traffic: what holds all along, such as built_up=true.",
+        ),
+        click.option(
+            "--threshold",
+            "thresholds",
+            multiple=True,
+            metavar="NAME=NUMBER",
+            help="In recorded traffic: one of the numbers by which words are derived.",
+        ),
+        click.option(
+            "--as-recorded",
+            is_flag=True,
+            help="In recorded traffic: do not mirror it where the rulebook's traffic keeps to the "
+            "other side.",
+        ),
+    ]
 )
 """How the drives of a recording become traces; ``requested_drives`` takes their values."""
 

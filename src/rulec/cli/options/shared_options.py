@@ -20,7 +20,7 @@ RULEBOOK_HELP = "A rulebook: its name, its source (.rules) or a compiled one (.j
 _SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
 
 
-def combined(*options: Callable[[Any], Any]) -> Callable[[Decorated], Decorated]:
+def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], Decorated]:
     """Combine several options into one decorator, in the order of the help."""
 
     def decorate(function: Decorated) -> Decorated:
@@ -152,12 +152,14 @@ at_option = click.option(
 )
 
 findings_options = combined(
-    choice_option(
-        "--output-format",
-        FORMATS,
-        "Text with the lines in question, a line each, JSON, GitHub annotations, SARIF 2.1.0.",
-    ),
-    choice_option("--fail-on", ["error", "warning"], "What makes the exit status 1."),
+    [
+        choice_option(
+            "--output-format",
+            FORMATS,
+            "Text with the lines in question, a line each, JSON, GitHub annotations, SARIF 2.1.0.",
+        ),
+        choice_option("--fail-on", ["error", "warning"], "What makes the exit status 1."),
+    ]
 )
 """How findings are written, and which of them make the exit status 1."""
 
