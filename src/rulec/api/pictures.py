@@ -13,7 +13,7 @@ from rulec.planning.product.accepted_edges import accepted_edges
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.report.pictures.drawing.picture_formats import Drawing, as_bytes
+from rulec.report.pictures.drawing.picture_formats import Drawing
 from rulec.report.pictures.graph_picture import graph_picture
 from rulec.report.pictures.picture_captions import graph_title, scene_title, trace_title
 from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
@@ -60,20 +60,3 @@ def graph_drawing(
     edges = accepted_edges(hard, product)
     picture = graph_picture(graph, edges, maneuver, judged=maneuvers is not None)
     return Drawing(graph_title(graph, maneuvers, product.accepted), [picture])
-
-
-def draw_trace(trace: Trace, rules: CompiledRulebook, form: str) -> bytes:
-    """A trace's drawing as the content of a file. Raises RulecError."""
-    return as_bytes(trace_drawing(trace, rules), form, trace.id)
-
-
-def draw_maneuvers(
-    subject: NavigationGraph | Maneuvers, maneuver: Maneuver | None, form: str, *, as_graph: bool
-) -> bytes:
-    """Draw a scene or its graph as file content. Raises RulecError."""
-    maneuvers = subject if isinstance(subject, Maneuvers) else None
-    graph = subject.graph if isinstance(subject, Maneuvers) else subject
-    if maneuver is None and maneuvers is not None:
-        maneuver = next(iter(maneuvers.cheapest(1)), None)
-    drawing = (graph_drawing if as_graph else scene_drawing)(graph, maneuvers, maneuver)
-    return as_bytes(drawing, form, drawing.title)

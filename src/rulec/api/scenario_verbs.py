@@ -127,11 +127,21 @@ class ScenarioVerbs(SessionSettings):
         Returns:
             The content of a file.
         """
-        from rulec.api.pictures import draw_maneuvers, draw_trace
+        from rulec.api import pictures
+        from rulec.partition import NavigationGraph
+        from rulec.report.pictures.drawing.picture_formats import as_bytes
         from rulec.trace import Trace
 
         if isinstance(subject, Trace):
             if rules is None:
                 raise TypeError("a trace is drawn as rules read it: give them")
-            return draw_trace(subject, self._compiled(rules).fitted_to(subject.step_s), form)
-        return draw_maneuvers(subject, maneuver, form, as_graph=as_graph)
+            used = self._compiled(rules).fitted_to(subject.step_s)
+            return as_bytes(pictures.trace_drawing(subject, used), form, subject.id)
+        draw = pictures.graph_drawing if as_graph else pictures.scene_drawing
+        if isinstance(subject, NavigationGraph):
+            drawing = draw(subject, None, maneuver)
+        else:
+            if maneuver is None:
+                maneuver = next(iter(subject.cheapest(1)), None)
+            drawing = draw(subject.graph, subject, maneuver)
+        return as_bytes(drawing, form, drawing.title)
