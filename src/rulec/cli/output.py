@@ -1,20 +1,49 @@
-"""Destinations of a verb's answer, and the exit status of findings."""
+"""What a verb opens and prints: rulebooks, errors, files, findings."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
+import rulec
 from rulec.cli.exit_status import ExitStatus
-from rulec.diagnostics import Diagnostic
+from rulec.diagnostics import Diagnostic, RulecError
 from rulec.files import written_whole
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.findings.finding_formats import render
 from rulec.report.text.console import print_result
 from rulec.report.text.terminal_text import wants_color
+from rulec.settings import search_path
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+
+
+def open_session(at: str = "") -> rulec.Session:
+    """A session with the project's search path that prints warnings. Raises RulecError."""
+    return rulec.Session(search_path(), at, print_diagnostics)
+
+
+def read_machines(rulebook: str, at: str = "") -> CompiledRulebook:
+    """Compile a rulebook for any step; print warnings. Raises RulecError."""
+    # The tables of automata, 20 ms: not for --help.
+    from rulec.api.rulebook_compilation import machines
+
+    return machines(rulebook, search_path(), print_diagnostics, at)
+
+
+@contextmanager
+def errors_told(
+    tell: Callable[[Sequence[Diagnostic]], object] = print_diagnostics,
+) -> Iterator[None]:
+    """Run a block and tell its errors instead of raising them."""
+    try:
+        yield
+    except RulecError as error:
+        tell(error.diagnostics)
 
 
 @contextmanager
@@ -23,21 +52,16 @@ def output_stream(output: Path) -> Iterator[tuple[IO[bytes], str]]:
 
     Raises RulecError R0702.
     """
-    if is_standard_output(output):
+    if str(output) == "-":
         yield sys.stdout.buffer, "standard output"
     else:
         with written_whole(output) as stream:
             yield stream, str(output)
 
 
-def is_standard_output(output: Path) -> bool:
-    """Test for standard output, after which no file is reported."""
-    return str(output) == "-"
-
-
 def print_written(what: str, output: Path) -> None:
     """Say that a file has been written, unless it is standard output."""
-    if not is_standard_output(output):
+    if str(output) != "-":
         print_result(f"wrote {what}")
 
 

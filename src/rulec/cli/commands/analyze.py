@@ -6,8 +6,7 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.output import counted, print_findings
-from rulec.cli.project import errors_added_to, open_session
+from rulec.cli.output import counted, errors_told, open_session, print_findings
 from rulec.diagnostics import Diagnostic
 from rulec.report.text.console import progress
 
@@ -32,7 +31,7 @@ def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: st
     findings: list[Diagnostic] = []
     unread: list[Diagnostic] = []
     for rulebook in dict.fromkeys(rulebooks):
-        with errors_added_to(unread), progress(f"analyzing {rulebook}", None) as tell:
+        with errors_told(unread.extend), progress(f"analyzing {rulebook}", None) as tell:
             findings += open_session(at).analyze(rulebook, on_progress=tell)
     status = print_findings(
         list(dict.fromkeys(findings)),

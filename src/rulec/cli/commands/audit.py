@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +11,7 @@ from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.project import answer_or_print, open_session
+from rulec.cli.output import errors_told, open_session
 from rulec.report.text.console import page_width, print_result
 
 if TYPE_CHECKING:
@@ -61,16 +60,17 @@ def command(
     from rulec.analysis.audit.saved_audit import read_audits
     from rulec.report.rulebooks.audit_report import render
 
-    def audit(rulebook: str) -> Audit:
-        return open_session(at).audit(rulebook, run_examples=run)
-
     shared.only_sources(rulebooks, "cannot be audited")
     older = None
     if compare is not None:
-        saved = Path(compare).suffix == ".json"
-        older = read_audits(Path(compare)) if saved else (audit(compare),)
-    answers = [answer_or_print(partial(audit, rulebook)) for rulebook in rulebooks]
-    audits = [answer for answer in answers if answer is not None]
+        if Path(compare).suffix == ".json":
+            older = read_audits(Path(compare))
+        else:
+            older = (open_session(at).audit(compare, run_examples=run),)
+    audits: list[Audit] = []
+    for rulebook in rulebooks:
+        with errors_told():
+            audits.append(open_session(at).audit(rulebook, run_examples=run))
     against = {} if older is None else compare_audits(audits, older)
     if audits or output_format == "json":
         print_result(render(audits, against, output_format, page_width()))

@@ -7,7 +7,7 @@ from fractions import Fraction
 import click
 
 from rulec.cli.options import shared_options as shared
-from rulec.cli.project import open_session
+from rulec.cli.output import open_session
 from rulec.report.text.console import print_result
 
 

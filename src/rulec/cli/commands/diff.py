@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 
 import click
@@ -12,8 +11,7 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.output import counted
-from rulec.cli.project import answer_or_print, open_session
+from rulec.cli.output import counted, errors_told, open_session
 from rulec.files import written_whole
 from rulec.report.text.console import print_aside, progress, put_result
 from rulec.settings import search_path
@@ -76,6 +74,7 @@ def command(
     from rulec.report.rulebooks import diff_formats, matrix_report
     from rulec.rulebook.files.search_path import available_rulebooks
     from rulec.rulebook.loader import load_rulebook
+    from rulec.rulebook.rulebook_model import Rulebook
     from rulec.trace.formats.json_lines import write_traces
 
     shared.only_sources(rulebooks, "cannot be compared")
@@ -84,11 +83,13 @@ def command(
             raise click.UsageError("--witness is for two rulebooks, not for --all")
         folders = search_path()
         names = dict.fromkeys(rulebooks or available_rulebooks(folders))
-        answers = [answer_or_print(partial(load_rulebook, name, folders, at)) for name in names]
+        books: list[Rulebook] = []
+        for name in names:
+            with errors_told():
+                books.append(load_rulebook(name, folders, at))
+        are_all_read = len(books) == len(names)
         # Treaties before those that build upon them, so that theirs is law A.
-        books = sorted(
-            (book for book in answers if book is not None), key=lambda book: len(book.extends)
-        )
+        books.sort(key=lambda book: len(book.extends))
         alone = []
         if not rulebooks:
             uses = Counter(rule.name for book in books for rule in book.rules)
@@ -104,7 +105,7 @@ def command(
         if alone:
             print_aside(f"left out, for they share no rule with others: {', '.join(alone)}")
         put_result(matrix_report.render(matrix, output_format), output)
-        answered = None not in answers and matrix.is_complete
+        answered = are_all_read and matrix.is_complete
         return ExitStatus.after(answered=answered, failed=not matrix.is_uniform)
     if len(rulebooks) != 2:
         raise click.UsageError("name the two rulebooks that are to be compared, or say --all")

@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias, get_args
 import click
 
 from rulec.cli.options import shared_options as shared
-from rulec.cli.project import open_session
+from rulec.cli.output import open_session
 from rulec.report.text.console import put_result
 
 Format: TypeAlias = Literal["html", "markdown"]

@@ -14,8 +14,7 @@ import click
 import rulec
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.scenario_options import graph_options, read_scene
-from rulec.cli.output import output_stream, print_written
-from rulec.cli.project import read_machines
+from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.diagnostics import RulecError, named
 from rulec.report.text.terminal_text import shown_count
 

@@ -10,7 +10,7 @@ import click
 import rulec
 from rulec.api.rulebook_verbs import Kind
 from rulec.cli.options.shared_options import json_option
-from rulec.cli.project import open_session
+from rulec.cli.output import open_session
 from rulec.report.text.console import print_result
 
 if TYPE_CHECKING:

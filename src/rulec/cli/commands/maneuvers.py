@@ -12,7 +12,7 @@ import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.scenario_options import graph_options, read_scene
-from rulec.cli.project import answer_or_print, read_machines
+from rulec.cli.output import errors_told, read_machines
 from rulec.report.text.console import print_result
 
 
@@ -82,7 +82,10 @@ def command(
     scene = read_scene(scenario, options)
     maneuvers = rulec.find_maneuvers(scene, rules, after=past, **options)
     listed = None if n_listed is None else maneuvers.cheapest(n_listed)
-    best = None if maneuvers.satisfying or n_ranked is not None else answer_or_print(maneuvers.best)
+    best = None
+    if not maneuvers.satisfying and n_ranked is None:
+        with errors_told():
+            best = maneuvers.best()
     ranked = None if n_ranked is None else maneuvers.ranked(n_ranked)
     shown = [*(listed or ()), *(rank.maneuver for rank in (*(best or ()), *(ranked or ())))]
     uncertain = any(obstacle.alternatives for obstacle in scene.obstacles)

@@ -10,7 +10,7 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.project import open_session
+from rulec.cli.output import open_session
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_result

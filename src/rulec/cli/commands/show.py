@@ -69,8 +69,10 @@ def command(
         raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
     page = None
     if chosen is not None:
-        own = _compiled(book, chosen, compiled)
-        page = rule_page.page_of(chosen, own.rules[0], own.vocabulary)
+        if compiled is None:
+            compiled = rulec.compile_rulebook(replace(book, rules=(chosen,)))
+        machine = next(rule for rule in compiled.rules if rule.name == chosen.name)
+        page = rule_page.page_of(chosen, machine, compiled.vocabulary)
     rules = book.rules if chosen is None else (chosen,)
     if json_output:
         text = rule_json.as_json(book.name, rules, book.vocabulary, page)
@@ -135,13 +137,6 @@ def _why_absent(book: Rulebook, name: str, reference: str) -> str:
 
 def _names(book: Rulebook) -> str:
     return named([rule.name for rule in book.rules])
-
-
-def _compiled(book: Rulebook, rule: Rule, compiled: CompiledRulebook | None) -> CompiledRulebook:
-    """The rulebook with this rule alone, compiled."""
-    if compiled is None:
-        return rulec.compile_rulebook(replace(book, rules=(rule,)))
-    return replace(compiled, rules=tuple(own for own in compiled.rules if own.name == rule.name))
 
 
 def _automaton(automaton: Automaton, output_format: str, name: str, width: int) -> str:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.project import answer_or_print, open_session
+from rulec.cli.output import errors_told, open_session
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_aside, print_result
 
@@ -72,14 +71,13 @@ def command(
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import shortcomings
 
-    def run_examples(rulebook: str) -> ExampleRun:
-        run = open_session(at).test(rulebook, pattern)
-        print_diagnostics([*run.warnings, *uncovered_verdicts(run)])
-        return run
-
     shared.only_sources(rulebooks, "has no examples")
-    answers = [answer_or_print(partial(run_examples, rulebook)) for rulebook in rulebooks]
-    runs = [answer for answer in answers if answer is not None]
+    runs: list[ExampleRun] = []
+    for rulebook in rulebooks:
+        with errors_told():
+            run = open_session(at).test(rulebook, pattern)
+            print_diagnostics([*run.warnings, *uncovered_verdicts(run)])
+            runs.append(run)
     measured = with_coverage or threshold is not None
     covered = [coverage(run) for run in runs] if measured else None
     if runs or output_format != "full":

@@ -12,8 +12,7 @@ import click
 import rulec
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
-from rulec.cli.output import output_stream, print_written
-from rulec.cli.project import read_machines
+from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.diagnostics import SourceLocation
 from rulec.report.text.console import progress
 from rulec.report.text.terminal_text import shown_count

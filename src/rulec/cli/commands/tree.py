@@ -8,7 +8,7 @@ import click
 
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.project import open_session
+from rulec.cli.output import open_session
 from rulec.report.text.console import page_width, print_result
 from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path

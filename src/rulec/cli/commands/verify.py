@@ -16,7 +16,7 @@ import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
-from rulec.cli.project import read_machines
+from rulec.cli.output import read_machines
 from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.report.findings.diagnostics_text import Complaints

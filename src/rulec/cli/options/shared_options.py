@@ -17,7 +17,7 @@ Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 RULEBOOK_HELP = "A rulebook: its name, its source (.rules) or a compiled one (.json)."
 
-_SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/[0-9]{1,9})?")
+_SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/(?!0+$)[0-9]{1,9})?")
 
 
 def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], Decorated]:
@@ -61,10 +61,7 @@ def _seconds(
     """A step, as an option gives it."""
     if value is None:
         return None
-    try:
-        step = Fraction(value) if _SECONDS.fullmatch(value) else Fraction(0)
-    except ZeroDivisionError:
-        step = Fraction(0)
+    step = Fraction(value) if _SECONDS.fullmatch(value) else Fraction(0)
     if not step:
         raise click.BadParameter("it has to be a number above 0, such as 0.5 or 1/3")
     return step
