@@ -39,12 +39,9 @@ class RulebookVerbs(SessionSettings):
     def load_rulebook(self, reference: str | Path) -> Rulebook:
         """Read a rulebook: names resolved, types checked, not compiled.
 
-        Args:
-            reference: a name, looked for in the search path and among the rulebooks that ship with
-                rulec; or a path, which contains a ``/`` or ends in ``.rules``.
-
-        Raises:
-            RulecError: with every mistake in it, in those that it extends, in their vocabularies.
+        ``reference`` is a name, looked for in the search path and among the rulebooks that ship
+        with rulec; or a path, which contains a ``/`` or ends in ``.rules``. Raises RulecError, with
+        every mistake in it, in those that it extends, in their vocabularies.
         """
         from rulec.rulebook.loader import read_rulebook
 
@@ -158,16 +155,10 @@ class RulebookVerbs(SessionSettings):
     ) -> RulebookDiff:
         """Compare the rules of two rulebooks, with witnesses for each difference.
 
-        Args:
-            first: a name, or the path of a source.
-            second: likewise.
-            patterns: compare only rules whose name one of these matches; ``*`` and ``?`` are wild.
-            step_s: the step of the traces that rules with bounds in seconds are compared on.
-            witnesses: traces to find for each difference.
-            on_progress: is called with the number of rules that have been compared.
-
-        Raises:
-            RulecError: for what is wrong in one of them.
+        Both are names or paths of sources. With ``patterns`` only rules are compared whose name one
+        of these matches; ``*`` and ``?`` are wild. ``step_s`` is the step of the traces that rules
+        with bounds in seconds are compared on, ``witnesses`` the number of traces to find for each
+        difference; ``on_progress`` is called with the number of rules compared. Raises RulecError.
         """
         from dataclasses import replace
 

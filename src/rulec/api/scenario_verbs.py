@@ -117,15 +117,9 @@ class ScenarioVerbs(SessionSettings):
     ) -> bytes:
         """Draw a scene over time, a navigation graph, or a judged trace.
 
-        Args:
-            subject: a graph, the maneuvers of one, or a trace.
-            rules: those that a trace is judged by; a trace cannot be drawn without.
-            maneuver: the one to show; of maneuvers the cheapest, if there is one.
-            as_graph: the navigation graph instead of the scene.
-            form: of the picture; a PNG takes ``rulec[pictures]``.
-
-        Returns:
-            The content of a file.
+        A trace is judged by ``rules`` and cannot be drawn without. ``maneuver`` is the one to show,
+        of maneuvers the cheapest, if there is one; ``as_graph`` takes the navigation graph instead
+        of the scene. A PNG takes ``rulec[pictures]``. The answer is the content of a file.
         """
         from rulec.api import pictures
         from rulec.partition import NavigationGraph

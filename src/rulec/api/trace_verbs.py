@@ -92,11 +92,8 @@ class TraceVerbs(SessionSettings):
     ) -> RecordingVerdicts:
         """Judge the drives of recorded vehicles, each in turn as ego.
 
-        Args:
-            recording: a file of CommonRoad or SUMO, or what has been read from it.
-            rules: they fit themselves to the recording's step.
-            wanted: whose drives, by which thresholds, on which assumptions.
-            net: the road network of SUMO's data.
+        ``recording`` is a file of CommonRoad or SUMO (with its ``net``), or what has been read from
+        it; ``wanted`` says whose drives, by which thresholds, on which assumptions.
 
         Raises:
             RulecError: R0407 or R0507 if the rules do not fit the step, R0612 for a vehicle that is

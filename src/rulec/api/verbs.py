@@ -24,15 +24,11 @@ def load_rulebook(
 ) -> Rulebook:
     """Read a rulebook: names resolved, types checked, not compiled.
 
-    Args:
-        reference: a name, looked for as NAME.rules and NAME/NAME.rules in the folders of
-            ``search_path`` and then among the rulebooks that ship with rulec; or a path, which
-            contains a ``/`` or ends in ``.rules``.
-        search_path: folders of rulebooks and vocabularies.
-        at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
-
-    Raises:
-        RulecError: with every mistake in it, in those that it extends, in their vocabularies.
+    ``reference`` is a name, looked for as NAME.rules and NAME/NAME.rules in the folders of
+    ``search_path`` and then among the rulebooks that ship with rulec; or a path, which contains a
+    ``/`` or ends in ``.rules``. ``at`` is the day (ISO) whose law it is; if empty, that of its
+    `law` line or else today. Raises RulecError, with every mistake in it, in those that it extends,
+    in their vocabularies.
     """
     return Session(search_path, at).load_rulebook(reference)
 
@@ -46,13 +42,8 @@ def compile_rulebook(
 ) -> CompiledRulebook:
     """Compile a rulebook: name, path of source or compiled file, or Rulebook.
 
-    Without ``step_s`` it fits itself to the step of the traces that it meets; with it, it is for
-    this step (s) alone, a float meaning the decimal that is written. ``warn`` is called with what
-    is odd, but not wrong. The rest is as for ``load_rulebook``.
-
-    Raises:
-        RulecError: mistakes in the source; R0401 to R0403 if there is no automaton, R0407 for a
-            bound that is no multiple of the step, R0507 if it was compiled for another one.
+    ``warn`` is called with what is odd, but not wrong. The rest is as for ``load_rulebook`` and
+    ``Session.compile_rulebook``.
     """
     return Session(search_path, at, warn).compile_rulebook(reference, step_s=step_s)
 

@@ -86,9 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         )
         sys.stdout.flush()
     except click.ClickException as problem:
-        _say(
-            problem.format_message(), problem.ctx if isinstance(problem, click.UsageError) else None
-        )
+        _say(problem.format_message(), getattr(problem, "ctx", None))
         return ExitStatus.NOT_ANSWERED
     except RulecError as error:
         # Its text and colours, 7 ms: not for `rulec --help`.

@@ -78,14 +78,10 @@ def print_findings(
     output_format: str,
     fail_on: str,
 ) -> ExitStatus:
-    """Print findings in sources, then reasons for unread ones.
+    """Print findings in sources, then why some could not be read; the exit status.
 
-    Args:
-        findings: what is wrong or odd.
-        unread: why files or rulebooks could not be read.
-        nothing: what to say in full text if there are neither.
-        output_format: one of FORMATS.
-        fail_on: ``error`` or ``warning``: what makes the exit status 1.
+    ``nothing`` is what to say in full text if there are neither; ``fail_on`` is ``error`` or
+    ``warning``.
     """
     text = render(findings, output_format, color=wants_color(sys.stdout), complete=not unread)
     if text:

@@ -7,11 +7,9 @@ from click.shell_completion import get_completion_class
 
 from rulec.report.text.console import print_result
 
-SHELLS = ("bash", "fish", "zsh")
-
 
 @click.command()
-@click.argument("shell", type=click.Choice(SHELLS))
+@click.argument("shell", type=click.Choice(["bash", "fish", "zsh"]))
 @click.pass_context
 def command(context: click.Context, shell: str) -> None:
     """Print the script for SHELL: bash (4.4 or later), zsh or fish.

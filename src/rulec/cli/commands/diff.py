@@ -33,10 +33,10 @@ from rulec.settings import search_path
 @shared.number_option(
     "--witnesses",
     "n_witnesses",
+    "Show up to N traces for every difference, each for a reason of its own.",
     least=1,
     most=100,
     default=3,
-    help_text="Show up to N traces for every difference, each for a reason of its own.",
 )
 @shared.choice_option(
     "--output-format",

@@ -48,9 +48,8 @@ _judging_options = shared.combined(
         shared.number_option(
             "--maneuver",
             "number",
+            "Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a rulebook]",
             least=1,
-            help_text="Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a "
-            "rulebook]",
         ),
         shared.at_option,
     ]
@@ -119,9 +118,9 @@ def trace(
 @shared.number_option(
     "--layer",
     "layers",
+    "Draw layer P alone, counted from 0; may be repeated.  [default: all]",
     multiple=True,
     metavar="P",
-    help_text="Draw layer P alone, counted from 0; may be repeated.  [default: all]",
 )
 @_picture_options
 def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: Any) -> None:

@@ -29,11 +29,7 @@ if TYPE_CHECKING:
 @shared.rulebook_option()
 @shared.output_option
 @shared.number_option(
-    "--list",
-    "number",
-    least=1,
-    default=1,
-    help_text="Write the N cheapest satisfying maneuvers.",
+    "--list", "number", "Write the N cheapest satisfying maneuvers.", least=1, default=1
 )
 @shared.table_format_option("table")
 @shared.at_option

@@ -19,11 +19,11 @@ from rulec.report.text.console import print_result
 @click.command()
 @graph_options
 @shared.rulebook_option()
-@shared.number_option("--list", "n_listed", help_text="List the N cheapest satisfying maneuvers.")
+@shared.number_option("--list", "n_listed", "List the N cheapest satisfying maneuvers.")
 @shared.number_option(
     "--rank",
     "n_ranked",
-    help_text="List the N best maneuvers: by what they violate, hard rules above soft ones, by "
+    "List the N best maneuvers: by what they violate, hard rules above soft ones, by "
     "levels and weights; then by cost.",
 )
 @click.option(
@@ -35,7 +35,7 @@ from rulec.report.text.console import print_result
 @shared.number_option(
     "--classes",
     "n_classes",
-    help_text="Count the homotopy classes, and list the cheapest satisfying maneuver of N of them.",
+    "Count the homotopy classes, and list the cheapest satisfying maneuver of N of them.",
 )
 @click.option(
     "--worlds",
@@ -45,7 +45,7 @@ from rulec.report.text.console import print_result
 )
 @shared.file_option(
     "--after",
-    help_text="What was before: a file with one trace, or a monitor that was saved (.json).",
+    "What was before: a file with one trace, or a monitor that was saved (.json).",
 )
 @shared.json_option
 @shared.at_option

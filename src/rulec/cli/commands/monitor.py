@@ -22,9 +22,9 @@ from rulec.report.text.console import print_result
     "Seconds from one state to the next: a decimal, or a fraction such as 1/3. It matters to "
     "rules with bounds in seconds.  [default: that of their examples, or of --restore]",
 )
-@shared.file_option("--restore", help_text="Go on where the monitor stood that was saved in FILE.")
+@shared.file_option("--restore", "Go on where the monitor stood that was saved in FILE.")
 @shared.file_option(
-    "--save", help_text="Save in FILE where the monitor stands when it ends, however it ends."
+    "--save", "Save in FILE where the monitor stands when it ends, however it ends."
 )
 @shared.json_option
 @shared.at_option

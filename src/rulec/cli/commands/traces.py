@@ -32,8 +32,9 @@ MOST_TRACES = 10_000_000
 @shared.output_option
 @shared.number_option(
     "--limit",
+    "limit",
+    f"Write the first N only; needed where there are more than {MOST_TRACES:,}.",
     least=1,
-    help_text=f"Write the first N only; needed where there are more than {MOST_TRACES:,}.",
 )
 @click.option(
     "--recorded",

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 @shared.number_option(
     "--explain",
     "n_explained",
-    help_text="Explain the first N violations state by state.  [default: 1; with --json 0]",
+    "Explain the first N violations state by state.  [default: 1; with --json 0]",
 )
 @click.option(
     "--every-part",
@@ -85,13 +85,8 @@ def command(
 
     rules = read_machines(rulebook, at)
     recordings = [file for file in files if is_recording(file)]
-    if not recordings and (
-        option := "--net"
-        if net
-        else "--ego"
-        if egos
-        else scenario_options.given_drives_option(options)
-    ):
+    option = scenario_options.given_drives_option({"net": net, "egos": egos, **options})
+    if option and not recordings:
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
     run = _Run(rules, json_output, Complaints(), to_explain, every_part)

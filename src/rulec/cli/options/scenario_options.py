@@ -45,12 +45,51 @@ def _prediction(
 
 net_option = file_option(
     "--net",
-    help_text="For SUMO's floating-car data: the net.  [default: the one they name, or the only "
+    "For SUMO's floating-car data: the net.  [default: the one they name, or the only "
     "one ending in .net.xml beside them]",
 )
 
-_scene_options = combined(
+
+def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
+    """Load the scenario, consuming the options that only recorded ones take.
+
+    Raises RulecError.
+    """
+    # Scenarios' formats, 30 ms: not for --help.
+    from rulec.scenario import Choice, load_scenario
+
+    choice = Choice(**{field: options.pop(field) for field in Choice.__dataclass_fields__})
+    return load_scenario(scenario, choice)
+
+
+graph_options = combined(
     [
+        click.argument("scenario", shell_complete=complete_scenarios),
+        click.option(
+            "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
+        ),
+        click.option(
+            "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
+        ),
+        click.option(
+            "--partition",
+            type=click.Choice(["paper", "fine"]),
+            help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
+            "paper without one]",
+        ),
+        choice_option(
+            "--extent",
+            ["lane", "body"],
+            "How wide obstacles are: all of the lanes that they touch, or what they sweep, "
+            "and half of ego's width to either side.",
+        ),
+        choice_option(
+            "--adjacency",
+            ["touch", "edge", "forward"],
+            "Which cells are neighbours: those that meet in a point, along a border, "
+            "or along a border and not only behind.",
+        ),
+        # What can be chosen about a recorded scene; the keywords are those of `Choice`.
         click.option(
             "--ego",
             metavar="ID",
@@ -100,51 +139,6 @@ _scene_options = combined(
         net_option,
     ]
 )
-"""What can be chosen about a recorded scene; the keywords are those of ``Choice``."""
-
-
-def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
-    """Load the scenario, consuming the options that only recorded ones take.
-
-    Raises RulecError.
-    """
-    # Scenarios' formats, 30 ms: not for --help.
-    from rulec.scenario import Choice, load_scenario
-
-    choice = Choice(**{field: options.pop(field) for field in Choice.__dataclass_fields__})
-    return load_scenario(scenario, choice)
-
-
-graph_options = combined(
-    [
-        click.argument("scenario", shell_complete=complete_scenarios),
-        click.option(
-            "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
-        ),
-        click.option(
-            "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
-        ),
-        click.option(
-            "--partition",
-            type=click.Choice(["paper", "fine"]),
-            help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
-            "paper without one]",
-        ),
-        choice_option(
-            "--extent",
-            ["lane", "body"],
-            "How wide obstacles are: all of the lanes that they touch, or what they sweep, "
-            "and half of ego's width to either side.",
-        ),
-        choice_option(
-            "--adjacency",
-            ["touch", "edge", "forward"],
-            "Which cells are neighbours: those that meet in a point, along a border, "
-            "or along a border and not only behind.",
-        ),
-        _scene_options,
-    ]
-)
 """The scenario, and how it is cut into cells; the rest is what ``read_scene`` takes out again."""
 
 drives_options = combined(
@@ -175,9 +169,10 @@ drives_options = combined(
 
 
 def given_drives_option(options: Mapping[str, Any]) -> str | None:
-    """One of ``drives_options`` that has been given, if any."""
-    names = {"assumed": "--assume", "thresholds": "--threshold", "as_recorded": "--as-recorded"}
-    return next((names[name] for name, value in options.items() if value), None)
+    """The first of these options for drives that has been given, if any."""
+    names = {"egos": "--ego", "assumed": "--assume", "thresholds": "--threshold"}
+    given = (names.get(name) or f"--{name.replace('_', '-')}" for name in options if options[name])
+    return next(given, None)
 
 
 def requested_drives(

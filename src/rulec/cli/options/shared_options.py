@@ -40,19 +40,17 @@ def choice_option(
 
 
 def number_option(
-    *names: str, help_text: str, least: int = 0, metavar: str = "N", **settings: Any
+    name: str, field: str, help_text: str, least: int = 0, most: int | None = None, **settings: Any
 ) -> Callable[[Decorated], Decorated]:
-    """A whole number of at least ``least``, with further settings of click."""
-    kind = click.IntRange(least, settings.pop("most", None))
-    return click.option(
-        *names, type=kind, metavar=metavar, show_default=True, help=help_text, **settings
-    )
+    """A whole number from ``least`` to ``most``, with further settings of click."""
+    settings = {"metavar": "N", "show_default": True} | settings
+    return click.option(name, field, type=click.IntRange(least, most), help=help_text, **settings)
 
 
-def file_option(*names: str, help_text: str) -> Callable[[Decorated], Decorated]:
+def file_option(name: str, help_text: str) -> Callable[[Decorated], Decorated]:
     """The path of a file that is read or written beside the main ones."""
     kind = click.Path(dir_okay=False, path_type=Path)
-    return click.option(*names, metavar="FILE", type=kind, help=help_text)
+    return click.option(name, metavar="FILE", type=kind, help=help_text)
 
 
 def _seconds(
