@@ -11,14 +11,8 @@ import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.scenario_options import graph_options, read_scene
-<<<<<<< HEAD
-from rulec.cli.output import output_stream, print_written
-from rulec.cli.project import read_machines
-from rulec.report.text.terminal_text import shown_count
-=======
 from rulec.cli.output import output_stream, print_written, read_machines
-from rulec.report.text.count_text import shown_count
->>>>>>> 87d12ad (Open sessions, tell errors and write answers from one module of the command line)
+from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
     from rulec.trace.formats.trace_files import Format
