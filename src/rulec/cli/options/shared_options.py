@@ -43,8 +43,9 @@ def number_option(
     name: str, field: str, help_text: str, least: int = 0, most: int | None = None, **settings: Any
 ) -> Callable[[Decorated], Decorated]:
     """A whole number from ``least`` to ``most``, with further settings of click."""
-    settings = {"metavar": "N", "show_default": True} | settings
-    return click.option(name, field, type=click.IntRange(least, most), help=help_text, **settings)
+    kind = click.IntRange(least, most)
+    settings.setdefault("metavar", "N")
+    return click.option(name, field, type=kind, show_default=True, help=help_text, **settings)
 
 
 def file_option(name: str, help_text: str) -> Callable[[Decorated], Decorated]:
