@@ -30,8 +30,7 @@ def written_whole(path: Path) -> Iterator[IO[bytes]]:
 
     A file that is replaced keeps its permissions, and has to permit it.
 
-    Raises:
-        RulecError: R0702 if the file cannot be written.
+    Raises RulecError: R0702 if the file cannot be written.
     """
     try:
         if path.is_dir():
@@ -93,8 +92,7 @@ def opened(
 ) -> Iterator[IO[bytes]]:
     """A file opened for reading.
 
-    Raises:
-        RulecError: R0701, with this way out and these labels.
+    Raises RulecError: R0701, with this way out and these labels.
     """
     try:
         stream = path.open("rb")
@@ -113,8 +111,7 @@ def decoded(name: str, data: bytes) -> Source:
     A byte order mark is dropped, every line end becomes one line feed, and letters with marks take
     their composed form, so that names that look alike are alike.
 
-    Raises:
-        RulecError: R0101 if it is in another encoding, or no text at all.
+    Raises RulecError: R0101 if it is in another encoding, or no text at all.
     """
     try:
         text = data.decode("utf-8")

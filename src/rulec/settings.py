@@ -20,8 +20,7 @@ def search_path(folder: Path | None = None) -> tuple[Path, ...]:
         folder: where to look for ``rulec.toml``, and above which, if not in the working folder; no
             such file means no folders.
 
-    Raises:
-        RulecError: R0701 if it cannot be read, R0101 or R0704 for what is wrong in it.
+    Raises RulecError: R0701 if it cannot be read, R0101 or R0704 for what is wrong in it.
     """
     folder = folder or Path.cwd()
     for place in (folder, *folder.parents):

@@ -20,8 +20,7 @@ def parsed_toml(source: Source, code: Code, how: str) -> dict[str, Any]:
         code: the code of the diagnostic if it is not TOML.
         how: the way out in that case, how such a file is written.
 
-    Raises:
-        RulecError: with that code, at the place of the mistake.
+    Raises RulecError: with that code, at the place of the mistake.
     """
     try:
         tomllib: Any = import_module("tomllib")

@@ -42,10 +42,10 @@ def definitions():
 DEFINED = definitions()
 CODES = all_codes()
 LOADED = {
-    node.id
+    node.id if isinstance(node, ast.Name) else node.attr
     for tree in TREES.values()
     for node in ast.walk(tree)
-    if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
+    if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
 }
 
 

@@ -7,4 +7,3 @@ MODULES_TWICE: frozenset[str] = frozenset()
 CLASSES_TWICE: frozenset[str] = frozenset()
 ROOMS_WITHOUT_README: frozenset[str] = frozenset()
 TYPES_WITHOUT_TERM: frozenset[str] = frozenset()
-LINES_TOO_MANY = 5_400

@@ -65,7 +65,6 @@ def common_step(rules: Iterable[AnalyzedRule]) -> Fraction:
 def _universe(
     forbidding: AnalyzedRule, allowing: Sequence[AnalyzedRule], given: Sequence[Axiom]
 ) -> ObjectUniverse:
-    """The objects of a rule, in the vocabulary of all the rulebooks."""
     rules = (forbidding, *allowing)
     read = {name for analyzed in rules for name in declarations_read(analyzed.rule)}
     axioms = tuple(dict.fromkeys((*(axiom for rule in rules for axiom in rule.axioms), *given)))

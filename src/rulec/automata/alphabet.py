@@ -170,7 +170,6 @@ def _number_facts(read: NumberRead, comparisons: Sequence[ltl.Comparison]) -> It
 
 
 def _each_digit(read: NumberRead, comparisons: Sequence[ltl.Comparison]) -> Iterator[ltl.Formula]:
-    """One of the digits, with all that holds there."""
     true_at = [_digits(comparison, read) for comparison in comparisons]
     cases = dict.fromkeys(
         tuple(digit in digits for digits in true_at) for digit in range(read.size)

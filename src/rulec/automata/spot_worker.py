@@ -183,7 +183,6 @@ def _answer(job: Job) -> Done | Failed:
 
 
 def _contradiction(group: AxiomGroup) -> tuple[AxiomInstance, ...]:
-    """Minimal set of a group's axioms that contradict each other."""
     from rulec.automata import spot_bridge  # Spot is loaded in the worker alone
 
     needed = group

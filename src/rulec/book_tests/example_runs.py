@@ -91,8 +91,7 @@ def run_rulebook_examples(
     An example without a label goes by its number. ``compiled`` is the rulebook compiled, the
     warnings are passed on.
 
-    Raises:
-        RulecError: R0306 if a state of an example cannot be, because of facts.
+    Raises RulecError: R0306 if a state of an example cannot be, because of facts.
     """
     outcomes = tuple(
         _outcome(rule, machine, compiled, example, number)
@@ -108,7 +107,6 @@ def run_rulebook_examples(
 def _outcome(
     rule: Rule, machine: CompiledRule, compiled: CompiledRulebook, example: Example, number: int
 ) -> ExampleOutcome:
-    """The verdict for the binding that gives every variable its own name."""
     trace = example_trace(rule, example)
     where = "this state".format
     reader = letter_reader_of(trace, compiled, where)

@@ -115,7 +115,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _unwritable(problem: OSError) -> int:
-    """Report that standard output cannot be written, and return the status."""
     # What is still buffered must not fail again when Python exits.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if isinstance(problem, BrokenPipeError):
@@ -125,7 +124,6 @@ def _unwritable(problem: OSError) -> int:
 
 
 def _say(text: str, usage: click.Context | None = None) -> None:
-    """Print a message on standard error, if that can be written."""
     with suppress(OSError):
         if usage is not None:
             click.echo(f"{usage.get_usage()}\nTry '{usage.command_path} --help'.\n", err=True)

@@ -113,7 +113,6 @@ class Drives:
         return to_trace(context, ego, name, self._writer)
 
     def _road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, RoadExtents | None] | str:
-        """A road, and the extents along it unless too many to remember."""
         if route not in self._roads:
             try:
                 road = driven_road(self.recording, route, self._junctions)

@@ -192,7 +192,6 @@ def _one_ago(formula: ltl.Formula, found: _Found) -> ltl.Formula:
 
 
 def _is_present(formula: ltl.Formula) -> bool:
-    """True if the formula speaks of the present alone."""
     match formula:
         case ltl.Atom() | ltl.Comparison() | ltl.Same() | ltl.Constant():
             return True

@@ -130,7 +130,6 @@ def _error(
 
 
 def _values(instance: _AxiomInstance, view: StateView) -> Iterator[str]:
-    """The known values of all that an axiom speaks of, in words."""
     for part in atoms_of(instance.axiom.formula):
         for read in (part,) if isinstance(part, Atom) else [term for _, term in part.terms]:
             value: Value | Unknown | Fraction

@@ -130,7 +130,6 @@ class LetterReader:
         return self._values[key]
 
     def _given_by_states(self, name: str) -> list[Any]:
-        """The value that each state gives for a name, None if nothing."""
         if name not in self._given:
             self._given[name] = [state.get(name) for state in self.states]
         return self._given[name]
@@ -142,7 +141,6 @@ class LetterReader:
         return range(first, last + 1)[:1]
 
     def _is_constant(self, name: str) -> bool:
-        """Tell whether all states share one value object for a name."""
         if name not in self._constant:
             given = self._given_by_states(name)
             self._constant[name] = all(value is given[0] for value in given)

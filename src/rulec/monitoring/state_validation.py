@@ -189,7 +189,6 @@ def _many_values(declaration: Declaration) -> _Look:
 
 
 def _misfit(value: Any, declaration: Declaration) -> str:
-    """What a value ought to be that does not fit; nothing if it does."""
     match declaration:
         case Enumeration():
             if not isinstance(value, str) or value not in declaration.values:

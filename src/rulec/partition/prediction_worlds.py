@@ -69,13 +69,11 @@ def predicted_path(graph: NavigationGraph, path: Sequence[int]) -> PredictedPath
 
 
 def _predictions(graph: NavigationGraph) -> dict[str, Predicted]:
-    """Obstacles on the road by some prediction, by the graph's names."""
     likeliest = {name: Predicted(object_, object_.id, 0) for name, object_ in graph.objects.items()}
     return {**likeliest, **graph.alternatives}
 
 
 def _told_apart(graph: NavigationGraph, cells: Sequence[Cell]) -> dict[str, dict[int, Fraction]]:
-    """The predictions of each obstacle that cells tell apart, with their weights."""
     predictions = _predictions(graph)
     codes: dict[tuple[str, int], dict[int, int]] = {}
     for p, (layer, cell) in enumerate(zip(graph.layers, cells, strict=True)):
@@ -118,7 +116,6 @@ def named_in(graph: NavigationGraph, world: World) -> dict[str, Obstacle]:
 
 
 def _in_world(graph: NavigationGraph, world: World) -> tuple[dict[str, Predicted], dict[str, str]]:
-    """Obstacles in a world by the graph's names, and the world's names."""
     who = {
         name: prediction
         for name, prediction in _predictions(graph).items()
@@ -131,7 +128,6 @@ def _in_world(graph: NavigationGraph, world: World) -> tuple[dict[str, Predicted
 
 
 def _hit_in(layer: Layer, cell: Cell, who: Collection[str]) -> set[str]:
-    """Obstacles that collide with ego in this cell."""
     names = (*layer.objects, *layer.alternatives)
     return {
         name for name, code in zip(names, cell.code, strict=True) if code == HIT and name in who
@@ -145,7 +141,6 @@ def _states(
     who: Mapping[str, Predicted],
     named: Mapping[str, str],
 ) -> tuple[State, ...]:
-    """Valuations of a layer's cells, by the world's names."""
     layer = graph.layers[p]
     here = [
         (i, name) for i, name in enumerate((*layer.objects, *layer.alternatives)) if name in who
@@ -159,7 +154,6 @@ def _states(
 
 
 def _thinned(traces: TraceGraph, kept: Sequence[Sequence[int]]) -> TraceGraph:
-    """The graph of these nodes of every layer, the start among them."""
     number = [{node: new for new, node in enumerate(layer)} for layer in kept]
 
     def onward(rows: Sequence[Sequence[Sequence[Of]]], p: int) -> tuple[tuple[Of, ...], ...]:

@@ -126,13 +126,11 @@ class Maneuvers(Rows):
 
     @cached_property
     def _every(self) -> NodeTransformers:
-        """Transformers of hard and soft rules that can be violated."""
         past = past_for(self.graph, self.paths, self.rules, SOFT, self.after)
         soft = bind_rules(self.graph, self.paths, self.rules, SOFT, past)
         return node_transformers(self.paths, [*self.hard.instances, *soft])
 
     def _of_penalty(self, place: int, penalty: Penalty) -> Iterator[RankedManeuver]:
-        """The maneuvers with just this penalty, cheapest first."""
         product = with_penalty(self._every, self._ranks, penalty)
         weights = zip(self._ranks.ranks, self._ranks.weights(penalty), strict=True)
         by_rank = {rank: weight for rank, weight in weights if weight}

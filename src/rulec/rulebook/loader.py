@@ -87,9 +87,8 @@ def read_rulebook(
         at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
         traffic: read it as one for this side, whatever it says itself.
 
-    Raises:
-        RulecError: with every mistake in the rulebook, in those that it extends, and in the
-            vocabularies that they use.
+    Raises RulecError: with every mistake in the rulebook, in those that it extends, and in the
+    vocabularies that they use.
     """
     return resolve_trees(parse_all(find(reference, search_path)), at, traffic)
 
@@ -184,7 +183,6 @@ def _with_bases(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagno
 
 
 def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | None, Diagnosis]:
-    """The rulebook, None if it has errors, and its diagnosis."""
     law = trees.books[-1].law
     rulebook, meanings = resolve(
         trees.books,
@@ -209,8 +207,6 @@ def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
 
 
 def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """The rulebook's own first, each file's from top to bottom."""
-
     def rank(diagnostic: Diagnostic) -> tuple[bool, str, tuple[int, int]]:
         place = diagnostic.place or SourceLocation("")
         return place.file != main, place.file, place.start

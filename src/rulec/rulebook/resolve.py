@@ -109,7 +109,6 @@ def _levels_of_broken_lines(books: Sequence[tree.File]) -> list[str]:
 
 
 def _once(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Mistakes without repetitions, which come from uses of definitions."""
     first: dict[tuple[str, str, SourceLocation | None], Diagnostic] = {}
     for mistake in mistakes:
         first.setdefault((mistake.code, mistake.message, mistake.place), mistake)
@@ -125,7 +124,6 @@ def _is_whole(file: tree.File) -> bool:
 
 
 def _unused(books: Sequence[tree.File]) -> Iterator[Diagnostic]:
-    """Options, parameters and definitions of the last file that nothing speaks of."""
     used = {name for book in books for item in book.items for name in names_used(item)}
     for item in books[-1].items:
         match item:

@@ -98,7 +98,6 @@ def _changes(loaded: Loaded) -> Iterator[str]:
 
 
 def _settings(loaded: Loaded) -> list[str]:
-    """Lines with the values and comments of options and parameters."""
     values: dict[str, str] = {}
     notes: dict[str, str] = {}
     for item in (item for book in loaded.books for item in book.items):

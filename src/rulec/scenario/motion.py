@@ -138,7 +138,6 @@ def _interpolated(
 
 
 def _footprints_within(motion: model.Footprints, start: float, end: float) -> list[Box]:
-    """The footprints at both times and at all known times between."""
     first, last = bisect_left(motion.times, start), bisect_right(motion.times, end)
     ends = (_footprint_at(motion, start), *motion.boxes[first:last], _footprint_at(motion, end))
     return [box for box in ends if box is not None]

@@ -127,7 +127,6 @@ def _used_twice(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 
 
 def _misplaced(parts: Sequence[Part]) -> Iterable[Diagnostic]:
-    """Header lines behind the first item, and a second ``rulebook`` line."""
     item: Part | None = None
     for part in parts[1:]:
         if isinstance(part, tree.FileLine):
@@ -190,6 +189,5 @@ def _no_file_line(first: Part) -> Diagnostic:
 
 
 def _start(span: Span) -> Span:
-    """The first line of a span, enough to show its place."""
     end = span.source.text.find("\n", span.start, span.end)
     return span if end < 0 else Span(span.source, span.start, end)

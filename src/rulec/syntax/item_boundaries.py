@@ -34,7 +34,6 @@ class Landmarks:
     tokens: list[Token]
 
     def _text(self, index: int, kind: str) -> str:
-        """The text of a token of this kind; empty for any other."""
         token = self.tokens[index] if 0 <= index < len(self.tokens) else None
         return token.text if token is not None and token.kind == kind else ""
 
@@ -122,7 +121,6 @@ class Landmarks:
         return nearest_name(self.tokens[index].text, keywords.ITEM_WORDS) is not None
 
     def _in_formula(self, index: int) -> bool:
-        """Tell whether a formula may go on behind a token."""
         token = self.tokens[index]
         return token.text in _FORMULA_SIGNS or self.is_word(index, *keywords.OPERATOR_WORDS)
 
@@ -171,7 +169,6 @@ class Landmarks:
         return self.tokens[index].first or not self.wants_more(index - 1)
 
     def _stands_alone(self, index: int) -> bool:
-        """Tell whether a clause's word stands where an atom should be."""
         return any(self.is_symbol(index + 1, text) for text in (";", "}", "&")) or self.is_word(
             index + 1, "and"
         )

@@ -65,8 +65,7 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
 def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
     """The tree of one formula.
 
-    Raises:
-        RulecError: it is not a formula.
+    Raises RulecError: it is not a formula.
     """
     source = checked(Source(name, text))
     tokens = scan(source)

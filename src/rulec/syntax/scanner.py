@@ -35,8 +35,7 @@ _TOKEN = re.compile(
 def decode(name: str, data: bytes) -> Source:
     """The text of a rulebook file; a byte order mark is dropped.
 
-    Raises:
-        RulecError: more than ``MAX_SOURCE_BYTES``, not UTF-8, or not a text at all.
+    Raises RulecError: more than ``MAX_SOURCE_BYTES``, not UTF-8, or not a text at all.
     """
     _check_size(name, len(data))
     return decoded(name, data)
@@ -45,8 +44,7 @@ def decode(name: str, data: bytes) -> Source:
 def checked(source: Source) -> Source:
     """The source, if it can be a rulebook's text.
 
-    Raises:
-        RulecError: too large, or it holds a null character.
+    Raises RulecError: too large, or it holds a null character.
     """
     _check_size(source.name, len(source.text))
     return without_null(source)
@@ -76,8 +74,7 @@ def scan(source: Source) -> list[Token]:
 
     ``kind`` is one of string, unterminated, quoted (in single quotes), word, number, symbol.
 
-    Raises:
-        RulecError: the text has more than ``MAX_TOKENS`` tokens.
+    Raises RulecError: the text has more than ``MAX_TOKENS`` tokens.
     """
     text = source.text
     tokens: list[Token] = []

@@ -84,7 +84,6 @@ class FileSplitter:
         return False
 
     def _end_of_item(self, index: int) -> int:
-        """Behind an item that has no braces of its own."""
         end = index + 1
         while end < len(self.tokens):
             if self.marks.is_symbol(end, "{") or self.marks.is_symbol(end, "}"):
@@ -97,7 +96,6 @@ class FileSplitter:
         return end
 
     def _over_block(self, index: int) -> int:
-        """Behind a block in braces that does not belong where it stands."""
         depth = 0
         while index < len(self.tokens):
             if depth and self.marks.begins_item_inside(index):
@@ -109,7 +107,6 @@ class FileSplitter:
         return index
 
     def _skip_to_item(self, index: int) -> int:
-        """Skip to the next item."""
         while index < len(self.tokens) and not self.marks.begins_item_inside(index):
             index += 1
         return index

@@ -102,7 +102,6 @@ class RuleSplitter:
         return not inside and (complete or self.marks.is_word(clause, "cite", "says"))
 
     def _example(self, first: int) -> tuple[ExamplePieces, bool]:
-        """The example, and whether the file ends inside it."""
         opened = first + 1
         while not self._ends_head(opened) and not self.marks.is_symbol(opened, ";"):
             opened += 1

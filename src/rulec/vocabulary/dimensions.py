@@ -114,8 +114,7 @@ class Unit:
     def ratio(self, unit: Unit) -> Fraction:
         """The factor from this unit to ``other``: 5/18 for km/h and m/s.
 
-        Raises:
-            ValueError: the units measure different dimensions.
+        Raises ValueError: the units measure different dimensions.
         """
         if self.dimension != unit.dimension:
             measures = f"{self.dimension.name}, {unit.text} {unit.dimension.name}"

@@ -87,7 +87,6 @@ class JointAlphabet:
         return int(default is not None and digit != default)
 
     def _cleared(self, nodes: Sequence[int]) -> tuple[int, ...]:
-        """The nodes without the axioms that hold; empty if one does not."""
         keys, axioms = nodes[: self._n_keys], nodes[self._n_keys :]
         open_axioms = []
         for axiom in axioms:

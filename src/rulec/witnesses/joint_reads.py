@@ -109,7 +109,6 @@ def _scaled(read: NumberRead) -> tuple[list[Threshold], bool]:
 def _seen(
     read: Read | NumberRead, joint: Read | NumberRead, vocabulary: Vocabulary
 ) -> tuple[int, ...]:
-    """The digit of a read for each digit of its joint read."""
     joint_digits = range(joint.size)
     if isinstance(read, NumberRead):
         assert isinstance(joint, NumberRead)

@@ -114,7 +114,6 @@ class LetterWitnesses:
 
     @cached_property
     def _joint_counts(self) -> tuple[list[letter_functions.CountFunction], JointReads]:
-        """The counts, and the joint reads of the monitor and of them."""
         counts = [letter_functions.count_function(count, self._universe) for count in self._counts]
         own = letter_functions.LetterFunction(self._monitor.reads, self._monitor.letters)
         functions = [own, *(count.function for count in counts)]

@@ -144,7 +144,6 @@ def _near_miss(
 
 
 def _run(monitor: MealyMonitor, word: Sequence[int]) -> tuple[bool, int]:
-    """Verdict on a word, and the number of states it visits."""
     states, accepted = [0], False
     for letter in word:
         letter_class = monitor.letters[letter]

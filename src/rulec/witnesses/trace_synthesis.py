@@ -78,7 +78,6 @@ def synthesize_trace(
 
 
 def _fills(universe: ObjectUniverse, types: Sequence[str]) -> Iterable[Mapping[str, Value]]:
-    """Values for unread properties of additional objects, defaults first."""
     yield {}
     for name, declaration in universe.vocabulary.declarations.items() if types else ():
         if declaration.parameters:
@@ -92,7 +91,6 @@ def _written(
     all_objects: Mapping[str, str],
     fill: Mapping[str, Value],
 ) -> dict[str, Any]:
-    """State in a trace's form, without values that equal their defaults."""
     state: dict[str, Any] = {}
     for (name, items), declaration in subjects_of(universe.vocabulary, all_objects):
         value = values.get((name, items))

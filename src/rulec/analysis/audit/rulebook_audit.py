@@ -197,7 +197,6 @@ def _counts(rulebook: Rulebook, articles: Sequence[CitedArticle], n_used: int) -
 
 
 def _lacks(rule: Rule) -> str:
-    """The kinds of examples that a rule lacks, in words."""
     missing = [
         word
         for word, accepts in (("accepts", True), ("rejects", False))

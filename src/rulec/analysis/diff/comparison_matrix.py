@@ -142,7 +142,6 @@ def steps(books: Sequence[Rulebook], patterns: Sequence[str] = ()) -> int:
 def _classified(
     sides: Mapping[str, AnalyzedRule],
 ) -> tuple[dict[str, int], dict[tuple[int, int], RuleRelation]]:
-    """The law of each rulebook's rule, and the relations between the laws."""
     known: dict[int, int] = {}
     representatives: list[AnalyzedRule] = []
     relations: dict[tuple[int, int], RuleRelation] = {}

@@ -215,8 +215,6 @@ def _only(
 
 
 def _labelled(comparison: RuleComparison, first: str, second: str, rule: str) -> RuleComparison:
-    """The comparison with traces that are named for what they show."""
-
     def named(traces: Sequence[Trace], forbids: str, allows: str) -> tuple[Trace, ...]:
         title = f"{rule}: {forbids} forbids, {allows} allows"
         return tuple(

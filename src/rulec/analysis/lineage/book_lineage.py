@@ -113,7 +113,6 @@ _CLAUSES = (
 
 
 def _changed_clauses(before: tree.RuleItem, after: tree.RuleItem) -> tuple[str, ...]:
-    """The kinds of clauses in which two rules differ, whatever their spelling."""
     return tuple(
         HARDNESS if field == "strength" else field.replace("_", " ")
         for field in _CLAUSES

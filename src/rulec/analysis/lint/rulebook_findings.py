@@ -141,7 +141,6 @@ def _needless(
 
 
 def _implied(rule: Rule, premises: Sequence[Rule]) -> Diagnostic:
-    """A rule that adds nothing to others that are as hard."""
     verb = "forbids" if len(premises) == 1 else "together forbid"
     names = " and ".join(f"`{premise.name}`" for premise in premises)
     label = "this is enough" if len(premises) == 1 else "this is part of it"

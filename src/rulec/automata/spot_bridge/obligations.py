@@ -99,7 +99,6 @@ class Obligations:
         return self._variables[_obligation]
 
     def _now(self, formula: ltl.Formula, wanted: bool) -> Any:
-        """Demand of a formula, or its negation, on letter and rest."""
         # Not kept: that would be a reference circle, and BDDs would outlive their use.
         algebra: Algebra[_Signed] = Algebra(
             proposition=self._proposition,
@@ -153,7 +152,6 @@ class Obligations:
         return self._unfolded(one)
 
     def _unfolded(self, _obligation: _Obligation) -> Any:
-        """Demand of an obligation on this letter and on the rest."""
         strong, left, right, (low, high) = _obligation
         if high is not None and high < low:
             return buddy.bddfalse if strong else buddy.bddtrue

@@ -32,7 +32,6 @@ class Progression:
         self._composed: dict[int, tuple[Any, Any]] = {}
 
     def _replaced(self, state: Any) -> Any:
-        """The state with every obligation unfolded."""
         if state == buddy.bddtrue or state == buddy.bddfalse:
             return state
         result = self._composed.get(state.id())

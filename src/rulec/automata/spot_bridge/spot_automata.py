@@ -65,7 +65,6 @@ def _ordered(automaton: Any) -> Any:
 
 
 def _without_comment_signs(text: str) -> str:
-    """Put a text on one line, signs of nesting comments split."""
     return " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())
 
 

@@ -131,7 +131,6 @@ def projected(known: Formula, propositions: Sequence[Proposition]) -> Formula:
 
 
 def _read_back(formula: Any, named: dict[str, Proposition]) -> Formula:
-    """A disjunction of conjunctions, as Spot has it, as our formula."""
     if formula.is_tt() or formula.is_ff():
         return Constant(bool(formula.is_tt()))
     if formula._is(spot.op_ap):

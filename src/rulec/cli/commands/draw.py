@@ -157,7 +157,6 @@ def graph(output: Path, form: str | None, **options: Any) -> None:
 
 
 def _trace(file: str, trace_id: str | None) -> Trace:
-    """The wanted trace. Raises RulecError for an unreadable one up to it."""
     names: list[str] = []
     for item in rulec.read_traces(file):
         if isinstance(item, RulecError):
@@ -170,7 +169,6 @@ def _trace(file: str, trace_id: str | None) -> Trace:
 
 
 def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRulebook:
-    """The rulebook restricted to rules that match a pattern, if any."""
     kept = [
         rule
         for rule in rules.rules
@@ -210,7 +208,6 @@ def _judged(
 
 
 def _write(drawing: Drawing, output: Path, form: str | None) -> None:
-    """Write a picture in the given format, else the file name's."""
     # Fonts and layout, 5 ms: not for --help.
     from rulec.report.pictures.drawing.picture_formats import as_bytes, format_of
 

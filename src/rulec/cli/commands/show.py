@@ -89,7 +89,6 @@ def command(
 
 
 def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
-    """Load a rulebook; a file compiled earlier comes with its automata."""
     # Rulebooks, 130 ms: not for --help.
     from rulec.automata.bundle.bundle_file import read_compiled
     from rulec.automata.bundle.compiled_rulebook import CompiledRule
@@ -119,7 +118,6 @@ def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
 
 
 def _why_absent(book: Rulebook, name: str, reference: str) -> str:
-    """The reason for a rule's absence, if it once existed."""
     # Only for this message: the printer of rulebooks, 60 ms.
     from rulec.syntax.tree_printer import print_in_force
 

@@ -106,7 +106,6 @@ def _write_drives(
     form: Format | None,
     options: Mapping[str, Any],
 ) -> None:
-    """Write what the vehicles of a recording did."""
     # numpy and shapely, 200 ms: only for recordings.
     from rulec.extraction.selection import selected_drives
     from rulec.extraction.to_trace import Drive
@@ -164,7 +163,6 @@ def _given_maneuvers_option(options: Mapping[str, Any]) -> str | None:
 
 
 def _counted_aloud(traces: Iterable[Trace], tell: Callable[[float], None]) -> Iterator[Trace]:
-    """The traces, of which every hundredth is told."""
     for number, trace in enumerate(traces):
         if number % 100 == 0:
             tell(number)

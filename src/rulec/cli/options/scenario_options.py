@@ -23,7 +23,6 @@ _WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
 def _prediction(
     context: click.Context, parameter: click.Parameter, value: str
 ) -> str | dict[str, Fraction]:
-    """A kind of prediction, or several with their probabilities."""
     # Scenarios' formats, 30 ms: not for --help.
     from rulec.scenario.scenario_model import PREDICTIONS, is_distribution
 

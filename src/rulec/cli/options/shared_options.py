@@ -57,7 +57,6 @@ def file_option(name: str, help_text: str) -> Callable[[Decorated], Decorated]:
 def _seconds(
     context: click.Context, parameter: click.Parameter, value: str | None
 ) -> Fraction | None:
-    """A step, as an option gives it."""
     if value is None:
         return None
     step = Fraction(value) if _SECONDS.fullmatch(value) else Fraction(0)

@@ -57,7 +57,6 @@ def _from_kerb(context: DriveContext) -> NDArray[intp]:
 
 
 def _straddling(context: DriveContext) -> Flags:
-    """Flags of states in which ego reaches into two lanes."""
     straight = context.road.lanes.straight
     reach = context.thresholds.touching_m
     low, high = context.ego_extents.w_min[0][:, None], context.ego_extents.w_max[0][:, None]

@@ -44,7 +44,6 @@ def _close(context: DriveContext) -> Flags:
 
 
 def _around(context: DriveContext) -> tuple[Floats, Floats]:
-    """The median speed (km/h) and number of ego and nearby vehicles."""
     close = _close(context)
     speeds = np.where(close, np.maximum(context.extents.along, 0.0), np.nan)
     with_own = np.concatenate((np.maximum(context.ego_extents.along, 0.0), speeds))
@@ -81,7 +80,6 @@ def _queues(context: DriveContext) -> tuple[Flags, Floats]:
 
 
 def _beside(context: DriveContext, lanes: Flags) -> Flags:
-    """The flag of the lane at ego's far side; False without one."""
     lane = context.ego_lane + (1 if context.side == "right" else -1)
     inside = (lane >= 0) & (lane < lanes.shape[1])
     beside: Flags = inside & lanes[np.arange(context.states), np.clip(lane, 0, lanes.shape[1] - 1)]

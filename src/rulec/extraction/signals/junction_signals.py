@@ -52,7 +52,6 @@ def _within_preparation(flags: Flags, context: DriveContext) -> Flags:
 
 
 def _passes(front: Floats, line: float) -> Flags:
-    """Flags of states in which ego's front has just passed a line."""
     beyond = front > line
     return np.append(False, beyond[1:] & ~beyond[:-1])
 

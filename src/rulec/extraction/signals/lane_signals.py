@@ -81,7 +81,6 @@ def lane_mark_signals(context: DriveContext) -> SignalColumns:
 
 
 def _between(right: Lanelet | None, left: Lanelet | None) -> _Marks:
-    """The marks between two lanes, that of the right one first."""
     return right.left_mark if right else None, left.right_mark if left else None
 
 

@@ -78,7 +78,6 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def _surface(context: DriveContext, on_crossing: Flags) -> SignalColumn:
-    """The surface under ego's middle, but a crossing under any part of it."""
     middle = context.ego_extents.s[0]
     surfaces = np.full(context.states, "carriageway", dtype="<U11")
     for start, end in context.road.junctions:

@@ -45,7 +45,6 @@ def participant_signals(context: DriveContext) -> SignalColumns:
 
 
 def _headway(context: DriveContext, gap: Floats) -> Floats:
-    """The time headway (s) of ego; ``LONGEST_S`` if it stands."""
     moves = context.ego_extents.along * KMH >= context.thresholds.standing_kmh
     seconds = gap / np.where(moves, context.ego_extents.along, 1.0)
     return np.where(moves, np.minimum(seconds, LONGEST_S), LONGEST_S)

@@ -46,7 +46,6 @@ def _across(ego: RoadExtents, low: Floats, high: Floats) -> Codes:
 
 
 def _lane_bounds(context: DriveContext) -> tuple[Floats, Floats]:
-    """The bounds of others' lanes; their own bounds off the lanes."""
     straight, touched, others = context.road.lanes.straight, context.touched, context.extents
     first = touched.argmax(axis=-1)
     last = touched.shape[-1] - touched[..., ::-1].argmax(axis=-1)

@@ -123,7 +123,6 @@ def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
 
 
 def _inside(flags: Flags, x: Floats, y: Floats, lanelets: Iterable[Lanelet]) -> Flags:
-    """Flags of those of the flagged places that are on a lanelet."""
     inside = np.zeros(flags.shape, dtype=bool)
     areas = [lanelet_area(lanelet) for lanelet in lanelets]
     rows, columns = np.nonzero(flags)
@@ -135,7 +134,6 @@ def _inside(flags: Flags, x: Floats, y: Floats, lanelets: Iterable[Lanelet]) -> 
 
 
 def _poses(body: Participant) -> dict[int, tuple[float, float, float, float]]:
-    """Centre, heading and stated speed by step."""
     poses = {}
     for step, outline in body.outlines.items():
         state = body.states.get(step)

@@ -102,7 +102,6 @@ def _is_framed(trace: Trace) -> bool:
 def _verify_group(
     traces: Sequence[_Placed], rulebook: CompiledRulebook, answers: list[Answer | None]
 ) -> None:
-    """Answer for those traces of one shape that nothing is odd about."""
     if not traces:
         return
     try:

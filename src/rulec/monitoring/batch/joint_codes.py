@@ -91,7 +91,6 @@ def joint_cells_of(
 
 
 def _meanings(machine: MealyMonitor, vocabulary: Vocabulary) -> list[Array]:
-    """For each read the digit that each number in a column stands for."""
     meanings = []
     for read in machine.reads:
         if isinstance(read, NumberRead):
@@ -123,7 +122,6 @@ def _digits_of(
 
 
 def _columns(read_bindings: Sequence[_ReadBinding]) -> Mapping[_Key, _Digit]:
-    """All that is read and is not the same in all states."""
     return {
         digit.key: digit
         for read_binding in read_bindings
@@ -165,7 +163,6 @@ def _joint_cells(layout: Layout, read_bindings: Sequence[_ReadBinding]) -> Joint
 
 
 def _class_cells(layout: Layout, read_binding: _ReadBinding) -> JointCells:
-    """Cells that are letter classes, for a machine with very many letters."""
     # One more than the class, so that what is impossible is a cell, too.
     n_cells = len(read_binding.binding.rule.machine.successors[0]) + 1
     columns = {key: np.asarray(digit.values) for key, digit in _columns([read_binding]).items()}

@@ -89,7 +89,6 @@ def group_traces(traces: Sequence[Trace]) -> TraceGroup:
 
 
 def _distinct(keys: Sequence[Hashable]) -> tuple[Sequence[int], NDArray[np.int64]]:
-    """Place of each distinct key, and index of every key among these."""
     places = dict(zip(keys, range(len(keys)), strict=True))
     numbers = {key: number for number, key in enumerate(places)}
     return list(places.values()), np.fromiter(map(numbers.__getitem__, keys), np.int64, len(keys))
@@ -122,7 +121,6 @@ def under_common_names(group: TraceGroup) -> TraceCells:
 
 
 def _renamed_state(state: object, names: Mapping[str, str]) -> dict[str, Any] | None:
-    """State with its objects renamed; None if that is not possible."""
     if type(state) is not dict:
         return None
     result = {

@@ -185,7 +185,6 @@ def _facts(
     deciding: Set[ltl.Formula],
     observed: _ObservedStates,
 ) -> Iterator[Observation]:
-    """Observations of all reads, in order of first mention."""
     readers: dict[ltl.Atom | ltl.Term, list[ltl.Proposition]] = {}
     for proposition in truths:
         if isinstance(proposition, ltl.Comparison):
@@ -228,7 +227,6 @@ def _parts(
     observed: _ObservedStates,
     depth: int = 0,
 ) -> Iterator[Part]:
-    """Subformulas as written, with the truth of those in steps."""
     written, stepped = formulas
     yield Part(
         formula=written,

@@ -70,7 +70,6 @@ def nearest_satisfying(machine: MealyMonitor, word: Sequence[Letter]) -> tuple[R
 
 
 def _nearest(machine: MealyMonitor, near: Sequence[_Near]) -> list[int] | None:
-    """The nearest accepted letters, by each state's distance from being accepted."""
     successors = np.array(machine.successors)
     # So far from being accepted is the rest of the word, by how much of it there is and the state.
     last = np.where(np.array(machine.outputs), near[-1][0], _FAR)

@@ -160,7 +160,6 @@ class _GroupReader:
 
 
 def _whole_part(places: Sequence[tuple[int, int]], shape: StateShape) -> int | None:
-    """The part whose values have just these places, in this order."""
     part = places[0][0]
     return part if places == [(part, place) for place in range(shape.sizes[part])] else None
 
@@ -170,7 +169,6 @@ def _part_column(part: int) -> _ReadColumn:
 
 
 def _values_column(places: Sequence[tuple[int, int]]) -> _ReadColumn:
-    """The encoded values at these places, which are all in one part."""
     part, pick = places[0][0], encoded_values.values_at([place for _, place in places])
     return lambda _, parts: pick(parts[part])
 

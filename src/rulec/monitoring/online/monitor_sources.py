@@ -40,7 +40,6 @@ def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> Monitor:
 
 
 def _restricted_to(objects: Container[str], value: Any) -> Any:
-    """The values of the world and of these objects."""
     if not isinstance(value, Mapping):
         return value
     return {

@@ -157,7 +157,6 @@ def carry_over(
 def _changes(
     bound_rules: BoundRules, before: Sequence[GroupNode], after: Sequence[GroupNode]
 ) -> Iterator[VerdictChange]:
-    """The bindings with another verdict than before."""
     changed: dict[RuleGroup, list[int]] = {}
     for place, (node_before, node) in enumerate(zip(before, after, strict=True)):
         if node_before.verdicts != node.verdicts:

@@ -80,5 +80,4 @@ class TransitionCache:
 
 
 def _key_of_none(_: Any) -> Hashable:
-    """The key of no state."""
     return None

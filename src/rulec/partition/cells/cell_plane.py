@@ -71,7 +71,6 @@ def _cuts(roadway: Roadway, regions: Sequence[Region]) -> tuple[list[float], lis
 def _pieces(
     roadway: Roadway, regions: Sequence[Region], s_cuts: list[float], bounds: tuple[float, float]
 ) -> Iterator[_Piece]:
-    """Free runs of one row, between ``bounds`` in ``d``."""
     width = len(s_cuts) - 1
     surface = bytearray(_CARRIAGEWAY * width)
     for start, end in roadway.crossings:
@@ -97,7 +96,6 @@ def _pieces(
 
 
 def _columns(s_cuts: list[float], start: float, end: float) -> tuple[int, int]:
-    """Columns between two cuts; cuts off the road count as its ends."""
     last = len(s_cuts) - 1
     first = min(bisect_left(s_cuts, start), last)
     return first, max(first, min(bisect_left(s_cuts, end), last))

@@ -161,7 +161,6 @@ def _snaps(scenario: Scenario, bodies: Sequence[Box]) -> tuple[Snap, Snap]:
 def _appearances(
     obstacles: Sequence[Obstacle], layers: Sequence[Sequence[Region]]
 ) -> tuple[tuple[tuple[str, ...], ...], dict[str, int], dict[str, tuple[int, int]]]:
-    """Names of regions by layer, their owners, their first and last layers."""
     taken = {obstacle.id for obstacle in obstacles}
     current: dict[int, str] = {}
     index_of: dict[str, int] = {}

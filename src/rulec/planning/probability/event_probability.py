@@ -49,7 +49,6 @@ def none_of(events: Collection[Event], weights: Weights) -> Fraction:
 
 
 def _independent(events: frozenset[Event]) -> Iterator[frozenset[Event]]:
-    """The events in groups that share no obstacle."""
     left = set(events)
     while left:
         group = {left.pop()}

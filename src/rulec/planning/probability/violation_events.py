@@ -107,13 +107,11 @@ class ViolationEvents:
         return lost
 
     def _concerns(self, rule: CompiledRule, name: str) -> bool:
-        """Test whether the rule is about an object's type, or counts it."""
         kind = self._words.objects[name]
         types = {*(variable.type for variable in rule.variables), *counted_types(rule.formula)}
         return any(self._book.vocabulary.is_subtype(kind, type_) for type_ in types)
 
     def _is_in(self, world: Mapping[str, int], name: str) -> bool:
-        """Test whether an obstacle is there in a partial world."""
         predicted = self._path.predicted[name]
         return world.get(predicted.of, predicted.number) == predicted.number
 
@@ -147,7 +145,6 @@ class ViolationEvents:
                 yield binding
 
     def _keeps(self, rule: CompiledRule, binding: Binding, columns: LetterReader) -> bool:
-        """Verdict on a binding; a collision with its objects violates."""
         names = binding.objects.values()
         about = (rule.name, self._of(names))
         goes_on = binding.first == 0
@@ -189,7 +186,6 @@ class PredictionClasses:
         return list(result.values())
 
     def _counted(self, names: list[str], number: int, binding: Binding) -> object:
-        """Contribution to every count, term by term and state by state."""
         if any(counts(term.body) for term in self._terms):
             # What it makes of others is not known without them
             return number

@@ -157,7 +157,6 @@ def _ways(
     enter: Enter[Memory],
     remaining: int,
 ) -> ProductEdges[Memory]:
-    """Edges from these product nodes, up to the limit."""
     targets: list[ProductNode[Memory]] = []
     index_of: dict[ProductNode[Memory], int] = {}
     # By memory and node.

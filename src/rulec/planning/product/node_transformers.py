@@ -196,7 +196,6 @@ def _merged(
 
 
 def _columns(machine: MealyMonitor, *, final: bool) -> list[Effect]:
-    """Transformer of each letter class: the next state, or the verdict."""
     classes = range(len(machine.successors[0]))
     if final:
         return [tuple([SAFE if row[s] else LOST for row in machine.outputs]) for s in classes]

@@ -132,7 +132,6 @@ class _AutomatonLayout:
         self._boxes.append(LayoutBox(layer, left, right, height))
 
     def _way(self, transition: Transition) -> list[int]:
-        """The boxes of a line, with its condition next to its source."""
         start, end = (self._boxes[state].layer for state in (transition.source, transition.target))
         text = _broken(transition.label)
         first = len(self._boxes)
@@ -194,7 +193,6 @@ class _AutomatonLayout:
             yield TransitionLine(transition, tuple(points), (x + 7, y))
 
     def _ports(self, places: Sequence[Point]) -> dict[tuple[int, int], float]:
-        """Positions on states' sides where each line begins (0) and ends (1)."""
         sides: defaultdict[tuple[int, bool], list[tuple[float, int, int]]] = defaultdict(list)
         for number, (_, way) in enumerate(self._ways):
             for end, state, beside in ((0, way[0], way[1]), (1, way[-1], way[-2])):

@@ -74,7 +74,6 @@ def _transition(line: layout.TransitionLine) -> Iterator[canvas.Mark]:
 
 
 def _loop(corners: Sequence[canvas.Point]) -> tuple[list[canvas.Point], tuple[int, int]]:
-    """A loop beside its state, and the direction of its return."""
     start, (out, _), (x, y) = corners
     side = 1 if out > start[0] else -1
     reach, end = out + side * 6, (x + side * 6, y)
@@ -82,7 +81,6 @@ def _loop(corners: Sequence[canvas.Point]) -> tuple[list[canvas.Point], tuple[in
 
 
 def _path(corners: Sequence[canvas.Point]) -> tuple[list[canvas.Point], tuple[int, int]]:
-    """A line down or up through corners, upright where it passes them."""
     down = 1 if corners[-1][1] > corners[0][1] else -1
     end = (corners[-1][0], corners[-1][1] - 6 * down)
     points = [corners[0]]
@@ -96,7 +94,6 @@ def _path(corners: Sequence[canvas.Point]) -> tuple[list[canvas.Point], tuple[in
 
 
 def _curve(*corners: canvas.Point) -> Iterator[canvas.Point]:
-    """Points on a cubic Bézier curve of four corners, behind its start."""
     for piece in range(1, PIECES + 1):
         t = piece / PIECES
         weights = ((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3)
@@ -107,7 +104,6 @@ def _curve(*corners: canvas.Point) -> Iterator[canvas.Point]:
 
 
 def _head(tip: canvas.Point, direction: tuple[int, int], *, accepted: bool) -> canvas.Area:
-    """An arrow's head that points along x or y."""
     (x, y), (along_x, along_y) = tip, direction
     back_x, back_y = x - HEAD * along_x, y - HEAD * along_y
     half = HEAD / 2
@@ -127,7 +123,6 @@ def _state(state: layout.AutomatonState, fate: Fate) -> Iterator[canvas.Mark]:
 
 
 def _rounded(rectangle: canvas.Rectangle) -> Iterator[canvas.Point]:
-    """Outline of a rounded rectangle, clockwise from the upper left corner."""
     left, top, right, bottom = rectangle
     centres = canvas.corners((left + CORNER, top + CORNER, right - CORNER, bottom - CORNER))
     for number, (x, y) in enumerate(centres):

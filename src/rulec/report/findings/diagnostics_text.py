@@ -48,7 +48,6 @@ def excerpt_lines(marks: Sequence[Underline]) -> Iterator[tuple[str, str]]:
 
 
 def _end_column(place: SourceLocation, length: int) -> int:
-    """End of an underline, at most the first line's end."""
     if place.end_line is not None and place.line is not None and place.end_line > place.line:
         return length + 1
     return place.end_column or (place.column or 1) + 1

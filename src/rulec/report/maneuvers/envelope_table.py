@@ -47,8 +47,7 @@ def write_envelopes(
 ) -> None:
     """Write the envelopes of maneuvers, which are numbered from 1.
 
-    Raises:
-        RulecError: R0706 if Parquet cannot be written here.
+    Raises RulecError: R0706 if Parquet cannot be written here.
     """
     rows = _rows(graph, maneuvers)
     if form == "csv":

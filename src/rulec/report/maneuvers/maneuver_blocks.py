@@ -66,7 +66,6 @@ def ranked_block(maneuvers: Maneuvers, ranked: RankedManeuver) -> list[str]:
 
 
 def _violation_line(maneuvers: Maneuvers, violation: Violation) -> str:
-    """The violated rule with its article, its binding and its time."""
     rule = next(rule for rule in maneuvers.rules.rules if rule.name == violation.rule)
     cite = f" [{rule.cite}]" if rule.cite else ""
     bound = f" for {bound_objects(violation.binding)}" if violation.binding else ""

@@ -221,7 +221,6 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
 
 
 def _each(items: Iterable[Item] | None, data: Callable[[Item], Data]) -> list[Data] | UnsetType:
-    """The items as JSON, if they were asked for."""
     return UNSET if items is None else [data(item) for item in items]
 
 

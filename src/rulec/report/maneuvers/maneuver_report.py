@@ -106,7 +106,6 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
 
 
 def _scene(maneuvers: Maneuvers) -> Iterator[str]:
-    """Notes on a recorded scene: what was left out, continued and derived."""
     account = maneuvers.graph.scenario.account
     if account is None:
         return
@@ -126,7 +125,6 @@ def _scene(maneuvers: Maneuvers) -> Iterator[str]:
 
 
 def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
-    """A line for each rule already violated by the past."""
     for violation in violations[:MOST_VIOLATIONS]:
         objects = maneuver_blocks.bound_objects(violation.binding)
         about = f" for {objects}" if objects else ""
@@ -136,7 +134,6 @@ def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
 
 
 def _predictions(scenario: Scenario) -> Iterator[str]:
-    """A line on what was counted, if obstacles have several predictions."""
     several = [obstacle for obstacle in scenario.obstacles if obstacle.alternatives]
     if several:
         whose = "1 obstacle has" if len(several) == 1 else f"{len(several)} obstacles have"
@@ -146,7 +143,6 @@ def _predictions(scenario: Scenario) -> Iterator[str]:
 
 
 def _world(world: AlternativeCounts) -> str:
-    """A line for a prediction that is not an obstacle's likeliest."""
     return visible(
         f"otherwise   {world.obstacle}, prediction {world.number + 1} "
         f"({maneuver_blocks.shown_chance(world.weight)}): {shown_count(world.traces)} maneuvers, "
@@ -155,7 +151,6 @@ def _world(world: AlternativeCounts) -> str:
 
 
 def _class_counts(maneuvers: Maneuvers, classes: HomotopyClasses) -> Iterator[str]:
-    """Counts of homotopy classes, and reasons for different verdicts within one."""
     satisfying, total = shown_count(classes.satisfying), shown_count(classes.total)
     yield f"classes     {satisfying} of {total} satisfying"
     if classes.divided:

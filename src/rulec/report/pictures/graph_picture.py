@@ -66,7 +66,6 @@ def graph_picture(
 def _edges(
     graph: NavigationGraph, columns: _Columns, edges: AcceptedEdges, maneuver: Maneuver | None
 ) -> list[Polyline]:
-    """Every step once, those that matter more above the others."""
     half, _ = columns.extent
     lines = []
     for p, successors in enumerate(graph.successors):

@@ -115,7 +115,6 @@ def _cell(frame: _Frame, cell: Cell, number: int, chosen: bool) -> Area:
 def _labels(
     frame: _Frame, cells: Sequence[Cell], placing: Placing
 ) -> tuple[list[LabelText], list[str]]:
-    """The cells' labels, and explanations of those shortened to a number."""
     labels, key = [], []
     for number, cell in enumerate(cells):
         letters = captions.in_letters(cell)
@@ -166,7 +165,6 @@ class _Frame:
 
 
 def _axis(frame: _Frame) -> Iterator[Mark]:
-    """Metres of s below the road."""
     y = frame.bottom
     for s in captions.ticks(frame.outline.s_min, frame.outline.s_max, 12):
         x, _ = frame.at(s, frame.outline.d_min)
@@ -178,7 +176,6 @@ def _axis(frame: _Frame) -> Iterator[Mark]:
 
 
 def _lane_marks(frame: _Frame, road: Road) -> Iterator[Polyline]:
-    """Lines between lanes, where at least one of the two is there."""
     ends = {s for gap in road.missing for s in gap.s if road.s[0] < s < road.s[1]}
     for right, d in enumerate(road.lanes[1:-1], 1):
         for start, end in pairwise([road.s[0], *sorted(ends), road.s[1]]):
@@ -188,7 +185,6 @@ def _lane_marks(frame: _Frame, road: Road) -> Iterator[Polyline]:
 
 
 def _obstacle_marks(graph: NavigationGraph, frame: _Frame, layer: int) -> Iterator[Mark]:
-    """Area swept by each obstacle in the layer, and its initial place."""
     start = graph.layers[layer].start_s
     for name in graph.layers[layer].objects:
         obstacle = graph.objects[name]
@@ -203,7 +199,6 @@ def _obstacle_marks(graph: NavigationGraph, frame: _Frame, layer: int) -> Iterat
 def _bodies(
     graph: NavigationGraph, frame: _Frame, layer: int
 ) -> list[tuple[LabelText, canvas.Rectangle]]:
-    """Obstacles' names and bodies at the layer's start or their entry."""
     result = []
     for name in graph.layers[layer].objects:
         obstacle = graph.objects[name]
@@ -217,13 +212,11 @@ def _bodies(
 
 
 def _fits(words: LabelText, body: canvas.Rectangle) -> bool:
-    """Test for room for the words inside a body."""
     left, top, right, bottom = words.bounds
     return body[0] <= left and right <= body[2] and body[1] <= top and bottom <= body[3]
 
 
 def _beside(words: LabelText, body: canvas.Rectangle) -> Iterator[LabelText]:
-    """Places for a name beside its body, or just above or below."""
     left, top, right, bottom = words.bounds
     half, (x, y) = (right - left) / 2 + 5, words.at
     lift = (body[3] - body[1] + bottom - top) / 2 + 1
@@ -235,7 +228,6 @@ def _beside(words: LabelText, body: canvas.Rectangle) -> Iterator[LabelText]:
 
 
 def _ego_marks(graph: NavigationGraph, frame: _Frame, placing: Placing) -> Iterator[Mark]:
-    """Ego at the first layer's start, large enough to be seen."""
     ego = graph.scenario.ego
     middle = frame.at(ego.s, ego.d)
     half_length, half_width = ego.length / 2 * frame.along, ego.width / 2 * frame.across

@@ -57,7 +57,6 @@ def ribbon_picture(ribbon: Ribbon, rules: CompiledRulebook) -> Picture:
 def _explanations(
     ribbon: Ribbon, rules: CompiledRulebook, y: float
 ) -> tuple[list[LabelText], float]:
-    """The violations in words from ``y`` downwards, and their lower end."""
     by_name = {rule.name: rule for rule in rules.rules}
     explained: set[str] = set()
     labels: list[LabelText] = []
@@ -86,7 +85,6 @@ def _explanations(
 
 
 def _flags(ribbon: Ribbon, axis: _Axis) -> tuple[list[LabelText], float]:
-    """Numbers of violations above their states, and the rows' upper end."""
     numbered = sorted(
         (ribbon.decisive(violation), n) for n, violation in enumerate(ribbon.violations, 1)
     )
@@ -103,7 +101,6 @@ def _flags(ribbon: Ribbon, axis: _Axis) -> tuple[list[LabelText], float]:
 
 
 def _violations(ribbon: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
-    """Lines at violations, thicker in the rows of the objects concerned."""
     bottom = top + _ROW * len(ribbon.rows)
     for state in sorted({ribbon.decisive(violation) for violation in ribbon.violations}):
         x = axis.x(state)
@@ -132,7 +129,6 @@ def _segments(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
 
 
 def _curve(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
-    """A quantity between its extremes."""
     low, high = extremes(row)
     scale = (_ROW - 8) / (high - low) if high > low else 0.0
     bottom = y + _ROW - 4 if high > low else y + _ROW / 2
@@ -158,7 +154,6 @@ def _times(axis: _Axis, y: float) -> Iterator[Mark]:
 
 
 def _title(row: RibbonRow) -> str:
-    """A row's title; for a quantity with its extremes."""
     text = row.title if len(row.title) <= WIDEST_TITLE else f"{row.title[: WIDEST_TITLE - 1]}…"
     if row.values:
         return text

@@ -115,7 +115,6 @@ def _index(
 
 
 def _values_section(inherited: BookLineage, at: str) -> Iterator[Block]:
-    """Options and parameters that rules speak of, with all their values."""
     rows = [
         row
         for provision in inherited.provisions
@@ -144,7 +143,6 @@ def _values(constant_history: ConstantHistory) -> Iterator[list[str]]:
 
 
 def _definitions_section(inherited: BookLineage) -> Iterator[Block]:
-    """Definitions that rules use, with final and earlier meanings."""
     definitions = [
         provision
         for provision in inherited.provisions
@@ -166,7 +164,6 @@ def _definitions_section(inherited: BookLineage) -> Iterator[Block]:
 
 
 def _left_out_section(inherited: BookLineage, at: str) -> Iterator[Block]:
-    """Topics left out of the rulebook, with reasons."""
     rows = list(_left_out(inherited, at))
     if rows:
         yield Heading(2, "What this rulebook leaves out")
@@ -187,7 +184,6 @@ def _left_out(inherited: BookLineage, at: str) -> Iterator[list[str]]:
 
 
 def _words_section(loaded: Loaded) -> Iterator[Block]:
-    """Words of the vocabulary that the rules use, and axioms."""
     rulebook = loaded.rulebook
     used = used_declarations(rulebook)
     described = _descriptions(loaded)

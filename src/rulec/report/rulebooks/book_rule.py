@@ -99,7 +99,6 @@ def _sentence(phrase: Phrase) -> str:
 
 
 def _formula(rule: Rule, written: tree.RuleItem | None) -> Iterator[str]:
-    """The formula as written, and as meant if that differs."""
     clauses = [] if written is None else clauses_of(written)
     original = [(word, text) for word, text in clauses if word in _FORMULAS]
     expanded = [] if rule.condition is None else [("when", formula_text(rule.condition))]
@@ -119,7 +118,6 @@ def _fenced(clauses: Sequence[tuple[str, str]]) -> str:
 
 
 def _clause(word: str, text: str) -> list[str]:
-    """The lines of a clause, its word on the first of them."""
     shown = f"{word} {text}"
     if word in _FORMULAS:
         return formula_lines(shown, WIDTH)

@@ -107,14 +107,12 @@ def _columns(rows: Sequence[Sequence[str]]) -> str:
 
 
 def _by_rule(matrix: ComparisonMatrix) -> list[list[str]]:
-    """Each shared rule with its law's letter in every rulebook."""
     return [
         [rule.name, *(_letter(rule, book.name) for book in matrix.books)] for rule in matrix.shared
     ]
 
 
 def _by_pair(matrix: ComparisonMatrix) -> list[list[str]]:
-    """Each rulebook with its numbers of rules beside every other one's."""
     names = [book.name for book in matrix.books]
     return [[name, *(_cell(matrix, name, other) for other in names)] for name in names]
 

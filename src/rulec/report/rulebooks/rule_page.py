@@ -117,7 +117,6 @@ def _sentences(rule: Rule, vocabulary: Vocabulary, width: int) -> str:
 
 
 def _formula(rule: Rule, width: int) -> list[str]:
-    """The formula as written, and with its exceptions put in."""
     whole = formula_lines(visible(formula_text(rule.formula)), width)
     if rule.required is None:
         return whole

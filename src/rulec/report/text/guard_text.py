@@ -67,7 +67,6 @@ class GuardWording:
         return " or ".join(texts) or "false"
 
     def _literal(self, read: Read | NumberRead, allowed: frozenset[int]) -> tuple[str, bool]:
-        """Words for some digits of a read, and need of parentheses."""
         if isinstance(read, NumberRead):
             return self._number(read, allowed)
         subject = Atom(read.name, read.variables)
@@ -97,7 +96,6 @@ class GuardWording:
         return " or ".join(texts), len(texts) > 1 or " and " in texts[0]
 
     def _run(self, read: NumberRead, run: range) -> str:
-        """The words for neighbouring digits."""
         lower = read.thresholds[run[0] - 1] if run[0] else None
         upper = read.thresholds[run[-1]] if run[-1] < len(read.thresholds) else None
         if lower and upper and lower.limit == upper.limit:
@@ -162,7 +160,6 @@ def runs(numbers: Sequence[int]) -> list[range]:
 
 
 def _denied(text: str) -> str:
-    """The comparison that holds where this one does not."""
     signs = _SIGN.findall(text)
     if len(signs) != 1:
         return f"not ({text})"

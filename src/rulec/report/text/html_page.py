@@ -65,7 +65,6 @@ def _name_headings(tokens: Sequence[Token]) -> None:
 
 
 def _scope_cells(tokens: Sequence[Token]) -> None:
-    """Mark each row's first cell as header, for reading aloud."""
     first = False
     for token in tokens:
         if token.type == "tr_open":
@@ -80,7 +79,6 @@ def _scope_cells(tokens: Sequence[Token]) -> None:
 
 
 def _wrapped(tokens: Sequence[Token], contents: str) -> Iterator[Token]:
-    """Wrap wide tables and formulas for scrolling, and add the contents."""
     below_contents = False
     for token in tokens:
         if token.type == "inline" and token.content == contents:

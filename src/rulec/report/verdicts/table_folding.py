@@ -54,7 +54,6 @@ def cut(text: str, widest: int) -> str:
 
 
 def _operands(parts: Sequence[Part], at: int) -> Iterator[int]:
-    """The deciding operands of a part, with chains flattened."""
     for operand in range(at + 1, len(parts)):
         if parts[operand].depth <= parts[at].depth:
             return
@@ -67,7 +66,6 @@ def _operands(parts: Sequence[Part], at: int) -> Iterator[int]:
 
 
 def _is_link(part: Part, operand: Part) -> bool:
-    """Test for an operand made superfluous by its own operands below."""
     match part.formula, operand.formula:
         case Binary(operator), Binary(inner):
             return operator is inner and operator in _CHAINED
@@ -115,7 +113,6 @@ def head(states: Sequence[int], places: range) -> str:
 
 
 def _merged(columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int) -> list[range]:
-    """Merge adjacent equal columns of consecutive states, except the decisive one."""
     ranges: list[range] = []
     for place, column in enumerate(columns):
         if (

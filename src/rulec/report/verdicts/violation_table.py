@@ -62,7 +62,6 @@ def as_text(explanation: Explanation, *, every_part: bool = False) -> str:
 
 
 def _repair(explanation: Explanation) -> Iterator[str]:
-    """The least that would have had to be otherwise."""
     if explanation.repair is None:
         yield f"{INDENT}no trace of as many states keeps it"
     changes = [
@@ -77,7 +76,6 @@ def _repair(explanation: Explanation) -> Iterator[str]:
 
 
 def _states(run: Sequence[tuple[int, str]]) -> str:
-    """Numbers of the states that a repair changes, with their verb."""
     numbers = [number for number, _ in run]
     if len(numbers) == 1:
         return f"state {numbers[0]} says"
@@ -122,7 +120,6 @@ def _table(explanation: Explanation, decisive: int, every_part: bool) -> _Table:
 
 
 def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int) -> _Table:
-    """Rows of the facts and parts shown, with titles of limited width."""
     whole = every_part or len(explanation.parts) <= MOST_PARTS
     facts = [fact for fact in explanation.facts if whole or fact.decides]
     parts = (titled if whole else folded)(explanation.parts, widest)
@@ -137,7 +134,6 @@ def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int
 
 
 def _left_out(explanation: Explanation, table: _Table) -> Iterator[str]:
-    """A line on rows and states omitted from the table, if any."""
     n_rows, n_states = len(table.titles), sum(len(places) for places in table.columns)
     of_rows, of_states = len(explanation.facts) + len(explanation.parts), len(explanation.states)
     words = [
@@ -155,7 +151,6 @@ def _title(fact: Observation, widest: int) -> str:
 
 
 def _cells(fact: Observation, decisive: int) -> list[str]:
-    """Values, with the names of whom a count counts, as far as there is room."""
     cells = [shown(value) for value in fact.values]
     for n, names in enumerate(fact.objects or ()):
         cells[n] += f": {cut(visible(', '.join(names)), MOST_OF_NAMES)}" if names else ""

@@ -111,7 +111,6 @@ def remember(
 
 
 def _size(findings: Sequence[Diagnostic]) -> int:
-    """Estimated size of findings, in characters."""
     places = [finding.place for finding in findings if finding.place is not None]
     places += [label.place for finding in findings for label in finding.labels]
     return sum(_WORDS + len(place.excerpt) for place in places)
@@ -137,7 +136,6 @@ def _diagnostic(data: dict[str, Any]) -> Diagnostic:
 
 
 def _program() -> str:
-    """Hash of rulec's own files by their times and sizes."""
     seen = sha256()
     for path, status in package_files():
         seen.update(f"{path}\0{status.st_mtime_ns}\0{status.st_size}\n".encode())

@@ -34,7 +34,6 @@ def check_constants_and_macros(
 
 
 def _in_order_of_use(constants: ConstantsAndMacros) -> list[str]:
-    """Parameters and definitions, each after those it uses, circles aside."""
     uses: dict[str, list[str]] = {}
     for name, values in constants.overlay.parameters.items():
         uses[name] = [used for value in values for used in names_used(value.item)]

@@ -73,8 +73,7 @@ def _as_number(
 def elaborate(node: tree.Formula, scope: Scope) -> Meaning | None:
     """Elaborate an expression; None if it has a reported mistake.
 
-    Raises:
-        OverLimitError: with its definitions put in it is too deep or too large.
+    Raises OverLimitError: with its definitions put in it is too deep or too large.
     """
     with scope.constants.one_deeper():
         try:

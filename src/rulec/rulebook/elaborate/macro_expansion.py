@@ -68,7 +68,6 @@ def _closes_circle(use: tree.AtomUse, kind: str, scope: Scope) -> bool:
 
 
 def _relation(argument: tree.Name, scope: Scope) -> str | AnyArgument | None:
-    """The relation that an argument names, if it names one."""
     name = argument.text
     if name in scope.relations:
         scope.used.add(name)
@@ -92,7 +91,6 @@ def parameter_value(use: tree.AtomUse, scope: Scope, evaluate: Evaluate) -> Numb
 
 
 def _value_in_force(use: tree.AtomUse, scope: Scope) -> Value | None:
-    """The value in force, from the nearest rulebook that has any."""
     name, day = use.name.text, scope.constants.at
     values = scope.constants.overlay.parameters[name]
     good = [value for value in values if in_force(value.item.in_force, day)]

@@ -159,7 +159,6 @@ def _vocabulary_folders(user: Path | None, search_path: Sequence[Path]) -> list[
 
 
 def _rules_files(folder: Path) -> Iterator[Path]:
-    """The files with rules in a folder and in the folders in it."""
     with suppress(OSError):
         yield from folder.glob(f"*{_SUFFIX}")
         yield from folder.glob(f"*/*{_SUFFIX}")

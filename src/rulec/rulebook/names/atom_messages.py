@@ -198,7 +198,6 @@ def no_sides(use: tree.AtomUse, name: str, side: str) -> Diagnostic:
 
 
 def _short_form(name: str, symbols: SymbolTable, variables: Sequence[str]) -> str:
-    """The mistake in ``b_v`` where it stands for ``b(v)``."""
     head, _, tail = name.rpartition("_")
     item = symbols.behind_atom(head)
     if item is not None and len(item.parameters) == 1:

@@ -138,13 +138,11 @@ def symbol_table(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolT
 
 
 def _use_of(vocabulary: Source, files: Sequence[tree.File]) -> tree.UseLine:
-    """The last line that uses a vocabulary."""
     (name,) = (file.name.text for file in files if file.name and file.span.source == vocabulary)
     return [use for file in files for use in file.uses if use.name.text == name][-1]
 
 
 def _note_clashes(symbols: SymbolTable, files: Sequence[tree.File]) -> None:
-    """Note types that share the name of another declaration."""
     order = [file.span.source for file in files]
     for name in symbols.type_spans.keys() & symbols.spans.keys():
         spans = (symbols.type_spans[name], symbols.spans[name])

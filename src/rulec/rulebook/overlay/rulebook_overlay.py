@@ -131,7 +131,6 @@ class Overlay:
                 self.unsure |= item.nameless and item.word != "rule"
 
     def _is_new(self, name: tree.Name, kind: str) -> bool:
-        """Declare a name; report it if it is taken."""
         if name.text in self.declared_at:
             known = self.declared_at[name.text]
             if self._is_own(name):

@@ -159,7 +159,6 @@ def contradicted(
 
 
 def _violated(state: ExampleValues, axioms: Sequence[Axiom]) -> tuple[Axiom, str] | None:
-    """The first violated axiom, and its text about the chosen objects."""
     for axiom in axioms:
         types = [variable.type for variable in axiom.variables]
         for chosen in choices(types, state.objects, state.vocabulary):

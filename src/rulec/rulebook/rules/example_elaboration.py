@@ -99,7 +99,6 @@ def _value(
 
 
 def _number(fact: tree.StateLiteral, quantity: ltl.QuantityTerm, scope: Scope) -> float | None:
-    """A quantity's value, in the unit of its declaration."""
     if fact.value is None:
         scope.report(say.without_number(fact, quantity, scope.symbols))
         return None

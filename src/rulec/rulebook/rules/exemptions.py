@@ -40,9 +40,8 @@ class ExemptionError(Exception):
 def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
     """The formula with its exceptions.
 
-    Raises:
-        ExemptionError: for another scope than ``initially`` of a formula that guards no stretch,
-            for ``throughout`` if a phase's length is bounded, and if too many hold throughout.
+    Raises ExemptionError: for another scope than ``initially`` of a formula that guards no
+    stretch, for ``throughout`` if a phase's length is bounded, and if too many hold throughout.
     """
     inside = [exemption for exemption in exemptions if exemption.scope != "initially"]
     initially = [exemption.formula for exemption in exemptions if exemption.scope == "initially"]
@@ -153,7 +152,6 @@ class _Inner:
         return Binary(_THEN, first.formula, self._enter(1, somewhere), first.bound)
 
     def _enter(self, index: int, rest: frozenset[Formula]) -> Formula:
-        """Formula at a phase's first instant, with ``rest`` to hold somewhere."""
         if index == len(self.phases) - 1:
             return self.phases[-1].formula
         inside = self._inside(index, rest)

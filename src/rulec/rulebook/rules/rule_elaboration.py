@@ -99,7 +99,6 @@ def _errors(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
 
 
 def _step_of(file: tree.File, scope: Scope) -> Fraction:
-    """The step between states of a rulebook's examples, in seconds."""
     amount = None if file.step is None else number(file.step.amount, scope)
     if file.step is None or amount is None:
         return Fraction(1)
@@ -111,7 +110,6 @@ def _step_of(file: tree.File, scope: Scope) -> Fraction:
 
 
 def _with_change(mistake: Diagnostic, entry: RuleEntry) -> Diagnostic:
-    """Inherited mistake, labelled with the line that changed the rule."""
     changed = None if entry.changed is None else entry.changed.span.place
     if changed is None or mistake.place is None or mistake.place.file == changed.file:
         return mistake
@@ -146,7 +144,6 @@ def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
 
 
 def _formula(item: tree.RuleItem, parts: _Parts, scope: Scope) -> ltl.Formula | None:
-    """Formula of a whole rule; None after a reported mistake."""
     formula, exemptions = parts.required, list(parts.exemptions)
     if parts.condition is not None:
         guarding = (ltl.UnaryOperator.ALWAYS, ltl.UnaryOperator.NEVER)

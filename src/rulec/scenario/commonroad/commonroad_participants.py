@@ -56,14 +56,12 @@ def _participant(obstacle: Any, states: Iterable[Any], *, standing: bool) -> rec
 
 
 def _predicted(obstacle: Any) -> Iterator[tuple[int, recorded.Points]]:
-    """The outlines of a prediction without states, by step."""
     for occupancy in getattr(obstacle.prediction, "occupancy_set", None) or ():
         shape = getattr(occupancy, "shape", occupancy)
         yield int(occupancy.time_step), _corners(shape)
 
 
 def _rectangle(shape: Any, state: Any) -> recorded.Points | None:
-    """The outline of a rectangle in an exact place, the usual case; else None."""
     length, width = getattr(shape, "length", None), getattr(shape, "width", None)
     position, heading = state.position, state.orientation
     if not isinstance(length, (int, float)) or not isinstance(width, (int, float)):

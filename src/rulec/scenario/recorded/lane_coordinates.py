@@ -144,7 +144,6 @@ def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
 def _usual_widths(
     grid: _Values, widths: _Values, there: NDArray[np.bool_], ego_s: float
 ) -> Iterator[float]:
-    """The width of each lane at ego's place, or its median if it does not exist there."""
     at = pieces_at(grid, np.array(ego_s))
     for width, own in zip(widths.T, there.T, strict=True):
         if own[at]:
@@ -154,7 +153,6 @@ def _usual_widths(
 
 
 def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, NDArray[np.bool_]]]:
-    """Width and existence of one side's lanes by lanelet, nearest first."""
     rows = [lanes_beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
     columns = []
     for k in range(max(map(len, rows))):
@@ -171,7 +169,6 @@ def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, N
 
 
 def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> _Values:
-    """The offset of the lanelets' left or right bound, by grid place."""
     parts = [np.empty((0, 2))]
     for lanelet, (start, end) in zip(lanelets, pairwise(strip.borders), strict=True):
         if lanelet is None:

@@ -85,7 +85,6 @@ class ReferenceLine:
         return np.clip(np.searchsorted(self.arc, s, "right") - 1, 0, len(self.arc) - 1)
 
     def _nearest(self, places: Points, pieces: NDArray[intp]) -> Points:
-        """The nearest feet of places on pieces of the line, a row for each or one for all."""
         ux, uy = self.ahead[pieces, 0], self.ahead[pieces, 1]
         dx = places[:, :1] - self.start[pieces, 0]
         dy = places[:, 1:] - self.start[pieces, 1]

@@ -112,7 +112,6 @@ def extended_route(recording: Recording, way: Sequence[str]) -> tuple[str, ...]:
 
 
 def _way_to(lanelets: Mapping[str, Lanelet], start: str, targets: frozenset[str]) -> list[str]:
-    """The route through the fewest lanelets, only the start if there is none."""
     came_from: dict[str, str | None] = {start: None}
     waiting = deque([start])
     while waiting:

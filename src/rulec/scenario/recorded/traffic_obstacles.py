@@ -101,7 +101,6 @@ def traffic_obstacles(
 def _laid_out(
     view: TrafficView, others: Sequence[Participant]
 ) -> Iterator[tuple[Participant, list[int], list[Box | None]]]:
-    """Participants' steps from time 0 on, and bounds; computed in batches."""
     waiting: list[tuple[Participant, list[int]]] = []
     count = 0
     for number, participant in enumerate(others, 1):
@@ -181,7 +180,6 @@ def _walking_direction(view: TrafficView, participant: Participant) -> float | N
 
 
 def _signals(participant: Participant) -> dict[str, model.SignalValue]:
-    """The constant signals of a participant; changing ones are left to the rulebook."""
     signals: dict[str, model.SignalValue] = {
         "two_wheeled": participant.type in ("motorcycle", "bicycle")
     }

@@ -162,7 +162,6 @@ def _unrounded(limit_mps: float) -> float:
 
 
 def _junctions(net: SumoNet) -> set[str]:
-    """The nodes at which roads from several directions meet."""
     arms: dict[str, set[str]] = defaultdict(set)
     for lane in net.lanes.values():
         if lane.edge.function == "" and not _permitted(lane) <= _WALKERS:
@@ -172,7 +171,6 @@ def _junctions(net: SumoNet) -> set[str]:
 
 
 def _types(lane: NetLane, junctions: set[str], entries: list[NetConnection]) -> Iterator[str]:
-    """CommonRoad's words for the kind of lane."""
     permitted = _permitted(lane)
     if lane.edge.function == "crossing":
         # Where walkers have to give way there is no crossing that gives them priority

@@ -191,7 +191,6 @@ def fcd_participants(
 
 
 def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
-    """From bumpers and compass angles to centres and headings."""
     heading = np.pi / 2 - np.radians(rows[:, 2])
     heading = (heading + np.pi) % (2 * np.pi) - np.pi
     x = rows[:, 0] - length / 2 * np.cos(heading)

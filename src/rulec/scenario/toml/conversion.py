@@ -104,7 +104,6 @@ def _missing(raw: object, count: int | None, file: TomlFile) -> Iterator[Missing
 def _parts(
     kind: type[_Part], raw: object, heading: str, file: TomlFile
 ) -> Iterator[tuple[TomlTable, _Part]]:
-    """The parts of the road in an array of tables, without those that have mistakes."""
     for number, item in enumerate(raw if isinstance(raw, list) else (), start=1):
         table = TomlTable(file, f"{heading} {number}", heading, number)
         part = table.read(kind, item)
@@ -126,7 +125,6 @@ def _is_interval(value: tuple[float, float] | None, table: TomlTable, key: str) 
 
 
 def _ascend(lanes: Sequence[float], table: TomlTable) -> bool:
-    """True if the bounds ascend from right to left; else that is a mistake."""
     for right, left in pairwise(lanes):
         if left - right < NARROWEST_M:
             table.add(

@@ -150,7 +150,6 @@ def _predictions(
 def _motion(
     values: RawObstacle, fields: Mapping[str, Any], table: TomlTable
 ) -> model.Motion | None:
-    """The motion that ``values`` describe, of which ``fields`` stand in this table."""
     if values.trajectory is not None:
         return _trajectory(values.trajectory, fields, table)
     if values.s is None or values.d is None:

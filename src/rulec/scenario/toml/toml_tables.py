@@ -175,6 +175,5 @@ def _words_of(kind: object) -> str:
 
 
 def _indices(message: str) -> list[int]:
-    """The place in a value that msgspec complains about."""
     path = re.search(r"at `\$([^`]*)`", message)
     return [int(number) for number in re.findall(r"\[(\d+)\]", path.group(1))] if path else []

@@ -79,7 +79,6 @@ def _quantity(values: NodeValues, node: ParseNode) -> tree.QuantityItem:
 
 
 def _definition(values: NodeValues, node: ParseNode) -> tree.Definition:
-    """Build an option, parameter or definition, or a change of one."""
     span = values.span(node)
     name, *others = values.names(node)
     option = bool(node.leaves("ON"))

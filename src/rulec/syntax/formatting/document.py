@@ -162,7 +162,6 @@ class _Layout:
         self.rows.append(LaidOutLine(" " * min(indent, _DEEPEST)))
 
     def _fits(self, *documents: Document) -> bool:
-        """Tell whether documents and their inseparable successors fit this line."""
         room = self.width - len(self.rows[-1].code)
         inner: _Todo = [(0, True, document) for document in reversed(documents)]
         behind = len(self.todo)

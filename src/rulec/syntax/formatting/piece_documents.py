@@ -141,7 +141,6 @@ class DocumentBuilder:
         return group(*parts)
 
     def _operator(self, nodes: Sequence[Node], behind: Gap) -> Concatenation:
-        """An operator with its bound and its operand, or an operand alone."""
         *before, operand = nodes
         parts = [self.spell(node) for node in before]
         if before:
@@ -173,7 +172,6 @@ def last_leaf(node: Node) -> ParseLeaf:
 
 
 def _links(node: Node, of: int) -> list[list[Node]]:
-    """The operands, each behind its operator, of all operators of one level."""
     if not isinstance(node, ParseNode) or node.kind not in _CHAINS or level(node) != of:
         return [[node]]
     left, *operator, right = node.children
@@ -182,7 +180,6 @@ def _links(node: Node, of: int) -> list[list[Node]]:
 
 
 def _in_pairs(children: Iterable[Node]) -> list[list[Node]]:
-    """A state's facts, each behind its ``and``."""
     first, *others = children
     return [[first], *([others[at], others[at + 1]] for at in range(0, len(others), 2))]
 
@@ -195,7 +192,6 @@ def _behind_prefix(sign: ParseLeaf, children: Sequence[Node], operand: Node) -> 
 
 
 def _behind_operator(link: Sequence[Node]) -> Gap:
-    """The gap between an operator and its operand."""
     bounded = len(link) > 2 and first_leaf(link[-1]).kind == "NAME"
     return " " if bounded else Fill()
 

@@ -43,7 +43,6 @@ def format_source(source: Source) -> str:
 
 
 def _signs(source: Source) -> str:
-    """All written signs, without white space and the removable parentheses."""
     return "".join(token.text for token in scan(source) if token.text not in ("(", ")"))
 
 

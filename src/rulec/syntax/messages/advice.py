@@ -154,7 +154,6 @@ def _punctuation(scene: ParseContext) -> str:
 
 
 def _ending(scene: ParseContext) -> str:
-    """The sign with which other languages end a line."""
     last = scene.at == len(scene.tokens) - 1 and scene.text in (";", ".", ",")
     return f"delete the `{scene.text}`" if last and "$END" in scene.accepted else ""
 

@@ -73,7 +73,6 @@ def advise_on_aggregate(scene: ParseContext) -> str:
 
 
 def _arguments(scene: ParseContext) -> str:
-    """Between the parentheses of an atom."""
     if scene.opened("(", ")") is None or scene.kind not in ("clause", "formula", "item"):
         return ""
     if scene.accepted == {"NAME"} and scene.text_before == "(" and scene.text == ")":

@@ -45,7 +45,6 @@ def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecErr
 
 
 def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
-    """Reason why a file is no table, by its first bytes."""
     if stream.seekable():
         beginning = stream.read(_LONGEST_HEAD_BYTES)
         stream.seek(-len(beginning), io.SEEK_CUR)

@@ -108,7 +108,6 @@ class _Torn:
 
 
 def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
-    """Reason why a file has no traces, by its first line."""
     result = foreign(first)
     if result is not None:
         return _TRACE.bad(

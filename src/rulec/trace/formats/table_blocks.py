@@ -219,7 +219,6 @@ def _others(
     known: tuple[NDArray[np.int64], NDArray[np.int64]],
     starts: NDArray[np.int64],
 ) -> Rows:
-    """Indices of second objects, which have rows of their own."""
     result = np.full(len(trace), NOBODY)
     rows = np.flatnonzero(others.given)
     if not len(rows):

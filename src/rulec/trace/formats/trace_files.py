@@ -126,7 +126,6 @@ def _is_there(item: str, step: int, trace: Trace) -> bool:
 
 
 def _about(state: State, name: str, items: Sequence[str]) -> Value | None:
-    """Value of a name for just these objects in a state."""
     value: Any = state.get(name)
     for item in items:
         value = value.get(item) if isinstance(value, Mapping) else None

@@ -129,7 +129,6 @@ def _by_objects(
 
 
 def _values(column: Column, rows: NDArray[np.int64], declaration: Declaration) -> Array:
-    """Encoded values of rows, in the encoding of ``TraceColumns``."""
     if isinstance(column, Coded):
         codes = column.codes[rows]
         used = np.bincount(codes, minlength=len(column.values)) > 0
@@ -150,7 +149,6 @@ def _fill(
     declaration: Declaration,
     group: BlockGroup,
 ) -> None:
-    """Fill in a column's default for objects present but without values."""
     default = declaration.default
     if default is not None:
         line[missing] = encode_values([default], declaration)[0]

@@ -194,7 +194,6 @@ class ColumnReader:
         return total
 
     def _missing(self, count: ltl.Count, bound: ObjectBinding) -> NotGivenError:
-        """Error for the first missing value that a count's body reads."""
         for part in ltl.atoms_of(count.body):
             for read in (part,) if isinstance(part, ltl.Atom) else [term for _, term in part.terms]:
                 if not isinstance(read, ltl.Count):
@@ -204,7 +203,6 @@ class ColumnReader:
         return NotGivenError(next(names_in(count)), ())
 
     def _there(self, name: str) -> Mask:
-        """The states in which an object is there."""
         if name not in self.columns.present:
             return np.True_
         first, last = self.columns.present[name]

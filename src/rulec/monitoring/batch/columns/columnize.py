@@ -76,7 +76,6 @@ class _Columnizer:
             self.add(inner, declaration, parameters[1:], (*items, item))
 
     def _by_object(self, maps: Sequence[Mapping[str, Any]]) -> Sequence[tuple[str, Sequence[Any]]]:
-        """Values of all states for each object that any state mentions."""
         if set(map(len, maps)) == {len(maps[0])}:
             with suppress(KeyError, ValueError):
                 return self._if_of_the_same(maps)
@@ -119,12 +118,10 @@ class _Columnizer:
         return encode_values(values, declaration).take(self._traces.cells)
 
     def _are_there_in_any(self, items: tuple[str, ...], values: Sequence[Any]) -> bool:
-        """Tell whether all these objects are present in a state without a value."""
         places = {place for place, value in enumerate(values) if value is _NOT_GIVEN}
         return not self._traces.there or bool(places.intersection(*map(self._places_of, items)))
 
     def _places_of(self, item: str) -> Set[int]:
-        """The states that an object is there in, by their places."""
         if item not in self._known:
             there = enumerate(self._traces.there)
             self._known[item] = frozenset([place for place, objects in there if item in objects])

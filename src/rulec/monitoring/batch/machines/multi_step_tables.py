@@ -106,7 +106,6 @@ def _next_states(successors: Rows, length: int, begins: int, next_length: int) -
 
 @lru_cache(maxsize=64)
 def _verdicts(successors: Rows, verdicts: Rows, length: int, begins: int) -> Array:
-    """The verdicts after so many letters."""
     return _after(np.array(verdicts, dtype=np.uint8), successors, length, begins)
 
 

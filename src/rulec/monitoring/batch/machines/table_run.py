@@ -70,7 +70,6 @@ def run(
 
 @lru_cache(maxsize=64)
 def _by_cells(joint: JointMachine) -> tuple[Rows, Rows]:
-    """The successors and the verdicts by state and cell."""
     successors = [tuple([row[letter] for letter in joint.letters]) for row in joint.successors]
     verdicts = [tuple([row[letter] for letter in joint.letters]) for row in joint.verdicts]
     return tuple(successors), tuple(verdicts)
@@ -107,7 +106,6 @@ def _run_bytes(
 
 
 def _run_wide(joint: JointMachine, column: Array, steps: Sequence[Step]) -> NDArray[np.uint8]:
-    """Run a machine that a byte is too small for."""
     width = joint.n_letters
     dtype = np.uint16 if len(joint.successors) * width <= 1 << 16 else np.intp
     successors = np.array(joint.successors, dtype=dtype).ravel() * dtype(width)
@@ -124,7 +122,6 @@ def _run_wide(joint: JointMachine, column: Array, steps: Sequence[Step]) -> NDAr
 def _run_long(
     joint: JointMachine, cells: Array, layout: Layout, first: int, last: int | None
 ) -> NDArray[np.uint8]:
-    """Run a machine over a few long traces, one after the other."""
     letter_of_cell = np.array(joint.letters)
     result = np.empty(layout.n_traces, dtype=np.uint8)
     for trace in range(layout.n_traces):

@@ -134,7 +134,6 @@ def _key_of_one_relation(name: str, items: Items) -> StateKey:
 
 
 def _about_the_world(declarations: Sequence[Declaration]) -> Iterator[list[Declaration]]:
-    """The declarations without parameters; those that can be encoded together, together."""
     of_world = [declaration for declaration in declarations if not declaration.parameters]
     for kind in (Enumeration, Signal):
         alike: list[Declaration] = [own for own in of_world if isinstance(own, kind)]

@@ -75,6 +75,5 @@ def _within(text: str, room: Rectangle, *, turned: bool) -> Iterator[LabelText]:
 
 
 def _meet(left: Rectangle, right: Rectangle) -> bool:
-    """Test two labels for overlap, with some room beside their words."""
     beside = left[0] < right[2] + _ROOM and right[0] < left[2] + _ROOM
     return beside and left[1] < right[3] and right[1] < left[3]

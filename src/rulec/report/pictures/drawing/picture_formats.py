@@ -46,8 +46,7 @@ def format_of(file: str) -> Format:
 def as_bytes(drawing: Drawing, form: str, file: str) -> bytes:
     """The file's content.
 
-    Raises:
-        RulecError: R0707 if a PNG cannot be made.
+    Raises RulecError: R0707 if a PNG cannot be made.
     """
     if form == "html":
         return _as_page(drawing).encode()
@@ -101,12 +100,10 @@ def as_svg(picture: Picture) -> str:
 
 
 def _styles(pictures: Iterable[Picture]) -> set[str]:
-    """The names of the styles that pictures use."""
     return {"ground", *(mark.style for picture in pictures for mark in picture.marks)}
 
 
 def _inline_svg(picture: Picture, style: str = "") -> str:
-    """A part of a page that has the styles."""
     size = f'width="{picture.width:.0f}" height="{picture.height:.0f}"'
     box = f'viewBox="0 0 {picture.width:.0f} {picture.height:.0f}"'
     title = escape(visible(picture.title))

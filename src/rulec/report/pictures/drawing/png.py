@@ -33,8 +33,7 @@ _ALIGNMENTS = {"start": "left", "middle": "center", "end": "right"}
 def as_png(picture: Picture, file: str) -> bytes:
     """The picture on light ground.
 
-    Raises:
-        RulecError: R0707 if matplotlib is missing, or the picture is too large.
+    Raises RulecError: R0707 if matplotlib is missing, or the picture is too large.
     """
     try:
         # matplotlib is installed on request, and takes 0.3 s.

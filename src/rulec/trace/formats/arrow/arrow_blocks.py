@@ -132,7 +132,6 @@ def _numbers(array: Any) -> blocks.Numbers:
 
 
 def _read(texts: blocks.Coded, value: Callable[[str], Value]) -> blocks.Column:
-    """Texts as the values that they stand for."""
     if len(texts.values) > _FEW:
         written = pyarrow.array([text or "0" for text in texts.values])
         if compute.all(compute.match_substring_regex(written, NUMBER)).as_py():

@@ -58,7 +58,6 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
 def _pieces(
     source: Any, problems: tuple[type[Exception], ...], file: str
 ) -> Iterator[Piece | RulecError]:
-    """The record batches; where the file ends too early, what is wrong."""
     number = 0
     try:
         for batch in source.iter_batches(_ROWS_AT_ONCE):
@@ -69,7 +68,6 @@ def _pieces(
 
 
 def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
-    """Reason why a file is no Parquet, by its first and last bytes."""
     start = stream.tell()
     beginning = stream.read(len(_MARK))
     size = stream.seek(0, io.SEEK_END) - start
