@@ -8,9 +8,10 @@ import sys
 import pytest
 from click.shell_completion import BashComplete, FishComplete, ZshComplete
 
-from rulec.cli.commands.completion import SHELLS
 from rulec.cli.main import VERBS, main, rulec
 from rulec.report.findings.code_registry import all_codes
+
+SHELLS = ("bash", "fish", "zsh")
 
 
 def offered(words, incomplete, kind=BashComplete):

@@ -189,8 +189,7 @@ def test_a_field_is_called_as_it_is_written():
 
 
 def test_a_line_without_end_is_refused_without_keeping_it(monkeypatch):
-    for module in (json_lines, json_line_problems):
-        monkeypatch.setattr(module, "LONGEST_LINE_BYTES", 1000)
+    monkeypatch.setattr(json_line_problems, "LONGEST_LINE_BYTES", 1000)
     found = read(b"x" * 5000 + b"\n" + line(id="after"))
     assert "longer than" in found[0].diagnostics[0].message
     assert [item.id for item in found[1:]] == ["after"]
