@@ -35,7 +35,7 @@ SUPPLIED = {"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]}
 
 
 def partition_for(
-    rules: Rulebook | CompiledRulebook, wanted: PartitionName | None
+    rules: Rulebook | CompiledRulebook, requested: PartitionName | None
 ) -> PartitionName:
     """The wanted partition, or the one that the rules need.
 
@@ -56,16 +56,16 @@ def partition_for(
             "does",
         )
     for name, relations in needed.items():
-        if wanted not in (None, name):
+        if requested not in (None, name):
             raise TWO_PARTITIONS.error(
                 None,
                 f"rulebook `{rules.name}` reads {relations}, which the partition "
-                f"`{wanted}` does not supply",
+                f"`{requested}` does not supply",
                 help=f"use the partition `{name}`, or leave the choice to the rulebook",
             )
         return name
     declares_fine = not rules.vocabulary.declarations.keys().isdisjoint(RELATIONS_OF["fine"])
-    return wanted or ("fine" if declares_fine else "paper")
+    return requested or ("fine" if declares_fine else "paper")
 
 
 def in_rule_words(

@@ -40,11 +40,11 @@ def check(
         or not fresh.isdisjoint(ap.ap_name() for ap in automaton.ap())
     ):
         raise CheckError
-    said = spot_formulas.formula_of(formula)
+    spot_formula = spot_formulas.formula_of(formula)
     defined = [spot_formulas.formula_of(definition(memory)) for memory in memories]
     no_word = F.Not(spot_formulas.language([]))
-    outside = F.Or([no_word, spot_formulas.language([F.Not(said), *defined])])
-    inside = spot_formulas.language([said, *defined])
+    outside = F.Or([no_word, spot_formulas.language([F.Not(spot_formula), *defined])])
+    inside = spot_formulas.language([spot_formula, *defined])
 
     def meets_outside() -> bool:
         return bool(automaton.intersects(spot_formulas.translate(outside, "BA", "low")))

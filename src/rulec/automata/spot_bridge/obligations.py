@@ -44,15 +44,15 @@ so that no BDD has a negated one."""
 def _joined(both: bool, left: _Signed, right: _Signed) -> _Signed:
     """Conjunction (``both``) or disjunction, negated by De Morgan's laws."""
 
-    def signed(wanted: bool) -> Any:
-        first, second = left(wanted), right(wanted)
-        return first & second if both is wanted else first | second
+    def signed(polarity: bool) -> Any:
+        first, second = left(polarity), right(polarity)
+        return first & second if both is polarity else first | second
 
     return signed
 
 
 def _equivalence(left: _Signed, right: _Signed) -> _Signed:
-    return lambda wanted: (left(True) & right(wanted)) | (left(False) & right(not wanted))
+    return lambda polarity: (left(True) & right(polarity)) | (left(False) & right(not polarity))
 
 
 class Obligations:
@@ -98,32 +98,32 @@ class Obligations:
             self._variables[_obligation] = buddy.bdd_ithvar(self.propositions.register_ap(name))
         return self._variables[_obligation]
 
-    def _now(self, formula: ltl.Formula, wanted: bool) -> Any:
+    def _now(self, formula: ltl.Formula, polarity: bool) -> Any:
         # Not kept: that would be a reference circle, and BDDs would outlive their use.
         algebra: Algebra[_Signed] = Algebra(
             proposition=self._proposition,
             constant=lambda value: (
-                lambda wanted: buddy.bddtrue if value is wanted else buddy.bddfalse
+                lambda polarity: buddy.bddtrue if value is polarity else buddy.bddfalse
             ),
-            negation=lambda operand: lambda wanted: operand(not wanted),
+            negation=lambda operand: lambda polarity: operand(not polarity),
             conjunction=partial(_joined, True),
             disjunction=partial(_joined, False),
             equivalence=_equivalence,
             operation=self._operation,
         )
-        return fold(formula, algebra)(wanted)
+        return fold(formula, algebra)(polarity)
 
     def _proposition(self, proposition: ltl.Proposition) -> _Signed:
         letters = self._letters[proposition]
-        return lambda wanted: letters if wanted else -letters
+        return lambda polarity: letters if polarity else -letters
 
     def _operation(
         self, formula: ltl.Unary | ltl.Binary, _: Callable[[ltl.Formula], _Signed]
     ) -> _Signed:
         span = range_of(formula)
-        return lambda wanted: self._temporal(formula, span, wanted)
+        return lambda polarity: self._temporal(formula, span, polarity)
 
-    def _temporal(self, formula: ltl.Unary | ltl.Binary, span: Range, wanted: bool) -> Any:
+    def _temporal(self, formula: ltl.Unary | ltl.Binary, span: Range, polarity: bool) -> Any:
         match formula:
             case ltl.Unary(ltl.UnaryOperator.NEXT | ltl.UnaryOperator.EVENTUALLY, operand):
                 one = _Obligation(True, _TRUE, operand, span)
@@ -138,15 +138,15 @@ class Obligations:
             case ltl.Binary(ltl.BinaryOperator.STRONG_RELEASE, left, right, bound):
                 turned = ltl.Unary(_NOT, left), ltl.Unary(_NOT, right)
                 return self._now(
-                    ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, *turned, bound), not wanted
+                    ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, *turned, bound), not polarity
                 )
             case ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, left, right) if span == Range(0, None):
                 one = _Obligation(False, right, ltl.Binary(_OR, left, right), Range(0, None))
             case ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, left, right):
-                return self._now(_weak_until(left, right, span), wanted)
+                return self._now(_weak_until(left, right, span), polarity)
             case _:
                 raise ValueError("operators of the past have no future")
-        if not wanted:
+        if not polarity:
             turned = ltl.Unary(_NOT, one.left), ltl.Unary(_NOT, one.right)
             one = _Obligation(not one.strong, *turned, span)
         return self._unfolded(one)

@@ -43,10 +43,10 @@ def with_registers(
     over = (-going, operands.nothing, empty)
     for state, values in reached:
         source = numbers[state, values]
-        choices = [(letters & going, said, later) for letters, said, later in operands.on(values)]
+        choices = [(letters & going, cube, later) for letters, cube, later in operands.on(values)]
         for edge in automaton.out(state):
-            for letters, said, later in [*choices, over]:
-                both = buddy.bdd_restrict(edge.cond, said) & letters
+            for letters, cube, later in [*choices, over]:
+                both = buddy.bdd_restrict(edge.cond, cube) & letters
                 if both == buddy.bddfalse:
                     continue
                 target = (edge.dst, later)
@@ -87,10 +87,10 @@ class _Operands:
             result: list[tuple[Any, Any, _Values]] = [(buddy.bddtrue, buddy.bddtrue, ())]
             for value, (register, left, right, atom) in zip(values, self._registers, strict=True):
                 result = [
-                    (letters & more, said & (atom if later & 1 else -atom), (*others, later))
-                    for letters, said, others in result
+                    (letters & more, cube & (atom if later & 1 else -atom), (*others, later))
+                    for letters, cube, others in result
                     for later, more in _steps(
-                        register, value, *(buddy.bdd_restrict(side, said) for side in (left, right))
+                        register, value, *(buddy.bdd_restrict(side, cube) for side in (left, right))
                     ).items()
                     if (letters & more) != buddy.bddfalse
                 ]

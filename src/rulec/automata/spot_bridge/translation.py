@@ -106,37 +106,39 @@ def _guessed(formula: ltl.Formula, memories: Sequence[Memory], spot_formulas: Sp
     return spot.postprocess(projection.strip(guessing), *_SHAPE)
 
 
-def _combined(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
+def _combined(formula: ltl.Formula, polarity: bool, spot_formulas: SpotFormulas) -> Any:
     """Automaton of a formula or its negation; bounded ones by parts."""
     if total_bound(formula) == 0:
-        return spot_formulas.translate(_language(formula, wanted, spot_formulas), *_SHAPE)
+        return spot_formulas.translate(_language(formula, polarity, spot_formulas), *_SHAPE)
     match formula:
         case ltl.Unary(ltl.UnaryOperator.NOT, operand):
-            return _combined(operand, not wanted, spot_formulas)
+            return _combined(operand, not polarity, spot_formulas)
         case ltl.Binary(ltl.BinaryOperator.AND | ltl.BinaryOperator.OR as operator, left, right):
-            join = spot.product if (operator is _AND) is wanted else spot.product_or
-            parts = [_combined(part, wanted, spot_formulas) for part in (left, right)]
+            join = spot.product if (operator is _AND) is polarity else spot.product_or
+            parts = [_combined(part, polarity, spot_formulas) for part in (left, right)]
             return _shaped(join(*parts))
         case ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right):
-            return _combined(ltl.Binary(_OR, ltl.Unary(_NOT, left), right), wanted, spot_formulas)
+            return _combined(ltl.Binary(_OR, ltl.Unary(_NOT, left), right), polarity, spot_formulas)
         case ltl.Binary(ltl.BinaryOperator.IFF | ltl.BinaryOperator.XOR as operator, left, right):
-            whole = _by_progression(formula, wanted, spot_formulas)
+            whole = _by_progression(formula, polarity, spot_formulas)
             if whole is not None:
                 return whole
-            same = (operator is ltl.BinaryOperator.IFF) is wanted
+            same = (operator is ltl.BinaryOperator.IFF) is polarity
             other = right if same else ltl.Unary(_NOT, right)
             yes = ltl.Binary(_AND, left, other)
             no = ltl.Binary(_AND, ltl.Unary(_NOT, left), ltl.Unary(_NOT, other))
             return _combined(ltl.Binary(_OR, yes, no), True, spot_formulas)
-    whole = _by_progression(formula, wanted, spot_formulas)
+    whole = _by_progression(formula, polarity, spot_formulas)
     if whole is not None:
         return whole
-    return _by_trial(_language(formula, wanted, spot_formulas), spot_formulas)
+    return _by_trial(_language(formula, polarity, spot_formulas), spot_formulas)
 
 
-def _by_progression(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any | None:
+def _by_progression(
+    formula: ltl.Formula, polarity: bool, spot_formulas: SpotFormulas
+) -> Any | None:
     """Automaton by formula progression; None if prefixes decide nothing."""
-    progression = Progression(formula if wanted else ltl.Unary(_NOT, formula), spot_formulas)
+    progression = Progression(formula if polarity else ltl.Unary(_NOT, formula), spot_formulas)
     if spot_formulas.alive is not None:
         return _shaped(progression.finite(spot_formulas.alive))
     if progression.is_decided:
@@ -144,9 +146,9 @@ def _by_progression(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormu
     return None
 
 
-def _language(formula: ltl.Formula, wanted: bool, spot_formulas: SpotFormulas) -> Any:
-    said = spot_formulas.formula_of(formula)
-    return spot_formulas.language([said if wanted else F.Not(said)])
+def _language(formula: ltl.Formula, polarity: bool, spot_formulas: SpotFormulas) -> Any:
+    spot_formula = spot_formulas.formula_of(formula)
+    return spot_formulas.language([spot_formula if polarity else F.Not(spot_formula)])
 
 
 def _by_trial(language: Any, spot_formulas: SpotFormulas) -> Any:

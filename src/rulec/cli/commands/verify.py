@@ -202,7 +202,9 @@ def _answers(
     from rulec.monitoring.verdict import NotJudged
     from rulec.trace.formats.trace_files import format_of, read_chunks
 
-    def judged(stream: IO[bytes], name: str, form: Format, size: int | None) -> Iterator[Answer]:
+    def answers_in(
+        stream: IO[bytes], name: str, form: Format, size: int | None
+    ) -> Iterator[Answer]:
         with progress(f"judging {name}", size) as tell:
             for chunk in read_chunks(stream, name, form):
                 traces, answers = verify_items(chunk, rules)
@@ -214,11 +216,11 @@ def _answers(
     for file in files:
         try:
             if file == "-":
-                yield from judged(sys.stdin.buffer, "standard input", form or "jsonl", None)
+                yield from answers_in(sys.stdin.buffer, "standard input", form or "jsonl", None)
                 continue
             with opened(Path(file)) as stream:
                 about = os.fstat(stream.fileno())
                 size = about.st_size if stat.S_ISREG(about.st_mode) else None
-                yield from judged(stream, file, form or format_of(file), size)
+                yield from answers_in(stream, file, form or format_of(file), size)
         except RulecError as error:
             yield [error], 0, NotJudged(None, error)

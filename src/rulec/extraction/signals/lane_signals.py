@@ -51,8 +51,8 @@ def _disturbs(context: DriveContext) -> Flags:
     lanes = np.arange(context.touched.shape[-1])
     same = context.touched & (lanes == context.ego_lane[None, :, None])
     faster = np.maximum(context.extents.along - context.ego_extents.along, 0.0)
-    room = relations.gap(context) - faster * limits.reaction_s
-    brakes = faster**2 > 2 * limits.disturbing_mps2 * np.maximum(room, 0.0)
+    braking_distance = relations.gap(context) - faster * limits.reaction_s
+    brakes = faster**2 > 2 * limits.disturbing_mps2 * np.maximum(braking_distance, 0.0)
     behind = (station == relations.IN_FRONT_OF) & brakes
     beside = station == relations.BESIDE
     disturbs: Flags = (context.going_along & same.any(axis=-1) & (behind | beside)).any(axis=0)

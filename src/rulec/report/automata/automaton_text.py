@@ -49,16 +49,16 @@ def _leaving(transitions: list[Transition], state: int, width: int) -> list[str]
         "stays" if transition.target == state else f"to state {transition.target}"
         for transition in ordered
     ]
-    room = max(20, width - 2 - max(map(len, targets)) - 3 - len("rejected") - 3)
-    labels = [_broken(transition.label, room) for transition in ordered]
+    label_width = max(20, width - 2 - max(map(len, targets)) - 3 - len("rejected") - 3)
+    labels = [_broken(transition.label, label_width) for transition in ordered]
     rows = []
     for transition, target, (first, *rest) in zip(ordered, targets, labels, strict=True):
         rows += [(first, target, WORDS[transition.accepted]), *((line, "", "") for line in rest)]
     return table_lines(rows, indent="  ", gap="   ")
 
 
-def _broken(label: str, room: int) -> list[str]:
-    lines = wrap(label, room, subsequent_indent="  ")
+def _broken(label: str, label_width: int) -> list[str]:
+    lines = wrap(label, label_width, subsequent_indent="  ")
     return lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "  … (all: --json)"]
 
 

@@ -72,9 +72,9 @@ def _window(excerpt: str, place: SourceLocation) -> tuple[list[str], int, bool, 
     if start == 0 and sum(widths[:here]) <= _LEAD * 2:
         first = 0
     last = first
-    room = MAX_WIDTH
-    while last < len(cells) and room >= widths[last]:
-        room -= widths[last]
+    columns_left = MAX_WIDTH
+    while last < len(cells) and columns_left >= widths[last]:
+        columns_left -= widths[last]
         last += 1
     return cells[first:last], start + first, start + first > 0, start + last < len(excerpt)
 

@@ -11,9 +11,11 @@ from rulec.report.text.terminal_text import visible
 FORMATS = ("full", "concise", "json", "github", "sarif")
 
 
-def render(diagnostics: Sequence[Diagnostic], wanted: str, *, color: bool, complete: bool) -> str:
+def render(
+    diagnostics: Sequence[Diagnostic], output_format: str, *, color: bool, complete: bool
+) -> str:
     """Render diagnostics in one of FORMATS; ``complete`` if all was read that had to be."""
-    match wanted:
+    match output_format:
         case "concise":
             return as_lines(diagnostics)
         case "json":

@@ -134,8 +134,8 @@ def _rule(rule_history: rule_lineage.RuleHistory, book: str, rules: Tree) -> Non
     if rule_history.rule is not None and rule_history.rule.in_force is not None:
         label.append(f"  {print_in_force(rule_history.rule.in_force)}", "dim")
     here = rules.add(label)
-    told = len(rule_history.steps) == 2 and rule_history.last.deed == "overridden"
-    for step in () if told else rule_history.steps[:-1]:
+    is_one_override = len(rule_history.steps) == 2 and rule_history.last.deed == "overridden"
+    for step in () if is_one_override else rule_history.steps[:-1]:
         here.add(Text(f"{_DEEDS[step.deed]} {visible(step.book)}{_detail(step)}", "dim"))
 
 

@@ -31,8 +31,8 @@ def as_junit(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage
             _case(suite, run.rulebook.name, outcome)
         if covered is not None:
             lines = coverage_lines(covered[number], run.rulebook.vocabulary)
-            said = ElementTree.SubElement(suite, "system-out")
-            said.text = _text("\n".join(lines))
+            output = ElementTree.SubElement(suite, "system-out")
+            output.text = _text("\n".join(lines))
     ElementTree.indent(root)
     written = ElementTree.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{written}'
@@ -57,8 +57,8 @@ def _case(suite: ElementTree.Element, rulebook: str, example_outcome: ExampleOut
     )
     if not example_outcome.passed:
         problem = failure(example_outcome, rulebook)
-        said = {"type": problem.code, "message": _text(problem.message)}
-        element = ElementTree.SubElement(case, "failure", said)
+        attributes = {"type": problem.code, "message": _text(problem.message)}
+        element = ElementTree.SubElement(case, "failure", attributes)
         element.text = _text(render_diagnostics([problem], summary=False))
 
 

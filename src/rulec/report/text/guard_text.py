@@ -108,9 +108,9 @@ class GuardWording:
         return " and ".join(bounds)
 
     def _compared(self, read: NumberRead, relation: Relation, limit: Fraction) -> str:
-        said = self._said.get((read.terms, relation, limit))
-        if said is not None:
-            return said
+        wording = self._said.get((read.terms, relation, limit))
+        if wording is not None:
+            return wording
         return f"{terms_text(read.terms)} {relation} {number_text(limit)}{self._unit(read)}"
 
     def _unit(self, read: NumberRead) -> str:

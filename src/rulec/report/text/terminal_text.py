@@ -95,10 +95,12 @@ def table_lines(
 
 def fact_lines(facts: Sequence[tuple[str, str]], width: int) -> list[str]:
     """Names with texts beside them, which are broken to lines of a width."""
-    room = max(20, width - max((cell_width(visible(name)) for name, _ in facts), default=0) - 4)
+    text_width = max(
+        20, width - max((cell_width(visible(name)) for name, _ in facts), default=0) - 4
+    )
     rows = []
     for name, text in facts:
-        first, *rest = wrap(visible(text), room) or [""]
+        first, *rest = wrap(visible(text), text_width) or [""]
         rows += [(visible(name), first), *(("", line) for line in rest)]
     return table_lines(rows, indent="  ")
 

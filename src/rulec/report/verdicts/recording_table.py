@@ -24,25 +24,25 @@ MOST_VEHICLES = 6
 LONGEST_RULE = 48
 
 
-def as_text(judged: RecordingVerdicts, tally: ViolationTally) -> str:
+def as_text(verdicts: RecordingVerdicts, tally: ViolationTally) -> str:
     """The recording in a few lines, and the table of violations."""
-    recording = judged.recording
+    recording = verdicts.recording
     drives = f"{tally.judged:,} {'drive' if tally.judged == 1 else 'drives'}"
     lines = [
         f"recording   {recording.name}: {drives} in steps of {recording.step_s:g} s",
         *_not_judged(tally.not_judged),
     ]
-    if judged.mirrored:
+    if verdicts.mirrored:
         before = "right" if recording.side == "left" else "left"
         lines.append(
             f"mirrored    recorded where traffic keeps to the {before}, "
             f"judged as if it kept to the {recording.side}"
         )
-    defaults = defaulted_names(judged, tally.words or frozenset())
+    defaults = defaulted_names(verdicts, tally.words or frozenset())
     if defaults:
         lines.append(f"by default  {first_of(defaults, MOST_DEFAULTS)}: the recording does not say")
     lines += [f"note        {remark}" for remark in recording.remarks]
-    lines += _table(judged, tally)
+    lines += _table(verdicts, tally)
     return "\n".join(visible(line) for line in lines)
 
 
@@ -54,17 +54,17 @@ def _not_judged(no_drives: Sequence[NoDrive]) -> Iterator[str]:
         yield f"not judged  {first_of(egos, MOST_VEHICLES)}: {why}"
 
 
-def defaulted_names(judged: RecordingVerdicts, words: frozenset[str]) -> list[str]:
+def defaulted_names(verdicts: RecordingVerdicts, words: frozenset[str]) -> list[str]:
     """Inputs of rules that a recording's words lack."""
-    missing = {name for names in judged.by_default(words).values() for name in names}
-    return [name for name in judged.rules.vocabulary.declarations if name in missing]
+    missing = {name for names in verdicts.by_default(words).values() for name in names}
+    return [name for name in verdicts.rules.vocabulary.declarations if name in missing]
 
 
-def _table(judged: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
+def _table(verdicts: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
     if not tally.first_s:
         return
-    defaults = judged.by_default(tally.words or frozenset())
-    rules = [rule for rule in judged.rules.rules if rule.name in tally.first_s]
+    defaults = verdicts.by_default(tally.words or frozenset())
+    rules = [rule for rule in verdicts.rules.rules if rule.name in tally.first_s]
     names = [f"{rule.name} [{rule.cite}]" if rule.cite else rule.name for rule in rules]
     titles = [shorten(name, LONGEST_RULE, placeholder=" …]") for name in names]
     rows = [("violated", "", " drives", "   first", "by")]

@@ -76,7 +76,7 @@ def _is_link(part: Part, operand: Part) -> bool:
 
 
 def fitting(
-    columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int, room: int
+    columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int, columns_left: int
 ) -> list[range]:
     """Columns that fit into the room, each as a range of states.
 
@@ -85,7 +85,7 @@ def fitting(
     one behind them, the first, and those further back.
     """
     places = [range(n, n + 1) for n in range(len(columns))]
-    if sum(width(columns, states, place) for place in places) <= room:
+    if sum(width(columns, states, place) for place in places) <= columns_left:
         return places
     places = _merged(columns, states, decisive)
     at = next(n for n, place in enumerate(places) if decisive in place)
@@ -93,8 +93,8 @@ def fitting(
     chosen: list[int] = []
     for one in dict.fromkeys([*needed, at - 2, at + 1, 0, *range(at - 3, 0, -1)]):
         if 0 <= one < len(places):
-            room -= width(columns, states, places[one])
-            if room < 0 and one not in needed:
+            columns_left -= width(columns, states, places[one])
+            if columns_left < 0 and one not in needed:
                 break
             chosen.append(one)
     return [places[one] for one in sorted(chosen)]

@@ -112,8 +112,8 @@ def _table(explanation: Explanation, decisive: int, every_part: bool) -> _Table:
         table = _rows(explanation, decisive, every_part, widest)
         if every_part:
             return table
-        room = WIDTH - len(INDENT) - max(map(len, ("state", *table.titles))) - 1
-        columns = fitting(table.values, explanation.states, decisive, room)
+        columns_left = WIDTH - len(INDENT) - max(map(len, ("state", *table.titles))) - 1
+        columns = fitting(table.values, explanation.states, decisive, columns_left)
         if columns == table.columns:
             break
     return replace(table, columns=columns)

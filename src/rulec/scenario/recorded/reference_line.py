@@ -91,10 +91,10 @@ class ReferenceLine:
         along = dx * ux + dy * uy
         across = ux * dy - uy * dx
         lengths, first = self.lengths[pieces], self.first[pieces]
-        room = lengths - across * self.change[pieces]
+        turned_lengths = lengths - across * self.change[pieces]
         with np.errstate(divide="ignore", invalid="ignore"):
-            part = (along + across * first) / room
-        good = (room > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
+            part = (along + across * first) / turned_lengths
+        good = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
         distance = np.where(good, np.hypot(along - part * lengths, across), np.inf)
         best = np.argmin(distance, axis=1)
         row = np.arange(len(places))

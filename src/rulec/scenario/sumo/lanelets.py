@@ -100,8 +100,8 @@ def parallel_line(points: Points, offset: float) -> Points:
     before = np.concatenate((across[:1], across))
     after = np.concatenate((across, across[-1:]))
     # Both pieces' parallels meet on the line that halves the angle between them
-    room = np.maximum(1.0 + (before * after).sum(axis=1), _SHARPEST)
-    line: Points = points + offset * (before + after) / room[:, None]
+    stretch = np.maximum(1.0 + (before * after).sum(axis=1), _SHARPEST)
+    line: Points = points + offset * (before + after) / stretch[:, None]
     return line
 
 

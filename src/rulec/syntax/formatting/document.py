@@ -162,10 +162,10 @@ class _Layout:
         self.rows.append(LaidOutLine(" " * min(indent, _DEEPEST)))
 
     def _fits(self, *documents: Document) -> bool:
-        room = self.width - len(self.rows[-1].code)
+        columns_left = self.width - len(self.rows[-1].code)
         inner: _Todo = [(0, True, document) for document in reversed(documents)]
         behind = len(self.todo)
-        while room >= 0:
+        while columns_left >= 0:
             if inner:
                 _, flat, one = inner.pop()
             elif behind:
@@ -175,15 +175,15 @@ class _Layout:
                 return True
             match one:
                 case str():
-                    room -= len(one)
+                    columns_left -= len(one)
                 case Concatenation(parts):
                     inner.extend((0, flat, part) for part in reversed(parts))
                 case Nest(inside=inside) | GroupDocument(inside=inside):
                     inner.append((0, flat, inside))
                 case Break(text) if flat:
-                    room -= len(text)
+                    columns_left -= len(text)
                 case Fill() if flat:
-                    room -= 1
+                    columns_left -= 1
                 case Break() | Fill() | LineEnd():
                     return True
         return False

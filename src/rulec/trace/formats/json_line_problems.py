@@ -122,9 +122,9 @@ def middle_of(line: bytes) -> str:
         elif mark == b'"' and begun is not None:
             if open_ and open_[-1] is None:
                 open_[-1] = line[begun : match_.start()]
-                said = _CALLED.match(line, match_.end())
-                if open_ == [b"id"] and said is not None:
-                    called = said[1].strip(b'"')
+                id_match = _CALLED.match(line, match_.end())
+                if open_ == [b"id"] and id_match is not None:
+                    called = id_match[1].strip(b'"')
             begun = None
         elif begun is not None:
             continue

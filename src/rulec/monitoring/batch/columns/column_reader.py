@@ -239,13 +239,13 @@ class ColumnReader:
         side = self.digits(NumberRead(comparison.terms, (at, above)), bound)
         return np.isin(side, _SIDES[comparison.relation])
 
-    def atom(self, name: str, items: tuple[str, ...], wanted: str | None) -> Truth:
+    def atom(self, name: str, items: tuple[str, ...], expected: str | None) -> Truth:
         """Three-valued truth of an atom in each state."""
         values = self.values(name, items)
         if values is None:
             return UNKNOWN
         declaration = self._vocabulary.declarations[name]
         if isinstance(declaration, Enumeration):
-            assert wanted is not None, "the rulebook has been checked"
-            return known(np.asarray(values == declaration.values.index(wanted)))
+            assert expected is not None, "the rulebook has been checked"
+            return known(np.asarray(values == declaration.values.index(expected)))
         return known(np.asarray(values, dtype=bool))

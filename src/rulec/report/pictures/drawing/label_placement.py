@@ -36,34 +36,34 @@ class Placing:
         """Take the first choice whose place is free; empty if none is."""
         return list(islice(filter(self.take, choices), 1))
 
-    def place(self, texts: Sequence[str], rooms: Sequence[Rectangle]) -> LabelText | None:
+    def place(self, texts: Sequence[str], boxes: Sequence[Rectangle]) -> LabelText | None:
         """Place the first text that fits into a room, upright if possible.
 
         Of the large rooms that in the middle is tried first. None if no text fits anywhere.
         """
-        ordered = sorted(rooms, key=_preference(rooms))
+        ordered = sorted(boxes, key=_preference(boxes))
         choices = (
             words
-            for text, turned, room in product(texts, (False, True), ordered)
-            for words in _within(text, room, turned=turned)
+            for text, turned, box in product(texts, (False, True), ordered)
+            for words in _within(text, box, turned=turned)
         )
         return next(filter(self.take, choices), None)
 
 
-def _preference(rooms: Sequence[Rectangle]) -> Callable[[Rectangle], tuple[bool, float, float]]:
-    sizes = {room: (room[2] - room[0]) * (room[3] - room[1]) for room in rooms}
+def _preference(boxes: Sequence[Rectangle]) -> Callable[[Rectangle], tuple[bool, float, float]]:
+    sizes = {box: (box[2] - box[0]) * (box[3] - box[1]) for box in boxes}
     largest = max(sizes.values())
-    middle = (min(room[1] for room in rooms) + max(room[3] for room in rooms)) / 2
+    middle = (min(box[1] for box in boxes) + max(box[3] for box in boxes)) / 2
 
-    def rank(room: Rectangle) -> tuple[bool, float, float]:
-        small = sizes[room] < _LARGE * largest
-        return small, 0.0 if small else abs((room[1] + room[3]) / 2 - middle), -sizes[room]
+    def rank(box: Rectangle) -> tuple[bool, float, float]:
+        small = sizes[box] < _LARGE * largest
+        return small, 0.0 if small else abs((box[1] + box[3]) / 2 - middle), -sizes[box]
 
     return rank
 
 
-def _within(text: str, room: Rectangle, *, turned: bool) -> Iterator[LabelText]:
-    left, top, right, bottom = room
+def _within(text: str, area: Rectangle, *, turned: bool) -> Iterator[LabelText]:
+    left, top, right, bottom = area
     box = LabelText(text, (0, 0), "middle", turned=turned).bounds
     spare_x = right - left - (box[2] - box[0]) - 2 * _ROOM
     spare_y = bottom - top - (box[3] - box[1])
