@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -49,12 +50,17 @@ def every(names: tuple[str, ...], rounds: int | None, write: bool) -> None:
         PAGE.write_text(page(found, about), encoding="utf-8")
 
 
+def environment() -> dict[str, str]:
+    """This process's own, and where `support` is found."""
+    return os.environ | {"PYTHONPATH": str(HERE.parent)}
+
+
 def measured(name: str, rounds: int | None) -> list[Result] | None:
     """What a benchmark finds, printed as it comes; None if it broke."""
     command = [sys.executable, str(HERE / f"{name}.py"), "--json"]
     command += [] if rounds is None else [str(rounds)]
     results = []
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment()) as process:
         assert process.stdout is not None
         for line in process.stdout:
             results.append(msgspec.json.decode(line, type=Result))
