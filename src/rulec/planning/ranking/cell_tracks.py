@@ -62,9 +62,10 @@ class TrackProduct:
         """Product nodes reachable without leaving the cell track."""
         reached, new = set(entered), list(entered)
         while new:
-            further = {target for target, _ in self.stays[new.pop()]} - reached
-            reached |= further
-            new += further
+            for target, _ in self.stays[new.pop()]:
+                if target not in reached:
+                    reached.add(target)
+                    new.append(target)
         return frozenset(reached)
 
     def left(self, here: Collection[int]) -> dict[int, set[int]]:
