@@ -80,7 +80,7 @@ def node_transformers(graph: TraceGraph, instances: Sequence[GraphInstance]) -> 
     known: dict[object, tuple[tuple[Effect, ...], ...]] = {}
     for p, alive in enumerate(on_the_way):
         rows = [layers[p] for _, layers in result]
-        key = tuple(map(Interned, (alive, *rows)))
+        key = tuple(map(id, (alive, *rows)))
         if key not in known:
             known[key] = tuple(
                 [tuple([row[i] for row in rows]) if there else () for i, there in enumerate(alive)]
@@ -154,8 +154,9 @@ def _merged(
     waiting, over = [(instance.start,) * n_states], [(SAFE,) * n_states]
     within, final = _columns(machine, final=False), _columns(machine, final=True)
     nobody = {len(layer): (0,) * len(layer) for layer in on_the_way}
-    effects: dict[Interned[list[Effect]], dict[object, Effect]] = {
-        Interned(raw): {} for raw in (waiting, within, final, over)
+    # Ids as keys, which are made for every layer: the lists here keep what they name.
+    effects: dict[int, dict[object, Effect]] = {
+        id(raw): {} for raw in (waiting, within, final, over)
     }
     known: dict[object, tuple[Effect, ...]] = {}
     same: dict[tuple[Effect, ...], tuple[Effect, ...]] = {}
@@ -169,9 +170,9 @@ def _merged(
         else:
             symbols = nobody[len(alive)]
             raw = waiting if p < instance.first else over
-        key = (symbols, *map(Interned, (raw, rows, later, alive)))
+        key = (symbols, id(raw), id(rows), id(later), id(alive))
         if key not in known:
-            seen = effects[Interned(raw)]
+            seen = effects[id(raw)]
             layer: list[Effect] = []
             for node, symbol in enumerate(symbols):
                 if not alive[node]:
