@@ -131,7 +131,8 @@ class _Run:
             violated += not answer.satisfied
             if answer.violations or self.json_output:
                 used = rulebook_for(traces, place, self.rules)
-                explained = self._explained(answer, traces[place], used)
+                # A trace of a table is made only if it is looked at.
+                explained = self._explained(answer, traces[place], used) if self.to_explain else []
                 print_result(
                     verdict_json.as_json(answer, used, explained)
                     if self.json_output
