@@ -200,13 +200,14 @@ def _states(signals: SignalColumns, present: Sequence[Presence], count: int) -> 
             if unknown is None or not unknown[state]:
                 states[state][name] = value
     for name, rows in signals.about.items():
-        only = signals.only.get(name)
+        only, unknown = signals.only.get(name), signals.unknown.get(name)
         by_state: list[dict[str, Any]] = [{} for _ in range(count)]
         for presence in present:
             if only is None or only[presence.row]:
                 span = range(presence.first, presence.last + 1)
                 for state, value in zip(span, rows[presence.row, span].tolist(), strict=True):
-                    by_state[state][presence.name] = value
+                    if unknown is None or not unknown[presence.row, state]:
+                        by_state[state][presence.name] = value
         for state, values in enumerate(by_state):
             if values:
                 states[state][name] = values

@@ -19,8 +19,8 @@ class SignalColumns:
     """The signals of a drive, in arrays with a column per state.
 
     ``world``: a value for each state. ``about``: a row of values for each participant.
-    ``unknown``: the states in which a signal of the world has no value. ``only``: the participants
-    that a signal about objects applies to.
+    ``unknown``: where a signal has no value, in the shape of its own array. ``only``: the
+    participants that a signal about objects applies to.
     """
 
     world: Mapping[str, SignalColumn] = field(default_factory=dict)
