@@ -11,7 +11,7 @@ from support.snapshots import Snapshots
 # long one looks for new ones.
 settings.register_profile(
     "quick",
-    max_examples=100,
+    max_examples=60,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.too_slow],
@@ -20,6 +20,14 @@ settings.register_profile(
     "long", max_examples=5000, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile(os.environ.get("RULEC_TEST_PROFILE", "quick"))
+
+
+def pytest_collection_modifyitems(items):
+    """Leave what is marked ``long`` to the long profile."""
+    if os.environ.get("RULEC_TEST_PROFILE") != "long":
+        for item in items:
+            if item.get_closest_marker("long"):
+                item.add_marker(pytest.mark.skip(reason="takes long: --long"))
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -168,6 +168,7 @@ def test_objects_that_come_late_and_leave_early(semantics, chance, n_objects):
     assert kept(verify_on_bits(columns, compiled)) == kept_by(judged)
 
 
+@pytest.mark.long
 def test_three_hundred_objects():
     chance = Random(300)
     objects = {f"o{n}": "car" for n in range(300)}

@@ -128,6 +128,7 @@ def test_repetition_takes_steps_in_proportion(before, part, behind):
     assert grows_in_proportion(read, 400)
 
 
+@pytest.mark.long
 def test_repetition_does_not_hang():
     program = f"""
 from rulec.diagnostics import Source
