@@ -6,15 +6,19 @@ from math import cos, pi, sin
 import pytest
 
 from rulec.extraction.drives import Drive, Drives, NoDrive
-from rulec.extraction.tracks.map_matching import driven_stretches, match_to_map
+from rulec.extraction.tracks.driven_route import route_stretches
+from rulec.extraction.tracks.lanelet_graph import LaneletGraph
+from rulec.extraction.tracks.map_matching import MapMatching
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 
 def ways(found, ego=0):
-    moments = match_to_map(found, tracks_of(found, USUAL))[ego]
-    return [(one.first, one.last, one.route) for one in driven_stretches(found, moments)]
+    graph = LaneletGraph(found)
+    matched = MapMatching(found, tracks_of(found, USUAL), graph).of(ego)
+    stretches = (one for part in matched for one in route_stretches(found, part, graph))
+    return [(one.first, one.last, one.route) for one in stretches]
 
 
 def along(*places, **more):

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import groupby
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import drive_context
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_trace
 from rulec.extraction.tracks.driven_road import DrivenRoad, driven_road, junction_lanelets
-from rulec.extraction.tracks.map_matching import (
-    MatchedLanelets,
-    RouteStretch,
-    driven_stretches,
-    match_to_map,
+from rulec.extraction.tracks.driven_route import RouteStretch, route_stretches
+from rulec.extraction.tracks.lanelet_graph import LaneletGraph
+from rulec.extraction.tracks.map_matching import MapMatching
+from rulec.extraction.tracks.road_extents import (
+    EgoPieces,
+    RoadExtents,
+    expected_places,
+    road_extents,
 )
-from rulec.extraction.tracks.road_extents import RoadExtents, road_extents
-from rulec.extraction.tracks.tracks import Tracks, tracks_of
+from rulec.extraction.tracks.tracks import Floats, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.scenario.recorded.recording import Recording, Side
 
@@ -26,6 +29,9 @@ FEWEST_STATES = 2
 
 MOST_PLACES = 1 << 17
 """Extents of recordings with more participants times steps are computed drive by drive."""
+
+_LONGEST_M = 50.0
+"""Bodies whose ends count are shorter."""
 
 _DRIVERS = frozenset({"vehicle", "light_rider"})
 
@@ -54,7 +60,8 @@ class Drives:
         self._side: Side = side
         self._tracks = tracks_of(recording, thresholds)
         self._junctions = junction_lanelets(recording)
-        self._matches = match_to_map(recording, self._tracks)
+        self._graph = LaneletGraph(recording)
+        self._matching = MapMatching(recording, self._tracks, self._graph)
         self._roads: dict[tuple[str, ...], tuple[DrivenRoad, RoadExtents | None] | str] = {}
 
     def egos(self) -> tuple[str, ...]:
@@ -76,8 +83,8 @@ class Drives:
         row = next(k for k, body in enumerate(self._tracks.participants) if body.id == ego)
         stretches = [
             stretch
-            for part in _unbroken(self._tracks, row, self._matches.get(row, {}))
-            for stretch in driven_stretches(self.recording, part)
+            for matched in self._matching.of(row)
+            for stretch in route_stretches(self.recording, matched, self._graph)
             if stretch.last - stretch.first + 1 >= FEWEST_STATES
         ]
         if not stretches:
@@ -93,11 +100,14 @@ class Drives:
             return NoDrive(ego, laid_out)
         road, extents = laid_out
         tracks, columns = self._tracks, slice(stretch.first, stretch.last + 1)
+        lanelets = self._matching.lanelets
         if extents is None:
             rows = tracks.present[:, columns].any(axis=1).nonzero()[0]
             row = int(np.searchsorted(rows, row))
             tracks, columns = tracks.part(rows, columns), slice(0, None)
-            extents = road_extents(tracks, road)
+            lanelets = lanelets[rows, stretch.first : stretch.last + 1]
+            expected = self._expected(tracks, road, row, stretch, lanelets)
+            extents = road_extents(tracks, road, expected)
         if np.isnan(extents.w[row, columns]).any():
             return NoDrive(ego, "it is far from its road for a while")
         context = drive_context(
@@ -112,19 +122,29 @@ class Drives:
         )
         return to_trace(context, ego, name, self._writer)
 
+    def _expected(
+        self,
+        tracks: Tracks,
+        road: DrivenRoad,
+        row: int,
+        stretch: RouteStretch,
+        lanelets: NDArray[intp],
+    ) -> tuple[Floats, Floats] | None:
+        if not road.meets_itself:
+            return None
+        columns = [column - stretch.first for column in stretch.columns]
+        pieces = [road.first_piece + piece for piece in stretch.pieces]
+        numbers = {name: number for number, name in enumerate(self.recording.lanelets)}
+        ego = EgoPieces(row, columns, pieces, numbers)
+        reach_m = self._thresholds.near_m + _LONGEST_M
+        return expected_places(tracks, road, ego, lanelets, reach_m)
+
     def _road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, RoadExtents | None] | str:
         if route not in self._roads:
             try:
                 road = driven_road(self.recording, route, self._junctions)
-                few = self._tracks.present.size <= MOST_PLACES
-                self._roads[route] = road, road_extents(self._tracks, road) if few else None
+                shared = self._tracks.present.size <= MOST_PLACES and not road.meets_itself
+                self._roads[route] = road, road_extents(self._tracks, road) if shared else None
             except ValueError as reason:
                 self._roads[route] = f"its road makes no sense, {reason}"
         return self._roads[route]
-
-
-def _unbroken(tracks: Tracks, row: int, matches: MatchedLanelets) -> Iterator[MatchedLanelets]:
-    """The matches of a participant, parted at gaps in its recording."""
-    absent = np.cumsum(~tracks.present[row])
-    for _, columns in groupby(matches, key=lambda column: int(absent[column])):
-        yield {column: matches[column] for column in columns}

@@ -21,8 +21,8 @@ def road(lanes=TWO_LANES, route=("1", "3"), junctions=frozenset()):
 def test_rows_are_the_lanelets_beside_each_other():
     found = road()
     assert [[own.id for own in row] for row in found.rows] == [["1", "2"], ["3", "4"]]
-    assert found.own_lane == 0
-    assert road(route=("2", "4")).own_lane == 1
+    assert found.own_lanes == (0, 0)
+    assert road(route=("2", "4")).own_lanes == (1, 1)
     assert found.borders.tolist() == [0, 100, 200]
     assert found.lanelet(1, 1).id == "4"
 

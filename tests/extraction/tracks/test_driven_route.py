@@ -1,28 +1,39 @@
-"""The cheapest chain of lanelets: what a hop costs, and how many there may be."""
+"""The road under a matched path: which lanelets, and where it changes lanes itself."""
 
+import numpy as np
 import pytest
 
-from rulec.extraction.tracks.map_matching import driven_stretches, match_to_map
+from rulec.extraction.tracks.driven_road import driven_road
+from rulec.extraction.tracks.driven_route import pieces_of, route_stretches
+from rulec.extraction.tracks.lanelet_graph import LaneletGraph
+from rulec.extraction.tracks.map_matching import MapMatching
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
-from support.builders.recordings import recording, straight, vehicle
+from support.builders.recordings import lanelet, recording, straight, vehicle
 
 
-def stretches(lanes, *xs):
-    found = recording(lanes, [vehicle(7, {k: (x, 0) for k, x in enumerate(xs)})])
-    matches = match_to_map(found, tracks_of(found, USUAL))[0]
-    return [(part.first, part.last, part.route) for part in driven_stretches(found, matches)]
+def stretches(lanes, *places):
+    places = [place if isinstance(place, tuple) else (place, 0) for place in places]
+    found = recording(lanes, [vehicle(7, dict(enumerate(places)))])
+    graph = LaneletGraph(found)
+    matched = MapMatching(found, tracks_of(found, USUAL), graph).of(0)
+    return [
+        (one.first, one.last, one.route, one.pieces)
+        for part in matched
+        for one in route_stretches(found, part, graph)
+    ]
 
 
 @pytest.mark.parametrize(("first", "second"), [(1, 2), (2, 1)])
 def test_where_lanelets_overlap_ego_stays_on_its_own(first, second):
     lanes = [
         straight(first, 0, 100, successors=(second,)),
-        straight(second, 50, 150, predecessors=(first,)),
+        straight(second, 90, 190, predecessors=(first,)),
     ]
-    # At 60 m ego is on both; going over would be a hop for nothing
-    assert stretches(lanes, 20, 60) == [(0, 1, (str(first),))]
-    assert stretches(lanes, 20, 60, 120) == [(0, 2, (str(first), str(second)))]
+    # At 95 m ego is on both
+    assert stretches(lanes, 60, 95) == [(0, 1, (str(first),), (0, 0))]
+    ((_, _, route, pieces),) = stretches(lanes, 60, 95, 130)
+    assert (route, pieces) == ((str(first), str(second)), (0, 0, 1))
 
 
 def test_at_most_four_lanelets_lie_between_two_states():
@@ -30,5 +41,38 @@ def test_at_most_four_lanelets_lie_between_two_states():
         straight(k, 10 * k, 10 * k + 10, successors=(k + 1,), predecessors=(k - 1,))
         for k in range(8)
     ]
-    assert stretches(lanes, 5, 45) == [(0, 1, ("0", "1", "2", "3", "4"))]
-    assert stretches(lanes, 5, 55) == [(0, 0, ("0",)), (1, 1, ("5",))]
+    assert stretches(lanes, 5, 45) == [(0, 1, ("0", "1", "2", "3", "4"), (0, 4))]
+    assert stretches(lanes, 5, 55) == [(0, 0, ("0",), (0,)), (1, 1, ("5",), (0,))]
+
+
+TURNS = [
+    # Into the left lane 2 from 1, and out of the right one, 3, into 4
+    lanelet(1, [(0, 4), (100, 4)], successors=("2",)),
+    lanelet(2, [(100, 4), (200, 4)], predecessors=("1",), right_of=3),
+    lanelet(3, [(100, 0), (200, 0)], left_of=2, successors=("4",)),
+    lanelet(4, [(200, 0), (300, 0)], predecessors=("3",)),
+]
+CHANGES = [(50, 4), (90, 4), (120, 4), (150, 2.5), (170, 0), (190, 0), (210, 0), (250, 0)]
+
+
+def test_where_no_lane_leads_through_the_road_changes_lanes():
+    ((first, last, route, pieces),) = stretches(TURNS, *CHANGES)
+    assert (first, last, route) == (0, 7, ("1", "2", "3", "4"))
+    assert pieces == (0, 0, 1, 1, 1, 1, 2, 2)
+    assert pieces_of(recording(TURNS), route) == (("1",), ("2", "3"), ("4",))
+
+
+def test_a_road_that_changes_lanes_has_its_lanes_side_by_side():
+    road = driven_road(recording(TURNS), ("1", "2", "3", "4"), frozenset())
+    assert [[own and own.id for own in row] for row in road.rows] == [
+        [None, "1"],
+        ["3", "2"],
+        ["4", None],
+    ]
+    assert road.own_lanes == (1, 1, 0)
+    middles = (road.borders[1:] + road.borders[:-1]) / 2
+    assert road.lanes.existing_at(middles).tolist() == [[False, True], [True, True], [True, False]]
+    # In the middle of lanelet 3 one is in the right lane, wherever the line leads
+    place = road.line.coordinates(np.array([(190.0, 0.0)]))
+    ((_, w),) = road.lanes.straightened(place).tolist()
+    assert w == pytest.approx((road.lanes.straight[0] + road.lanes.straight[1]) / 2, abs=0.05)

@@ -1,63 +1,158 @@
-"""The lanelets on which single states may lie, and at what cost."""
+"""The likeliest lanelets of a track: single states, whole drives, and where a drive breaks."""
 
-from math import pi, radians
+from itertools import groupby, pairwise
+from math import atan2, pi, radians
 
+import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.map_matching import NEAR_M, match_to_map
+from rulec.extraction.tracks.lanelet_graph import LaneletGraph
+from rulec.extraction.tracks.map_matching import NEAR_M, SIGMA_M, MapMatching, candidates
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
-from support.builders.recordings import recording, straight, vehicle
+from rulec.scenario.recorded.recording import Participant, TrackState
+from support.builders.recordings import lanelet, recording, rectangle, straight, vehicle
+from support.generators.lanelet_grids import lanelet_grid, street
 
 
-def matches(lanes, *participants):
+def found_for(lanes, *participants):
     found = recording(lanes, participants)
-    return match_to_map(found, tracks_of(found, USUAL))
+    return candidates(found, tracks_of(found, USUAL))
 
 
 def costs(x=50.0, y=0.0, heading=0.0):
     """The costs of the lanelets 1, from y = -2 to 2, and 2, that leads the other way beside it."""
     lanes = [straight(1, 0, 100), straight(2, 100, 0, y=4)]
-    return matches(lanes, vehicle(7, {0: (x, y)}, heading=heading))[0][0]
+    found = found_for(lanes, vehicle(7, {0: (x, y)}, heading=heading))
+    return {name: one.cost for name, one in found[0][0].items()} if found else {}
 
 
-def test_on_a_lane_and_along_it_costs_nothing():
+def matched(lanes, body):
+    """The chain of each stretch, and the lanelets of its states."""
+    found = recording(lanes, [body])
+    matching = MapMatching(found, tracks_of(found, USUAL), LaneletGraph(found))
+    return [(one.chain, [one.chain[k] for k in one.places]) for one in matching.of(0)]
+
+
+def along(*places, **more):
+    return vehicle(7, dict(enumerate(places)), **more)
+
+
+def test_in_the_middle_and_along_it_costs_nothing():
     assert costs() == {"1": 0.0}
 
 
-def test_an_angle_costs_its_part_of_a_right_angle():
-    assert costs(heading=radians(45)) == {"1": pytest.approx(0.5)}
-    assert costs(heading=radians(-9)) == {"1": pytest.approx(0.1)}
+def test_a_standard_deviation_costs_half():
+    assert costs(y=SIGMA_M) == {"1": pytest.approx(0.5)}
+    assert costs(heading=radians(-20)) == {"1": pytest.approx(0.5)}
+    assert costs(y=2 * SIGMA_M, heading=radians(20)) == {"1": pytest.approx(2.5)}
 
 
-def test_a_lane_beside_costs_more_than_any_angle():
-    # 1.5 m beside, of the 3 m that are near: 1 for being beside, and 0.5
-    assert costs(y=-3.5) == {"1": pytest.approx(1.5)}
-    assert 0 not in matches([straight(1, 0, 100)], vehicle(7, {0: (50, -2 - NEAR_M - 0.01)}))
+def test_who_is_beside_all_lanes_is_on_none():
+    assert costs(y=-2 - NEAR_M + 0.01) != {}
+    assert costs(y=-2 - NEAR_M - 0.01) == {}
 
 
 def test_a_lane_that_leads_the_other_way_does_not_match():
     assert costs(y=4, heading=pi) == {"2": pytest.approx(0.0)}
-    # On lane 2, but headed along lane 1: beside it, by 2 m
-    assert costs(y=4) == {"1": pytest.approx(1 + 2 / 3)}
+    assert set(costs(y=4)) == {"1"}
 
 
 def test_standing_participants_and_other_surfaces_have_no_match():
-    assert matches([straight(1, 0, 100)], vehicle(7, {0: (50, 0)}, standing=True)) == {}
+    assert found_for([straight(1, 0, 100)], vehicle(7, {0: (50, 0)}, standing=True)) == {}
     pavement = straight(1, 0, 100, types=frozenset({"sidewalk"}))
-    assert matches([pavement], vehicle(7, {0: (50, 0)})) == {}
+    assert found_for([pavement], vehicle(7, {0: (50, 0)})) == {}
 
 
 def test_columns_come_in_order_and_without_gaps_filled():
     body = vehicle(7, {0: (50, 0), 1: (50, 90), 2: (60, 0), 5: (70, 0)})
-    assert [*matches([straight(1, 0, 100)], body)[0]] == [0, 2, 5]
+    assert [*found_for([straight(1, 0, 100)], body)[0]] == [0, 2, 5]
+
+
+def test_a_change_of_lanes_counts_once_and_where_it_is():
+    lanes = [straight(1, 0, 200, left_of=2), straight(2, 0, 200, y=4, right_of=1)]
+    places = [(10, 0), (20, 0), (30, 0.9), (40, 1.2), (50, 0.8), (60, 2.4), (70, 4), (80, 4)]
+    ((chain, lanelets),) = matched(lanes, along(*places))
+    assert chain == ("1", "2")
+    assert lanelets == ["1"] * 5 + ["2"] * 3
+
+
+def test_who_stands_on_the_mark_does_not_flip():
+    lanes = [straight(1, 0, 200, left_of=2), straight(2, 0, 200, y=4, right_of=1)]
+    wavering = [(50 + 0.01 * k, 2 + 0.2 * (-1) ** k) for k in range(60)]
+    ((chain, _),) = matched(lanes, along((10, 0), (20, 0), (30, 1), *wavering, (60, 4), (80, 4)))
+    assert chain == ("1", "2")
+
+
+def test_a_lanelet_that_is_left_sideways_was_never_driven():
+    # 2 leads straight on, 3 bends away, and 4, across, begins nowhere near
+    lanes = [
+        straight(1, 0, 100, successors=("2", "3")),
+        straight(2, 100, 200, predecessors=("1",)),
+        lanelet(3, [(100, 0), (120, 1), (130, 5), (134, 15), (134, 60)], predecessors=("1",)),
+        lanelet(4, [(130, -60), (130, 60)]),
+    ]
+    places = [(80, 0), (95, 0), (105, 0.1), (112, 0.3), (120, 1), (130, 5), (134, 15), (134, 30)]
+    turns = [0, 0, 0, 0.1, 0.4, 1.1, pi / 2, pi / 2]
+    states = {k: TrackState(*place, turns[k], 5, 0) for k, place in enumerate(places)}
+    outlines = {k: rectangle(*place, 4, 2, turns[k]) for k, place in enumerate(places)}
+    ((chain, _),) = matched(lanes, Participant("7", "car", False, states, outlines))
+    assert chain == ("1", "3")
 
 
 @given(st.lists(st.tuples(st.integers(0, 5), st.floats(1, 99), st.floats(-1.9, 1.9)), min_size=1))
 def test_on_disjoint_lanes_the_lane_is_found(places):
     lanes = [straight(k, 0, 100, y=100 * k) for k in range(6)]
     body = vehicle(7, {step: (x, 100 * lane + y) for step, (lane, x, y) in enumerate(places)})
-    for step, (lane, _, _) in enumerate(places):
-        assert matches(lanes, body)[0][step] == {str(lane): pytest.approx(0)}
+    found = [name for _, lanelets in matched(lanes, body) for name in lanelets]
+    assert found == [str(lane) for lane, _, _ in places]
+
+
+GRID = lanelet_grid(4)
+BY_ID = {one.id: one for one in GRID}
+
+
+@st.composite
+def noisy_drives(draw):
+    """A chain of lanelets through the grid, and a car along it, now fast, now slow or standing."""
+    starts = [own for own in BY_ID if "-" not in own]
+    chain = [draw(st.sampled_from(starts))]
+    for _ in range(2 * draw(st.integers(0, 4))):
+        # At the corners of the grid a lane may lead nowhere
+        if after := BY_ID[chain[-1]].successors:
+            chain.append(draw(st.sampled_from(after)))
+    line = shapely.LineString(np.concatenate([BY_ID[name].centre for name in chain]))
+    steps = draw(st.lists(st.sampled_from([0.0, 0.2, 1.0, 1.4, 3.0]), min_size=5, max_size=20))
+    seed = np.random.default_rng(draw(st.integers(0, 2**32)))
+    s, k, states, outlines = 5.0, 0, {}, {}
+    while s < line.length - 5:
+        here, ahead = (line.interpolate(x) for x in (s, s + 0.5))
+        x, y = np.array([here.x, here.y]) + seed.uniform(-0.3, 0.3, 2)
+        heading = atan2(ahead.y - here.y, ahead.x - here.x) + seed.uniform(-0.1, 0.1)
+        states[k] = TrackState(x, y, heading, 0.0, 0.0)
+        outlines[k] = rectangle(x, y, 4, 2, heading)
+        # Nobody stands for ever
+        s, k = s + max(steps[k % len(steps)], 0.02), k + 1
+    return tuple(chain), Participant("7", "car", False, states, outlines)
+
+
+@given(noisy_drives())
+def test_a_noisy_drive_through_a_grid_is_matched_to_its_chain(drive):
+    chain, body = drive
+    ((found, lanelets),) = matched(GRID, body)
+    assert found == chain
+    # Each lanelet once and in its order: no state flips back
+    assert [name for name, _ in groupby(lanelets)] == [name for name in chain if name in lanelets]
+
+
+def test_the_grid_is_consistent():
+    for own in GRID:
+        for name in own.successors:
+            assert BY_ID[name].centre[0] == pytest.approx(own.centre[-1])
+    assert street((0, 0), 0, 0) in BY_ID
+    assert all(
+        np.hypot(*(after - before)) > 0 for own in GRID for before, after in pairwise(own.centre)
+    )

@@ -12,6 +12,7 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.extraction.tracks.driven_route import pieces_of
 from rulec.extraction.tracks.tracks import Floats
 from rulec.scenario.recorded.lane_coordinates import (
     Lanes,
@@ -19,9 +20,15 @@ from rulec.scenario.recorded.lane_coordinates import (
     crossings_along,
     lanes_along,
 )
-from rulec.scenario.recorded.recording import Lanelet, Recording
+from rulec.scenario.recorded.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at, reference_line
-from rulec.scenario.recorded.route import directions_beside, extended_route, is_lane, lanes_beside
+from rulec.scenario.recorded.route import directions_beside, is_lane, lanes_beside, roads_beyond
+
+_BESIDE_M = 20.0
+_AWAY_M = 30.0
+"""A road meets itself if it is so near to a piece so far along it."""
+
+_FEWEST_CORNERS = 20
 
 _CROSSING_ANGLE = radians(30.0)
 """Ways that meet at a smaller angle run into each other, as where lanes join or part."""
@@ -31,23 +38,27 @@ _CROSSING_ANGLE = radians(30.0)
 class DrivenRoad:
     """The road of a drive, with ego's own lanelets end to end.
 
-    Lanelet ``i`` lies from ``borders[i]`` to ``borders[i + 1]``; ``rows[i]`` are those beside each
-    other there, a lane each, from the right, None where the map has none. ``crossings`` are
-    pedestrian crossings and ``junctions`` junctions, from where to where along the road.
+    Piece ``i`` lies from ``borders[i]`` to ``borders[i + 1]``; ``rows[i]`` are the lanelets beside
+    each other there, a lane each, from the right, None where the map has none; ``own_lanes[i]`` is
+    the one along which the road leads. ``first_piece`` is the first that ego drove. ``crossings``
+    are pedestrian crossings and ``junctions`` junctions, from where to where along the road.
+    ``meets_itself``: is a place beside several pieces, as on a ring?
     """
 
     rows: tuple[tuple[Lanelet | None, ...], ...]
-    own_lane: int
+    own_lanes: tuple[int, ...]
+    first_piece: int
     borders: Floats
     line: ReferenceLine
     lanes: Lanes
     crossings: tuple[tuple[float, float], ...]
     junctions: tuple[tuple[float, float], ...]
+    meets_itself: bool = False
 
     def lanelet(self, piece: int, lane: int) -> Lanelet:
         """The lanelet of a lane; where the map has none, ego's own."""
         row = self.rows[piece]
-        own = row[self.own_lane]
+        own = row[self.own_lanes[piece]]
         assert own is not None
         return row[lane] or own
 
@@ -66,24 +77,81 @@ def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -
     ``junctions`` are the lanelets that lie in one. Raises ValueError: its lanes cannot be laid out
     along a line.
     """
-    whole = extended_route(recording, way)
-    lanelets = tuple(recording.lanelets[number] for number in whole)
-    line = reference_line(np.concatenate([part.centre for part in lanelets]))
+    behind, ahead = roads_beyond(recording, way)
+    driven = pieces_of(recording, way)
+    pieces = (*((number,) for number in behind), *driven, *((number,) for number in ahead))
+    entries = tuple(piece[0] for piece in pieces)
+    lanelets = tuple(recording.lanelets[number] for number in entries)
+    line = reference_line(np.concatenate([_middle(recording, piece) for piece in pieces]))
     borders = borders_along(lanelets, line)
-    first = whole.index(way[0])
-    middle = float(borders[first] + borders[first + len(way)]) / 2
-    lanes = lanes_along(recording, whole, line, middle)
-    ((_, own_d),) = lanes.straightened(np.array([[middle, 0.0]])).tolist()
-    own = int(np.clip(np.searchsorted(lanes.straight, own_d) - 1, 0, len(lanes.straight) - 2))
+    first = len(behind)
+    middle = float(borders[first] + borders[first + len(driven)]) / 2
+    numbers = _lane_numbers(recording, pieces)
+    lanes = lanes_along(recording, entries, line, middle, numbers)
+    probed = _straight_piece(pieces, int(pieces_at(borders, np.array(middle))))
+    place = middle if borders[probed] <= middle <= borders[probed + 1] else borders[probed]
+    ((_, own_d),) = lanes.straightened(np.array([[place, 0.0]])).tolist()
+    count = len(lanes.straight) - 1
+    own = int(np.searchsorted(lanes.straight, own_d)) - 1 - numbers[probed]
+    own_lanes = tuple(int(np.clip(own + number, 0, count - 1)) for number in numbers)
     return DrivenRoad(
-        rows=tuple(_row(recording, number, own, len(lanes.straight) - 1) for number in whole),
-        own_lane=own,
+        rows=tuple(
+            _row(recording, number, lane, count)
+            for number, lane in zip(entries, own_lanes, strict=True)
+        ),
+        own_lanes=own_lanes,
+        first_piece=first,
         borders=borders,
         line=line,
         lanes=lanes,
         crossings=tuple(crossings_along(recording, line, lanes, 0.0, line.length)),
-        junctions=tuple(_runs(borders, [number in junctions for number in whole])),
+        junctions=tuple(_runs(borders, [number in junctions for number in entries])),
+        meets_itself=_meets_itself(lanelets, borders),
     )
+
+
+def _middle(recording: Recording, piece: Sequence[str]) -> Points:
+    """The middle of a piece, leading evenly across where it changes lanes."""
+    first, last = (recording.lanelets[number].centre for number in (piece[0], piece[-1]))
+    if len(piece) == 1:
+        return first
+    part = np.linspace(0.0, 1.0, max(len(first), len(last), _FEWEST_CORNERS))[:, None]
+    starts, ends = (
+        shapely.get_coordinates(
+            shapely.line_interpolate_point(shapely.LineString(centre), part[:, 0], normalized=True)
+        )
+        for centre in (first, last)
+    )
+    middle: Points = starts * (1 - part) + ends * part
+    return middle
+
+
+def _lane_numbers(recording: Recording, pieces: Sequence[Sequence[str]]) -> list[int]:
+    """Which lane the road enters each piece in, from 0 at its beginning, ascending to the left."""
+    numbers = [0]
+    for piece in pieces:
+        left = lanes_beside(recording, piece[0], left=True)
+        right = lanes_beside(recording, piece[0], left=False)
+        shift = 0
+        if len(piece) > 1:
+            shift = left.index(piece[-1]) + 1 if piece[-1] in left else -right.index(piece[-1]) - 1
+        numbers.append(numbers[-1] + shift)
+    return numbers[:-1]
+
+
+def _straight_piece(pieces: Sequence[Sequence[str]], wanted: int) -> int:
+    """The piece nearest to a wanted one in which the road does not change lanes."""
+    straight = [k for k, piece in enumerate(pieces) if len(piece) == 1]
+    return min(straight, key=lambda k: abs(k - wanted), default=0)
+
+
+def _meets_itself(lanelets: Sequence[Lanelet], borders: Floats) -> bool:
+    """Is the road beside itself after having been away?"""
+    lines = [shapely.LineString(lanelet.centre) for lanelet in lanelets]
+    pairs = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=_BESIDE_M)
+    first, second = np.sort(pairs, axis=0)
+    between = borders[second] - borders[np.minimum(first + 1, len(borders) - 1)]
+    return bool((between > _AWAY_M).any())
 
 
 def _row(recording: Recording, number: str, own: int, count: int) -> tuple[Lanelet | None, ...]:

@@ -1,12 +1,16 @@
-"""Map matching: the chain of lanelets of a vehicle's states.
+"""Map matching: the lanelets that vehicles drove, by a hidden Markov model.
 
-A state matches the lanelets within ``NEAR_M`` that lead its way; each match has a cost. Lanelets
-overlap in junctions, and ego changes lanes, so that the match of a single state says little. Of all
-chains in which each lanelet leads to the next, the cheapest is chosen: a shortest path over the
-moments by dynamic programming (Viterbi, "Error bounds for convolutional codes", 1967; for map
-matching Newson, Krumm, "Hidden Markov map matching through noise and sparseness", GIS 2009), where
-a lane beside a match costs more the farther away it is. Where no chain goes on, as when a recording
-jumps, the drive is parted.
+Newson, Krumm, "Hidden Markov map matching through noise and sparseness" (ACM SIGSPATIAL GIS 2009):
+hidden states are the lanelets near a vehicle's middle, and of all paths the likeliest is found by
+dynamic programming (Viterbi, "Error bounds for convolutional codes", 1967), so that where lanelets
+overlap the whole drive decides. Costs are negative logarithms of likelihoods. *Emission*: normal in
+the distance from a lanelet's middle, as there, and in the angle to it. Recorders are a thousand
+times denser than their samples, which they thin out to one per two standard deviations; here a
+state counts by how far the vehicle has moved, the line integral of Oran and Jaillet, "An HMM-based
+map matching method with cumulative proximity-weight formulation" (ICCVE 2013), so that who stands
+adds nothing. *Transition*: exponential in the difference of the way along lanelets and the way
+moved; to a successor, or with a cost a lane to one beside. Where no path leads on, as when a
+recording jumps or somebody leaves a lanelet sideways, the drive breaks for a high cost.
 """
 
 from __future__ import annotations
@@ -14,33 +18,99 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from math import pi
+from functools import cached_property
+from itertools import groupby
+from math import hypot, inf, pi, radians
 
 import numpy as np
 import shapely
+from numpy import intp
+from numpy.typing import NDArray
 
+from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.scenario.recorded.recording import Recording
 from rulec.scenario.recorded.reference_line import turn
-from rulec.scenario.recorded.route import directions_beside, is_lane, lanelet_area, lanes_beside
+from rulec.scenario.recorded.route import directions_beside, is_lane, lanelet_area
 
 NEAR_M = 3.0
 """The farthest that a vehicle may be beside a lanelet that it is matched to."""
 
-MOST_HOPS = 4
-"""The number of lanelets that a vehicle passes at most between two of its states."""
+SIGMA_M = 1.0
+SIGMA_RAD = radians(20)
+"""Standard deviations of vehicles about the middle and the direction of their lanelet."""
 
-_BESIDE_COST = 1.0
-_HOP_COST = 0.05
-_LANE_COST = 1.0
-_LARGEST_ANGLE = pi / 2
+BETA_M = 2.0
+"""The mean difference of the way along lanelets and the way moved."""
 
-MatchedLanelets = Mapping[int, Mapping[str, float]]
-"""Column -> lanelet -> cost: 0 on it and along it, up to 1 for its angle, 1 to 2 more beside it."""
+CHANGE_COST = 5.0
+"""The cost of each lane that is changed."""
+
+BREAK_COST = 50.0
+"""The cost of going on where no lanelet leads to."""
 
 
-def match_to_map(recording: Recording, tracks: Tracks) -> dict[int, MatchedLanelets]:
-    """The matches of each moving participant, by row and by column that has any."""
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A lanelet that a state may be on: the cost of its distance, and the place along it (m)."""
+
+    cost: float
+    along: float
+
+
+Candidates = Mapping[int, Mapping[str, Candidate]]
+"""Column -> lanelet -> candidate, of one participant."""
+
+
+@dataclass(frozen=True, slots=True)
+class MatchedStretch:
+    """Consecutive states that one path along the map explains.
+
+    In ``chain`` each lanelet succeeds the one before or lies beside it; ``places`` are the numbers
+    of those of the states in ``columns``.
+    """
+
+    columns: tuple[int, ...]
+    chain: tuple[str, ...]
+    places: tuple[int, ...]
+
+
+class MapMatching:
+    """The matched lanelets of all participants that move."""
+
+    def __init__(self, recording: Recording, tracks: Tracks, graph: LaneletGraph) -> None:
+        self.recording = recording
+        self._tracks = tracks
+        self._graph = graph
+        self._candidates = candidates(recording, tracks)
+        self._found: dict[int, tuple[MatchedStretch, ...]] = {}
+
+    def of(self, row: int) -> tuple[MatchedStretch, ...]:
+        """The stretches of a participant, parted at gaps in its recording."""
+        if row not in self._found:
+            absent = np.cumsum(~self._tracks.present[row])
+            own = self._candidates.get(row, {})
+            places = np.stack((self._tracks.x[row], self._tracks.y[row]), axis=1)
+            self._found[row] = tuple(
+                stretch
+                for _, columns in groupby(own, key=lambda column: int(absent[column]))
+                for stretch in likeliest_path({k: own[k] for k in columns}, places, self._graph)
+            )
+        return self._found[row]
+
+    @cached_property
+    def lanelets(self) -> NDArray[intp]:
+        """The numbers of lanelets, in the file's order, by participant and column; -1 for none."""
+        numbers = {name: number for number, name in enumerate(self.recording.lanelets)}
+        found = np.full(self._tracks.present.shape, -1, dtype=intp)
+        for row in self._candidates:
+            for stretch in self.of(row):
+                found[row, stretch.columns] = [numbers[stretch.chain[k]] for k in stretch.places]
+        return found
+
+
+def candidates(recording: Recording, tracks: Tracks) -> dict[int, Candidates]:
+    """The lanelets near each moving participant that lead its way, by row and column."""
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
     moving = np.array([not body.standing for body in tracks.participants], dtype=bool)
     rows, columns = np.nonzero(tracks.present & moving[:, None])
@@ -49,111 +119,93 @@ def match_to_map(recording: Recording, tracks: Tracks) -> dict[int, MatchedLanel
     points = shapely.points(tracks.x[rows, columns], tracks.y[rows, columns])
     areas = [lanelet_area(lanelet) for lanelet in lanes]
     near, near_lanes = shapely.STRtree(areas).query(points, predicate="dwithin", distance=NEAR_M)
-    matches: dict[int, dict[int, dict[str, float]]] = defaultdict(lambda: defaultdict(dict))
+    found: dict[int, dict[int, dict[str, Candidate]]] = defaultdict(lambda: defaultdict(dict))
     for lane in np.unique(near_lanes):
         chosen = near[near_lanes == lane]
         directions = directions_beside(lanes[lane], points[chosen])
-        headings = tracks.heading[rows[chosen], columns[chosen]]
-        angle = np.abs(turn(directions, headings))
-        outside = shapely.distance(areas[lane], points[chosen]) / NEAR_M
-        costs = angle / _LARGEST_ANGLE + np.where(outside > 0, _BESIDE_COST + outside, 0.0)
-        along = angle < _LARGEST_ANGLE
-        for index, cost in zip(chosen[along], costs[along].tolist(), strict=True):
-            matches[int(rows[index])][int(columns[index])][lanes[lane].id] = cost
-    return {row: dict(sorted(by_column.items())) for row, by_column in matches.items()}
+        angle = np.abs(turn(directions, tracks.heading[rows[chosen], columns[chosen]]))
+        middle = shapely.LineString(lanes[lane].centre)
+        away = shapely.distance(middle, points[chosen])
+        costs = ((away / SIGMA_M) ** 2 + (angle / SIGMA_RAD) ** 2) / 2
+        along = shapely.line_locate_point(middle, points[chosen])
+        fits = angle < pi / 2
+        for index, cost, s in zip(chosen[fits], costs[fits], along[fits], strict=True):
+            own = found[int(rows[index])][int(columns[index])]
+            own[lanes[lane].id] = Candidate(float(cost), float(s))
+    return {row: dict(sorted(by_column.items())) for row, by_column in found.items()}
 
 
 @dataclass(frozen=True, slots=True)
-class RouteStretch:
-    """Columns ``first`` to ``last`` inclusive of one chain of lanelets."""
-
-    first: int
-    last: int
-    route: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class _ChainEnd:
-    """The cheapest chain to a lanelet: its cost, its last hops, and what is before them."""
+class _PathEnd:
+    """The cheapest path to a lanelet: its cost, and the end before; no way on is a break."""
 
     cost: float
-    hops: tuple[str, ...]
-    before: _ChainEnd | None
+    lanelet: str
+    before: _PathEnd | None
+    way: tuple[str, ...] | None
 
 
-def driven_stretches(recording: Recording, matches: MatchedLanelets) -> Iterator[RouteStretch]:
-    """The stretches of a drive, each along one road, in their order."""
-    first = last = -1
-    best: dict[str, _ChainEnd] = {}
-    for column, matched in matches.items():
-        costs = _costs_of_rows(recording, matched)
-        onward = _onward(recording, best, costs)
-        if not onward:
-            if best:
-                yield RouteStretch(first, last, _cheapest_route(best))
-            first = column
-            onward = {number: _ChainEnd(cost, (number,), None) for number, cost in costs.items()}
-        best, last = onward, column
-    if best:
-        yield RouteStretch(first, last, _cheapest_route(best))
+def likeliest_path(
+    found: Candidates, places: NDArray[np.float64], graph: LaneletGraph
+) -> Iterator[MatchedStretch]:
+    """The stretches of the cheapest path through the candidates, ``places`` by column."""
+    ends: dict[str, _PathEnd] = {}
+    earlier: Mapping[str, Candidate] = {}
+    last = -1
+    for column, options in found.items():
+        moved = hypot(*(places[column] - places[last])) if ends else inf
+        ends = {
+            name: _step(ends, earlier, (name, option), moved, graph)
+            for name, option in options.items()
+        }
+        earlier, last = options, column
+    if ends:
+        yield from _stretches(min(ends.values(), key=lambda end: (end.cost, end.lanelet)), found)
 
 
-def _costs_of_rows(recording: Recording, matched: Mapping[str, float]) -> dict[str, float]:
-    """The costs of the lanelets that match a state, neighbours included."""
-    costs: dict[str, float] = {}
-    for number, cost in matched.items():
-        for left in (True, False):
-            row = (number, *lanes_beside(recording, number, left=left))
-            for lanes, lanelet in enumerate(row):
-                beside_cost = cost + lanes * _LANE_COST
-                costs[lanelet] = min(costs.get(lanelet, beside_cost), beside_cost)
-    return costs
+def _step(
+    ends: Mapping[str, _PathEnd],
+    earlier: Mapping[str, Candidate],
+    to: tuple[str, Candidate],
+    moved: float,
+    graph: LaneletGraph,
+) -> _PathEnd:
+    """The cheapest path on to a candidate of the next state."""
+    name, option = to
+    best: _PathEnd | None = None
+    least, way = inf, None
+    for start, end in ends.items():
+        cost = end.cost + BREAK_COST
+        found = graph.way(start, name)
+        own = None
+        if found is not None:
+            ahead = found.length + option.along - earlier[start].along
+            # Who changes lanes moves sideways, too
+            off = max(0.0, abs(ahead - moved) - (found.sideways if found.changes else 0.0))
+            through = end.cost + off / BETA_M + CHANGE_COST * found.changes
+            if through <= cost:
+                cost, own = through, found.lanelets
+        if cost < least:
+            best, least, way = end, cost, own
+    if best is None:
+        return _PathEnd(option.cost, name, None, None)
+    weight = min(1.0, moved / (2 * SIGMA_M))
+    return _PathEnd(least + weight * option.cost, name, best, way)
 
 
-def _onward(
-    recording: Recording, best: Mapping[str, _ChainEnd], costs: Mapping[str, float]
-) -> dict[str, _ChainEnd]:
-    """The cheapest chains on to a next state's lanelets, or none."""
-    onward: dict[str, _ChainEnd] = {}
-    for start, chain in best.items():
-        for hops in _hops(recording, start, costs):
-            end = hops[-1] if hops else start
-            cost = chain.cost + costs[end] + _HOP_COST * len(hops)
-            if end not in onward or cost < onward[end].cost:
-                onward[end] = (
-                    _ChainEnd(cost, hops, chain)
-                    if hops
-                    else _ChainEnd(cost, chain.hops, chain.before)
-                )
-    return onward
-
-
-def _hops(
-    recording: Recording, start: str, targets: Mapping[str, float]
-) -> Iterator[tuple[str, ...]]:
-    """The shortest chain of successors to each target; that to the start is empty."""
-    if start in targets:
-        yield ()
-    reached = {start}
-    chains: list[tuple[str, ...]] = [()]
-    for _ in range(MOST_HOPS):
-        longer = []
-        for chain in chains:
-            for number in recording.lanelets[chain[-1] if chain else start].successors:
-                lanelet = recording.lanelets.get(number)
-                if lanelet is None or number in reached or not is_lane(lanelet):
-                    continue
-                reached.add(number)
-                longer.append((*chain, number))
-                if number in targets:
-                    yield (*chain, number)
-        chains = longer
-
-
-def _cheapest_route(best: Mapping[str, _ChainEnd]) -> tuple[str, ...]:
-    chain: _ChainEnd | None = min(best.values(), key=lambda end: (end.cost, end.hops))
-    parts: list[tuple[str, ...]] = []
-    while chain is not None:
-        parts.append(chain.hops)
-        chain = chain.before
-    return tuple(number for hops in reversed(parts) for number in hops)
+def _stretches(end: _PathEnd, found: Candidates) -> Iterator[MatchedStretch]:
+    path: list[_PathEnd] = []
+    reached: _PathEnd | None = end
+    while reached is not None:
+        path.append(reached)
+        reached = reached.before
+    path.reverse()
+    columns = list(found)
+    starts = [k for k, one in enumerate(path) if one.way is None]
+    for start, stop in zip(starts, [*starts[1:], len(path)], strict=True):
+        part = path[start:stop]
+        chain, at = [part[0].lanelet], [0]
+        for one in part[1:]:
+            chain += one.way or ()
+            at.append(len(chain) - 1)
+        yield MatchedStretch(tuple(columns[start:stop]), tuple(chain), tuple(at))

@@ -8,6 +8,7 @@ by it.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -21,6 +22,22 @@ from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
 
 _BOUNDS = ("s_min", "s_max", "d_min", "d_max", "w_min", "w_max")
+
+
+_MORE_M = 10.0
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class EgoPieces:
+    """Ego's row, and in which piece of the road it was at some columns.
+
+    ``numbers`` are those of the map's lanelets.
+    """
+
+    row: int
+    columns: Sequence[int]
+    pieces: Sequence[int]
+    numbers: Mapping[str, int]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -62,18 +79,27 @@ class RoadExtents:
         )
 
 
-def road_extents(tracks: Tracks, road: DrivenRoad) -> RoadExtents:
-    """The extents of all participants in the coordinates of a road."""
+def road_extents(
+    tracks: Tracks, road: DrivenRoad, expected: tuple[Floats, Floats] | None = None
+) -> RoadExtents:
+    """The extents of all participants in the coordinates of a road.
+
+    ``expected``: about where along it each is, and how far from there it may be, since a road that
+    meets itself passes a place more than once.
+    """
     bounds = {name: np.full(tracks.present.shape, np.nan) for name in _BOUNDS}
-    located = list(tracks.outlines())
+    located = list(tracks.outlines(repeated=expected is not None))
     if located:
-        low, high = outline_bounds([outline for _, _, outline in located], road.line, road.lanes)
         rows, columns = np.array([(row, column) for row, column, _ in located]).T
+        near = expected and (expected[0][rows, columns], expected[1][rows, columns])
+        outlines = [outline for _, _, outline in located]
+        low, high = outline_bounds(outlines, road.line, road.lanes, near)
         standing = [row for row, body in enumerate(tracks.participants) if body.standing]
         by_bound = np.stack((low, high), axis=2).reshape(-1, len(_BOUNDS)).T
         for bound, values in zip(bounds.values(), by_bound, strict=True):
             bound[rows, columns] = values
-            bound[standing] = bound[standing][:, :1]
+            if expected is None:
+                bound[standing] = bound[standing][:, :1]
     middle = (bounds["s_min"] + bounds["s_max"]) / 2
     directions = road.line.headings_at(np.nan_to_num(middle))
     cos, sin = np.cos(directions), np.sin(directions)
@@ -83,6 +109,37 @@ def road_extents(tracks: Tracks, road: DrivenRoad) -> RoadExtents:
         along=tracks.vx * cos + tracks.vy * sin,
         across=tracks.vy * cos - tracks.vx * sin,
     )
+
+
+def expected_places(
+    tracks: Tracks, road: DrivenRoad, ego: EgoPieces, lanelets: NDArray[intp], reach_m: float
+) -> tuple[Floats, Floats]:
+    """About where along a road that meets itself participants are, and how far from there at most.
+
+    Ego is in the pieces that it drove, and who drives on the same lanes (``lanelets`` has their
+    numbers) is on those nearest to it, the shorter way round; anybody else is within ``reach_m``.
+    """
+    middles, halves = (road.borders[1:] + road.borders[:-1]) / 2, np.diff(road.borders) / 2
+    columns = np.arange(tracks.present.shape[1])
+    pieces = np.interp(columns, ego.columns, ego.pieces).astype(intp)
+    places = np.stack((tracks.x, tracks.y), axis=-1)
+    reach = halves[pieces] + _MORE_M
+    ego_s = road.line.coordinates_near(places[ego.row], middles[pieces], reach)[:, 0]
+    ego_s = np.where(np.isnan(ego_s), middles[pieces], ego_s)
+    around = np.tile(ego_s, (len(places), 1))
+    reaches = np.full(around.shape, reach_m)
+    least = np.full(around.shape, np.inf)
+    for piece, row in enumerate(road.rows):
+        own = [ego.numbers[lanelet.id] for lanelet in row if lanelet is not None]
+        at = np.nonzero(np.isin(lanelets, own))
+        near = np.full(len(at[0]), middles[piece]), np.full(len(at[0]), halves[piece] + _MORE_M)
+        s = road.line.coordinates_near(places[at], *near)[:, 0]
+        nearer = np.abs(s - ego_s[at[1]]) < least[at]
+        at = at[0][nearer], at[1][nearer]
+        around[at], reaches[at] = s[nearer], _MORE_M
+        least[at] = np.abs(s[nearer] - ego_s[at[1]])
+    around[ego.row], reaches[ego.row] = ego_s, _MORE_M
+    return around, reaches
 
 
 def lanes_touched(extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds) -> Flags:

@@ -45,11 +45,16 @@ class Tracks:
     on_lane: Flags
     on_crosswalk: Flags
 
-    def outlines(self) -> Iterator[tuple[int, int, Points]]:
-        """Row, column and outline of participants; those that stand for good have one."""
+    def outlines(self, *, repeated: bool = False) -> Iterator[tuple[int, int, Points]]:
+        """Row, column and outline of participants.
+
+        Those that stand for good have one, unless it is to be ``repeated``.
+        """
         for row, body in enumerate(self.participants):
             if body.standing:
-                yield row, 0, next(iter(body.outlines.values()))
+                outline = next(iter(body.outlines.values()))
+                for column in range(self.present.shape[1] if repeated else 1):
+                    yield row, column, outline
                 continue
             for column in np.flatnonzero(self.present[row]).tolist():
                 yield row, column, body.outlines[self.first + column]

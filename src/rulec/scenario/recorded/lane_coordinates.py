@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from rulec.scenario.recorded.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine, densified, pieces_at
-from rulec.scenario.recorded.route import lanes_beside
+from rulec.scenario.recorded.route import lanelet_length, lanes_beside
 from rulec.scenario.scenario_model import MissingLane
 
 NARROWEST_LANE_M = 1.0
@@ -30,6 +30,8 @@ _NARROWEST_M = 0.1
 _EDGE_EVERY_M = 0.5
 _EVERY_M = 1.0
 _MARGIN_M = 5.0
+_FAR_M = 50.0
+_ABOUT_M = 20.0
 _HAIR_M = 0.01
 _Values = NDArray[float64]
 
@@ -83,22 +85,28 @@ class Lanes:
 
 
 def lanes_along(
-    recording: Recording, way: Sequence[str], line: ReferenceLine, ego_s: float
+    recording: Recording,
+    way: Sequence[str],
+    line: ReferenceLine,
+    ego_s: float,
+    numbers: Sequence[int] | None = None,
 ) -> Lanes:
     """The lanes beside those of the way that lead the same way.
 
+    ``numbers``: which lane each lanelet of the way is, from any on; else they are one lane.
     Raises ValueError if there is no lane as wide as ``NARROWEST_LANE_M``.
     """
     lanelets = [recording.lanelets[number] for number in way]
     borders = borders_along(lanelets, line)
     grid = np.union1d(np.arange(0.0, line.length, _EVERY_M), borders)
     grid = grid[np.concatenate(([True], np.diff(grid) > _HAIR_M))]
-    strip = _Strip(recording, lanelets, line, borders, grid)
+    own_number = np.zeros(len(way), dtype=int) if numbers is None else np.array(numbers)
+    strip = _Strip(recording, lanelets, line, borders, grid, own_number=own_number)
     right, left = (_bound(strip, lanelets, left=side) for side in (False, True))
     on_the_right = _side(strip, right, left=False)
     on_the_left = _side(strip, left, left=True)
     own = np.maximum(left - right, _HAIR_M), np.ones(len(lanelets), dtype=bool)
-    columns = [*reversed(on_the_right), own, *on_the_left]
+    columns = list(_by_number(strip, [*reversed(on_the_right), own, *on_the_left]))
     middles = pieces_at(borders, (grid[:-1] + grid[1:]) / 2)
     there = np.stack(
         [
@@ -112,30 +120,38 @@ def lanes_along(
         raise ValueError(f"no lane of the road is as wide as {NARROWEST_LANE_M:g} m")
     kept = slice(existing[0], existing[-1] + 1)
     widths = np.stack([width for width, _ in columns], axis=1)
-    first = right - widths[:, : len(on_the_right)].sum(axis=1)
+    # The columns right of the way's own lanelet, at each place
+    before = own_number[pieces_at(borders, grid)] - own_number.min() + len(on_the_right)
+    first = right - np.where(np.arange(len(columns)) < before[:, None], widths, 0.0).sum(axis=1)
     bounds = np.cumsum(np.column_stack((first, widths)), axis=1)
     usual = _usual_widths(grid, widths, there, ego_s)
     straight = np.cumsum((0.0, *usual))
-    straight += float(np.interp(ego_s, grid, right)) - straight[len(on_the_right)]
+    at = pieces_at(grid, np.array(ego_s))
+    straight += float(np.interp(ego_s, grid, right)) - straight[before[at]]
     bounded = slice(kept.start, kept.stop + 1)
     return Lanes(grid, bounds[:, bounded], straight[bounded], there[:, kept])
 
 
 @dataclass(frozen=True, slots=True)
 class _Strip:
-    """The shared data of all lanes: route, lanelet borders, sample places."""
+    """The shared data of all lanes: route, lanelet borders, sample places, its lanes."""
 
     recording: Recording
     way: Sequence[Lanelet]
     line: ReferenceLine
     borders: _Values
     grid: _Values
+    own_number: NDArray[np.int_]
 
 
 def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
     """The places at which lanelets begin, and the last one ends."""
     ends = np.array([lanelets[0].centre[0], *(lanelet.centre[-1] for lanelet in lanelets)])
-    places = np.nan_to_num(line.coordinates(ends)[:, 0])
+    # A line that comes by a place again is beside it more than once
+    about = np.cumsum([0.0, *map(lanelet_length, lanelets)])
+    about *= line.length / about[-1] if about[-1] else 0.0
+    places = line.coordinates_near(ends, about, np.full(len(ends), _ABOUT_M))[:, 0]
+    places = np.where(np.isnan(places), about, places)
     borders: _Values = np.maximum.accumulate(np.clip(places, 0.0, line.length))
     borders[-1] = line.length
     return borders
@@ -150,6 +166,25 @@ def _usual_widths(
             yield float(np.interp(ego_s, grid, width))
         else:
             yield float(np.median(width[:-1][own])) if own.any() else NARROWEST_LANE_M
+
+
+def _by_number(
+    strip: _Strip, by_rank: Sequence[tuple[_Values, NDArray[np.bool_]]]
+) -> Iterator[tuple[_Values, NDArray[np.bool_]]]:
+    """Widths and presences by lane, from those by rank beside the way's own lanelet."""
+    # Ranks begin with the rightmost; where the way is one lane they are the lanes
+    own = strip.own_number - strip.own_number.min()
+    at = own[pieces_at(strip.borders, strip.grid)]
+    for number in range(len(by_rank) + int(own.max())):
+        width, present = np.full(len(strip.grid), np.nan), np.zeros(len(own), dtype=bool)
+        for rank, (own_width, own_present) in enumerate(by_rank):
+            width = np.where(at + rank == number, own_width, width)
+            present = np.where(own + rank == number, own_present, present)
+        known = ~np.isnan(width)
+        if known.any():
+            yield np.interp(strip.grid, strip.grid[known], width[known]), present
+        else:
+            yield np.full(len(width), _HAIR_M), present
 
 
 def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, NDArray[np.bool_]]]:
@@ -170,12 +205,18 @@ def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, N
 
 def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> _Values:
     parts = [np.empty((0, 2))]
-    for lanelet, (start, end) in zip(lanelets, pairwise(strip.borders), strict=True):
+    # Where the way changes lanes its bounds do not go on
+    same = np.concatenate(([True], np.diff(strip.own_number) == 0, [True]))
+    for k, (start, end) in enumerate(pairwise(strip.borders)):
+        lanelet = lanelets[k]
         if lanelet is None:
             continue
         bound = densified(lanelet.left if left else lanelet.right, _EVERY_M)
-        places = strip.line.coordinates(bound)
-        near = (places[:, 0] >= start - _MARGIN_M) & (places[:, 0] <= end + _MARGIN_M)
+        reach = (end - start) / 2 + _FAR_M
+        middle = np.full(len(bound), (start + end) / 2)
+        places = strip.line.coordinates_near(bound, middle, np.full(len(bound), reach))
+        low, high = (_MARGIN_M if same[k] else 0.0), (_MARGIN_M if same[k + 1] else 0.0)
+        near = (places[:, 0] >= start - low) & (places[:, 0] <= end + high)
         parts.append(places[near])
     places = np.concatenate(parts)
     if not len(places):
@@ -185,13 +226,17 @@ def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> 
 
 
 def outline_bounds(
-    outlines: Sequence[Points], line: ReferenceLine, lanes: Lanes
+    outlines: Sequence[Points],
+    line: ReferenceLine,
+    lanes: Lanes,
+    expected: tuple[_Values, _Values] | None = None,
 ) -> tuple[_Values, _Values]:
     """The least and the greatest coordinates of each outline, a row each.
 
     Columns: ``s``, ``d`` (m from the line), ``w`` (m, ``d`` between the lanes' straight bounds).
     NaN for outlines that are not beside the line. Corners are projected near the foot of their
-    middle, so that no body is torn apart where a road meets itself.
+    middle, so that no body is torn apart where a road meets itself. ``expected``: for each middle
+    about which ``s``, and how far from there, its foot is.
     """
     if not outlines:
         return np.empty((0, 3)), np.empty((0, 3))
@@ -201,7 +246,8 @@ def outline_bounds(
     middles = np.add.reduceat(corners, starts) / counts[:, None]
     away = np.hypot(*(corners - np.repeat(middles, counts, axis=0)).T)
     reach = np.maximum.reduceat(away, starts) * _REACH_FACTOR + _REACH_MORE_M
-    around = np.repeat(line.coordinates(middles)[:, 0], counts)
+    found = line.coordinates_near(middles, *expected) if expected else line.coordinates(middles)
+    around = np.repeat(found[:, 0], counts)
     feet = line.coordinates_near(corners, around, np.repeat(reach, counts))
     feet[np.isnan(around)] = np.nan
     coordinates = np.column_stack((feet, lanes.straightened(feet)[:, 1]))

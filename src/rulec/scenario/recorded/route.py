@@ -20,6 +20,7 @@ NO_LANES = frozenset({"sidewalk", "crosswalk", "border", "parking", "restricted_
 """Types of lanelets that are no part of the carriageway."""
 
 _NEAR_M = 3.0
+_SHORTEST_M = 1.0
 _LOOK_M = 30.0
 _TURNS_BACK = radians(135)
 
@@ -103,12 +104,17 @@ def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[st
     return (*behind[:0:-1], *ahead)
 
 
-def extended_route(recording: Recording, way: Sequence[str]) -> tuple[str, ...]:
-    """A route with the road before and after it, as straight as possible where it branches."""
+def roads_beyond(
+    recording: Recording, way: Sequence[str]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The roads before and after a route, as straight as possible where they branch.
+
+    They may lead to the route again, as on a ring.
+    """
     lanelets = recording.lanelets
-    ahead = _straight_on(lanelets, [way[-1]], taken=way)
-    behind = _straight_on(lanelets, [way[0]], backwards=True, taken=(*way, *ahead))
-    return (*behind[:0:-1], *way, *ahead[1:])
+    ahead = _straight_on(lanelets, [way[-1]], again=True)
+    behind = _straight_on(lanelets, [way[0]], backwards=True, again=True)
+    return tuple(behind[:0:-1]), tuple(ahead[1:])
 
 
 def _way_to(lanelets: Mapping[str, Lanelet], start: str, targets: frozenset[str]) -> list[str]:
@@ -134,11 +140,15 @@ def _straight_on(
     *,
     backwards: bool = False,
     taken: Iterable[str] = (),
+    again: bool = False,
 ) -> list[str]:
-    """A way with what follows it, as straight as possible, without the lanelets ``taken``."""
+    """A way with what follows it, as straight as possible, without the lanelets ``taken``.
+
+    ``again``: lanelets may come again.
+    """
     way = list(start)
     seen = {*way, *taken}
-    reach = sum(_length(lanelets[number]) for number in way[1:])
+    reach = sum(lanelet_length(lanelets[number]) for number in way[1:])
     while reach < REACH_M:
         here = lanelets[way[-1]]
         leaving = _end_heading(here, backwards)
@@ -146,7 +156,7 @@ def _straight_on(
             lanelets[number]
             for number in (here.predecessors if backwards else here.successors)
             if number in lanelets
-            and number not in seen
+            and (again or number not in seen)
             and is_lane(lanelets[number])
             # A road does not turn back by itself, though one may turn around at its end
             and abs(turn(leaving, _end_heading(lanelets[number], backwards))) < _TURNS_BACK
@@ -157,11 +167,12 @@ def _straight_on(
         chosen = min(options, key=lambda option: (turns[option.id], id_order(option.id)))
         way.append(chosen.id)
         seen.add(chosen.id)
-        reach += _length(chosen)
+        reach += max(lanelet_length(chosen), _SHORTEST_M)
     return way
 
 
-def _length(lanelet: Lanelet) -> float:
+def lanelet_length(lanelet: Lanelet) -> float:
+    """The length (m) of a lanelet's middle."""
     return float(np.hypot(*np.diff(lanelet.centre, axis=0).T).sum())
 
 

@@ -1,0 +1,149 @@
+"""The road under a matched path: lanelets end to end, of which ego may have left lanes.
+
+A change of lanes does not leave the road, so of each row of lanes one lanelet is chosen: those that
+lead to each other, where ego was fewest lanes away. Where no such lanelets lead all the way, as
+after a turn into one lane and before a turn from another, the road changes lanes itself, in a
+lanelet as long as possible.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from rulec.extraction.tracks.lanelet_graph import LaneletGraph
+from rulec.extraction.tracks.map_matching import MatchedStretch
+from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.recorded.route import lanelet_length
+
+_SHIFT_COST, _SHORT_COST = 1e6, 1e5
+
+
+@dataclass(frozen=True, slots=True)
+class RouteStretch:
+    """The states of a drive along one road, and its lanelets, each beside or after the one before.
+
+    ``pieces``: for each of the ``columns`` the number of the row of lanes there.
+    """
+
+    columns: tuple[int, ...]
+    route: tuple[str, ...]
+    pieces: tuple[int, ...]
+
+    @property
+    def first(self) -> int:
+        """The first column."""
+        return self.columns[0]
+
+    @property
+    def last(self) -> int:
+        """The last column."""
+        return self.columns[-1]
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """Lanes beside each other, and how many states were in each."""
+
+    lanes: tuple[str, ...]
+    states: tuple[int, ...]
+
+    def away(self, lane: str) -> int:
+        """How many lanes the states are away from one, in sum."""
+        own = self.lanes.index(lane)
+        return sum(count * abs(k - own) for k, count in enumerate(self.states))
+
+
+@dataclass(frozen=True, slots=True)
+class _Choice:
+    """The cheapest choice of lanelets up to a row's exit."""
+
+    cost: float
+    lanelets: tuple[str, ...]
+
+
+def pieces_of(recording: Recording, route: Sequence[str]) -> tuple[tuple[str, ...], ...]:
+    """A route's lanelets by row: one, or those from which and to which it changes lanes."""
+    pieces: list[tuple[str, ...]] = []
+    graph = LaneletGraph(recording)
+    for lanelet in route:
+        last = pieces[-1][-1] if pieces else None
+        leads = last is not None and lanelet in recording.lanelets[last].successors
+        if last is not None and not leads and lanelet != last and lanelet in graph.row(last):
+            pieces[-1] = (*pieces[-1], lanelet)
+        else:
+            pieces.append((lanelet,))
+    return tuple(pieces)
+
+
+def route_stretches(
+    recording: Recording, matched: MatchedStretch, graph: LaneletGraph
+) -> Iterator[RouteStretch]:
+    """The roads of a matched stretch, which is one as far as the map is consistent."""
+    pieces = pieces_of(recording, matched.chain)
+    piece_of = [k for k, piece in enumerate(pieces) for _ in piece]
+    at = [piece_of[place] for place in matched.places]
+    counts = Counter((piece_of[place], matched.chain[place]) for place in matched.places)
+    rows = []
+    for number, piece in enumerate(pieces):
+        lanes = graph.row(piece[0])
+        rows.append(_Row(lanes, tuple(counts[number, lane] for lane in lanes)))
+    start = 0
+    while start < len(rows):
+        stop, route = _cheapest(recording, rows, start)
+        own = [k for k, piece in enumerate(at) if start <= piece < stop]
+        if own:
+            columns = tuple(matched.columns[k] for k in own)
+            yield RouteStretch(columns, route, tuple(at[k] - start for k in own))
+        start = stop
+
+
+def _cheapest(
+    recording: Recording, rows: Sequence[_Row], start: int
+) -> tuple[int, tuple[str, ...]]:
+    """The number of the row after the last one reached, and the lanelets up to there."""
+    best: dict[str, _Choice] = {}
+    for number in range(start, len(rows)):
+        row = rows[number]
+        entries = {
+            lane: choice
+            for lane in row.lanes
+            if (choice := _entry(recording, best, lane, first=number == start)) is not None
+        }
+        if not entries:
+            return number, _least(best).lanelets
+        best = {
+            lane: min(
+                (
+                    _through(recording, row, entry, lane, choice)
+                    for entry, choice in entries.items()
+                ),
+                key=lambda choice: (choice.cost, choice.lanelets),
+            )
+            for lane in row.lanes
+        }
+    return len(rows), _least(best).lanelets
+
+
+def _least(best: dict[str, _Choice]) -> _Choice:
+    return min(best.values(), key=lambda choice: (choice.cost, choice.lanelets))
+
+
+def _entry(
+    recording: Recording, best: dict[str, _Choice], lane: str, *, first: bool
+) -> _Choice | None:
+    if first:
+        return _Choice(0.0, ())
+    leading = [c for exit_, c in best.items() if lane in recording.lanelets[exit_].successors]
+    return min(leading, key=lambda choice: (choice.cost, choice.lanelets), default=None)
+
+
+def _through(recording: Recording, row: _Row, entry: str, lane: str, choice: _Choice) -> _Choice:
+    if entry == lane:
+        return _Choice(choice.cost + row.away(lane), (*choice.lanelets, lane))
+    changes = abs(row.lanes.index(entry) - row.lanes.index(lane))
+    length = lanelet_length(recording.lanelets[entry])
+    shift = changes * (_SHIFT_COST + _SHORT_COST / max(length, 1.0))
+    away = min(row.away(entry), row.away(lane))
+    return _Choice(choice.cost + shift + away, (*choice.lanelets, entry, lane))

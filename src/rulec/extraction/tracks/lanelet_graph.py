@@ -1,0 +1,95 @@
+"""The ways from lanelet to lanelet: successors, and lanes beside that lead the same way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from rulec.scenario.recorded.recording import Lanelet, Recording
+from rulec.scenario.recorded.route import is_lane, lanelet_length, lanes_beside
+
+MOST_HOPS = 4
+"""The number of lanelets that a vehicle passes at most between two of its states."""
+
+_LANE_M = 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A way from a lanelet's start to another's: its lanelets but the first, its length (m).
+
+    ``changes`` is the number of lanes changed, ``sideways`` about how far that is (m).
+    """
+
+    lanelets: tuple[str, ...]
+    length: float
+    changes: int
+
+    @property
+    def sideways(self) -> float:
+        """About how far the way leads sideways (m)."""
+        return self.changes * _LANE_M
+
+
+class LaneletGraph:
+    """The lanes of a map and the ways between them, each computed once."""
+
+    def __init__(self, recording: Recording) -> None:
+        self._recording = recording
+        self._ways: dict[str, Mapping[str, Way]] = {}
+        self._rows: dict[str, tuple[str, ...]] = {}
+
+    def row(self, start: str) -> tuple[str, ...]:
+        """The lanes beside each other at a lanelet, from the right."""
+        if start not in self._rows:
+            right, left = (
+                lanes_beside(self._recording, start, left=left) for left in (False, True)
+            )
+            self._rows[start] = (*right[::-1], start, *left)
+        return self._rows[start]
+
+    def way(self, start: str, end: str) -> Way | None:
+        """The way with the fewest changes, then lanelets; None if there is no short one."""
+        if start not in self._ways:
+            self._ways[start] = self._ways_from(start)
+        return self._ways[start].get(end)
+
+    def successors(self, start: str) -> Iterator[Lanelet]:
+        """The lanes that a lane leads to."""
+        lanelets = self._recording.lanelets
+        for number in lanelets[start].successors:
+            if number in lanelets and is_lane(lanelets[number]):
+                yield lanelets[number]
+
+    def _ways_from(self, start: str) -> Mapping[str, Way]:
+        found = {start: Way((), 0.0, 0)}
+        ring = [start]
+        for hop in range(MOST_HOPS + 1):
+            ring = [*ring, *self._sideways(ring, found)]
+            if hop < MOST_HOPS:
+                ring = self._forwards(ring, found)
+        return found
+
+    def _sideways(self, ring: list[str], found: dict[str, Way]) -> list[str]:
+        added = []
+        for here in ring:
+            row, way = self.row(here), found[here]
+            own = row.index(here)
+            for place, other in enumerate(row):
+                changes = way.changes + abs(place - own)
+                if other not in found or changes < found[other].changes:
+                    added.append(other)
+                    found[other] = Way((*way.lanelets, other), way.length, changes)
+        return added
+
+    def _forwards(self, ring: list[str], found: dict[str, Way]) -> list[str]:
+        added = []
+        for here in ring:
+            way = found[here]
+            length = way.length + lanelet_length(self._recording.lanelets[here])
+            for lanelet in self.successors(here):
+                known = found.get(lanelet.id)
+                if known is None or way.changes < known.changes:
+                    found[lanelet.id] = Way((*way.lanelets, lanelet.id), length, way.changes)
+                    added.append(lanelet.id)
+        return added
