@@ -103,7 +103,7 @@ _HOME = {
     "rulec.analysis.lineage.rule_lineage": "BookLineage RuleHistory",
     "rulec.api.session": "Session",
     "rulec.api.verbs": "alternative_counts analyze audit check compile compile_rulebook coverage "
-    "diff doc draw envelope envelopes explain find_maneuvers format judge_recording "
+    "diff doc draw draw_drive envelope envelopes explain find_maneuvers format judge_recording "
     "lineage list load_rulebook load_scenario load_vocabulary navigation_graph "
     "new_rulebook parse_rulebook read_recording read_traces rule_probabilities show "
     "test traces tree verify verify_cells verify_columns verify_many verify_recording "

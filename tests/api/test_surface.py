@@ -114,7 +114,7 @@ def test_what_verbs_return_is_public():
             }
     names = {word for word in words if word[0].isupper()}
     helpers = {"Before", "Callable", "Fraction", "GraphOptions", "Iterable", "Iterator", "Kind"}
-    helpers |= {"Literal", "Path", "PictureFormat", "Rules", "Sequence", "Unpack"}
+    helpers |= {"Literal", "Path", "PictureFormat", "Rules", "Sequence", "Theme", "Unpack"}
     assert names - helpers <= set(rulec.__all__)
 
 

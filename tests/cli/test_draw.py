@@ -78,6 +78,49 @@ def test_a_part_of_a_trace(tmp_path, capfd):
     assert "CONGESTED" not in texts(file)
 
 
+PASSING = ("docs/samples/passing.fcd.xml", "--net", "docs/samples/passing.net.xml", "-r", "de")
+
+
+def test_all_rows_of_a_trace(tmp_path, capfd):
+    file = tmp_path / "t.svg"
+    draw_trace = ("trace", "docs/samples/traces.jsonl", *RULES, "-o", file)
+    draw(capfd, *draw_trace)
+    assert "surface" not in texts(file)
+    assert "without 1 row that no violated rule reads" in texts(file)
+    draw(capfd, *draw_trace, "--all")
+    assert "surface" in texts(file)
+
+
+def test_a_drive(tmp_path, capfd):
+    file = tmp_path / "d.svg"
+    assert draw(capfd, "drive", *PASSING, "-o", file) == (0, f"wrote {file}\n", "")
+    found = texts(file)
+    assert found[0].startswith("passing, ")
+    assert "10 m" in found
+    assert draw(capfd, "drive", *PASSING, "--ego", "g.0", "--at-time", 4, "-o", file)[0] == 0
+    assert texts(file)[0].startswith("passing, g.0: ")
+    assert texts(file)[1] == "4 s"
+    dark = ("--theme", "dark", "--format", "html")
+    status, out, _ = draw(capfd, "drive", *PASSING, *dark, "-o", "-")
+    assert status == 0
+    assert out.startswith('<!DOCTYPE html>\n<html lang="en" data-theme="dark">')
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--ego", "h.0"), "there is no vehicle `h.0` that drives"),
+        (("--ego", "f.0#2"), "there is no drive `f.0#2`"),
+        (("--rule", "passing_*"), "de has no rule like `passing_*`"),
+        (("--theme", "blue"), "'blue' is not one of 'auto', 'light', 'dark'"),
+    ],
+)
+def test_a_drive_that_cannot_be_drawn(arguments, message, tmp_path, capfd):
+    status, _, err = draw(capfd, "drive", *PASSING, *arguments, "-o", tmp_path / "d.svg")
+    assert status == 2
+    assert message in err
+
+
 def test_to_standard_output(capfd):
     status, out, err = draw(capfd, "scene", "s1", "--layer", 0, "-o", "-")
     assert (status, err) == (0, "")

@@ -1,11 +1,17 @@
-"""Drawings of scenes, navigation graphs and traces."""
+"""Drawings of scenes, navigation graphs, traces and recorded drives."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import SourceLocation
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.to_trace import Drive
+from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify
 from rulec.partition import NavigationGraph
 from rulec.planning import Maneuvers
@@ -14,11 +20,20 @@ from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.report.pictures.drawing.picture_formats import Drawing
+from rulec.report.pictures.drives.drive_page import drive_page
+from rulec.report.pictures.drives.drive_picture import chosen_moment, drive_entries, drive_picture
+from rulec.report.pictures.drives.scene_of_drive import drive_scene
 from rulec.report.pictures.graph_picture import graph_picture
-from rulec.report.pictures.picture_captions import graph_title, scene_title, trace_title
+from rulec.report.pictures.picture_captions import (
+    graph_title,
+    legend,
+    scene_title,
+    trace_title,
+)
 from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
-from rulec.report.pictures.trace_picture import ribbon_picture
+from rulec.report.pictures.trace_picture import ribbon_entries, ribbon_picture
 from rulec.report.pictures.trace_ribbon import ribbon
+from rulec.scenario.scenario_messages import NOT_IN_RECORDING
 from rulec.trace import Trace
 
 
@@ -27,15 +42,61 @@ def trace_drawing(
     rules: CompiledRulebook,
     objects: Sequence[str] = (),
     patterns: Sequence[str] = (),
+    *,
+    every_row: bool = False,
 ) -> Drawing:
-    """Draw a trace's rule inputs over time, with violations. Raises RulecError.
+    """Draw what violated rules read over time, or ``every_row``. Raises RulecError.
 
     ``objects`` are those to show, if not all; ``patterns`` have chosen the rules, for the title.
     """
     verdict = verify(trace, rules)
-    shown = ribbon(trace, rules, verdict, objects)
+    shown = ribbon(trace, rules, verdict, objects, every_row=every_row)
     title = trace_title(replace(verdict, violations=shown.violations), rules, (*patterns, *objects))
-    return Drawing(title, [ribbon_picture(shown, rules)])
+    return Drawing(title, [ribbon_picture(shown, rules)], legend(ribbon_entries(shown), []))
+
+
+def drive_drawing(
+    verdicts: RecordingVerdicts,
+    trace: str = "",
+    kept: frozenset[str] | None = None,
+    at_s: float | None = None,
+) -> Drawing:
+    """Draw a judged drive from above, at the first violation or at a time (s of the recording).
+
+    ``trace`` is the drive's; if empty it is the first one with a violation of the rules ``kept``
+    (None: of any rule). Raises RulecError: R0612 if there is no such drive.
+    """
+    drive, verdict = _chosen_drive(verdicts, trace, kept)
+    scene = drive_scene(drive, verdict, verdicts, kept)
+    state, violation = chosen_moment(scene, at_s)
+    return Drawing(
+        scene.title,
+        [drive_picture(scene, state, violation)],
+        legend(drive_entries(scene, violation), scene.notes),
+        page=partial(drive_page, scene, state, violation),
+    )
+
+
+def _chosen_drive(
+    verdicts: RecordingVerdicts, trace: str, kept: frozenset[str] | None
+) -> tuple[Drive, Verdict]:
+    first: tuple[Drive, Verdict] | None = None
+    why = "nobody in this recording drives on a lane"
+    for answer in verdicts.answers():
+        if isinstance(answer, NoDrive):
+            why = f"`{answer.ego}` has no drive: {answer.why}"
+            continue
+        if isinstance(answer.answer, NotJudged):
+            raise answer.answer.error
+        found = answer.drive, answer.answer
+        first = first or found
+        violated = {violation.rule for violation in answer.answer.violations}
+        if trace == answer.drive.trace.id if trace else violated & (kept or violated):
+            return found
+    if first is None or trace:
+        message = why if first is None else f"there is no drive `{trace}`"
+        raise NOT_IN_RECORDING.error(SourceLocation(verdicts.recording.name), message)
+    return first
 
 
 def scene_drawing(

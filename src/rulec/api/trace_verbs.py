@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from rulec.extraction.selection import RequestedDrives
     from rulec.monitoring.batch.verdict_columns import VerdictColumns
     from rulec.monitoring.verdict import NotJudged, Verdict
+    from rulec.report.pictures.drawing.picture_formats import Format as PictureFormat
+    from rulec.report.pictures.drawing.styles import Theme
     from rulec.scenario.recorded.recording import Recording
     from rulec.trace import Trace
     from rulec.trace.trace_columns import TraceCells, TraceColumns
@@ -109,3 +111,39 @@ class TraceVerbs(SessionSettings):
         return RecordingVerdicts(recording, compiled, wanted or RequestedDrives(), str(file))
 
     judge_recording = verify_recording
+
+    def draw_drive(
+        self,
+        recording: str | Path | Recording,
+        rules: Rules,
+        ego: str = "",
+        wanted: RequestedDrives | None = None,
+        net: str | Path | None = None,
+        *,
+        only: Sequence[str] = (),
+        at_s: float | None = None,
+        form: PictureFormat = "svg",
+        theme: Theme = "auto",
+    ) -> bytes:
+        """Draw a recorded drive from above, at its first violation or at a time of the recording.
+
+        ``ego`` is a vehicle, or a drive such as ``373#2``; if empty it is the first vehicle that
+        violates a rule. ``only`` are the names of the rules whose violations are shown, if not all.
+        A page (``"html"``) has all moments. PNG and PDF take ``rulec[pictures]``.
+
+        Raises:
+            RulecError: R0612 for a drive that is not there, R0707 for a file that cannot be made,
+                and what ``verify_recording`` raises.
+        """
+        from dataclasses import replace
+
+        from rulec.api.pictures import drive_drawing
+        from rulec.extraction.selection import RequestedDrives
+        from rulec.report.pictures.drawing.picture_formats import as_bytes
+
+        vehicle, part, _ = ego.partition("#")
+        request = replace(wanted or RequestedDrives(), egos=(vehicle,) if vehicle else ())
+        verdicts = self.verify_recording(recording, rules, request, net)
+        trace = ego if part else ""
+        drawing = drive_drawing(verdicts, trace, frozenset(only) if only else None, at_s)
+        return as_bytes(drawing, form, verdicts.recording.name, theme)

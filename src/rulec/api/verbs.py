@@ -56,6 +56,7 @@ coverage = _USUAL.coverage
 diff = _USUAL.diff
 doc = _USUAL.doc
 draw = _USUAL.draw
+draw_drive = _USUAL.draw_drive
 envelope = _USUAL.envelope
 envelopes = _USUAL.envelopes
 explain = _USUAL.explain

@@ -40,6 +40,7 @@ class RecordingVerdicts(Rows):
     def __init__(
         self, recording: Recording, rulebook: CompiledRulebook, request: RequestedDrives, file: str
     ) -> None:
+        self.request = request
         self.rules = rulebook.fitted_to(recording.step_s)
         formulas = [rule.formula for rule in self.rules.rules]
         formulas += [axiom.formula for axiom in self.rules.axioms]

@@ -16,8 +16,14 @@ from rulec.extraction.signals.flow_signals import flow_signals
 from rulec.extraction.signals.junction_signals import junction_signals
 from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
 from rulec.extraction.signals.map_signals import map_signals
-from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.signals.participant_signals import (
+    gap_beside_safe_distance,
+    participant_signals,
+)
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.tracks.tracks import Floats
+from rulec.logic.formula import Relation
+from rulec.monitoring.explain.margins import Margin
 from rulec.partition.cell_graph import PAPER_SURFACE
 from rulec.trace import State, Trace, Value
 from rulec.trace.vocabulary_projection import fits, is_about, known_type, known_types
@@ -75,12 +81,36 @@ _SIGNALS: tuple[Callable[[DriveContext], SignalColumns], ...] = (
 _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float}
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class DecidedBy:
+    """The numbers by which a signal about objects was decided: whether a value reaches a limit.
+
+    ``quantity`` is the value's, ``rows`` are the objects' in the arrays, by state; NaN where
+    nothing was compared.
+    """
+
+    quantity: str
+    unit: str
+    rows: Mapping[str, int]
+    values: Floats
+    limits: Floats
+
+    def margin(self, item: str, state: int) -> Margin | None:
+        """The margin for an object in a state, if there is one."""
+        row = self.rows.get(item)
+        if row is None or np.isnan(self.values[row, state]):
+            return None
+        value, limit = float(self.values[row, state]), float(self.limits[row, state])
+        relation: Relation = ">=" if value >= limit else "<"
+        return Margin(f"{self.quantity}({item})", value, relation, limit, self.unit)
+
+
 @dataclass(frozen=True, slots=True)
 class Drive:
     """A drive of ``ego`` as a trace from ``start_s`` (s of the recording) on.
 
     ``kinds`` are the Python types of the signals that the recording supplies, whether or not any
-    object is there to have them.
+    object is there to have them; ``decided_by`` has the numbers behind Boolean ones.
     """
 
     __repr__ = short_repr
@@ -89,6 +119,7 @@ class Drive:
     start_s: float
     trace: Trace
     kinds: Mapping[str, type]
+    decided_by: Mapping[str, DecidedBy] = field(default_factory=dict, compare=False)
 
     @property
     def words(self) -> frozenset[str]:
@@ -146,7 +177,12 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     start_s = round(context.first_step * context.recording.step_s, 9)
     columns = {**signals.world, **signals.about}
     kinds = {name: _KINDS.get(column.dtype.kind, str) for name, column in columns.items()}
-    return Drive(ego, start_s, trace, kinds)
+    decided_by = {}
+    if "safe_gap" in signals.about:
+        rows = {presence.name: presence.row for presence in present}
+        distances = gap_beside_safe_distance(context)
+        decided_by["safe_gap"] = DecidedBy("gap", "m", rows, *distances)
+    return Drive(ego, start_s, trace, kinds, decided_by)
 
 
 def _projected(

@@ -5,8 +5,8 @@ import pytest
 from rulec import compile_rulebook
 from rulec.monitoring.verify import verify
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Polyline
-from rulec.report.pictures.trace_picture import ribbon_picture
-from rulec.report.pictures.trace_ribbon import ValueRun, ribbon
+from rulec.report.pictures.trace_picture import ribbon_entries, ribbon_picture
+from rulec.report.pictures.trace_ribbon import ValueRun, ribbon, value_style
 from rulec.trace import Trace
 
 
@@ -27,13 +27,64 @@ OVERTAKEN = trace(
 
 
 def test_rows(rules):
-    found = ribbon(OVERTAKEN, rules, verify(OVERTAKEN, rules))
+    found = ribbon(OVERTAKEN, rules, verify(OVERTAKEN, rules), every_row=True)
     rows = {row.title: row.runs for row in found.rows}
     assert found.left_out == 0
     assert list(rows) == ["CONGESTED", "surface", "position(v)", "position(w)"]
     assert rows["CONGESTED"] == (ValueRun(0, 3, value=False),)
     assert rows["position(v)"] == (ValueRun(0, 0, "b"), ValueRun(1, 2, "r"), ValueRun(3, 3, "f"))
     assert rows["position(w)"] == (ValueRun(0, 0, None), ValueRun(1, 2, "b"), ValueRun(3, 3, None))
+
+
+def test_only_what_violated_rules_read_of_the_objects_in_question(rules):
+    """R1 is violated for v; it reads no surface."""
+    found = ribbon(OVERTAKEN, rules, verify(OVERTAKEN, rules))
+    assert [row.title for row in found.rows] == ["CONGESTED", "position(v)"]
+    assert found.left_out == 2
+
+
+def test_colours_mean_something(tmp_path):
+    """True, false, words and unknown have styles that differ, whatever the row."""
+    (tmp_path / "w.rules").write_text(
+        "vocabulary w {\n  type car\n  signal near(a: car)\n  near_light is one of red_light, off\n"
+        "  quantity gap(a: car) in m\n}\n"
+    )
+    source = tmp_path / "s.rules"
+    source.write_text(
+        "rulebook s\nuse w\nhard rule A (a: car) "
+        "{ require always (near(a) implies off and gap(a) > 3 m) }\n"
+    )
+    rules = compile_rulebook(source)
+    states = [
+        {"near": {"a": value}, "near_light": light, "gap": {"a": 1.0}}
+        for value, light in ((False, "off"), (True, "off"), (True, "red_light"))
+    ]
+    here = trace(states, {"a": "car"})
+    verdict = verify(here, rules)
+    # What a state does not say is unknown where there is no default.
+    rows = {
+        row.title: row for row in ribbon(trace([*states, {}], here.objects), rules, verdict).rows
+    }
+    styles = {
+        title: [value_style(row, run.value) for run in row.runs]
+        for title, row in rows.items()
+        if row.values
+    }
+    assert styles == {
+        "near_light": ["word1", "red", "unknown"],
+        "near(a)": ["off", "true", "unknown"],
+    }
+    assert rows["gap(a) in m"].runs == (ValueRun(0, 2, 1.0), ValueRun(3, 3, None, unknown=True))
+    hatched = ribbon_picture(ribbon(trace([*states, {}], here.objects), rules, verdict), rules)
+    assert sum(mark.style == "unknown" for mark in hatched.marks) == 3
+    legend = ribbon_entries(ribbon(here, rules, verdict))
+    assert [text for _, text in legend] == [
+        "true",
+        "false",
+        "other colours: a word each",
+        "a number, from its least to its greatest value",
+        "a violation is decided",
+    ]
 
 
 def test_rows_of_some_objects(rules):

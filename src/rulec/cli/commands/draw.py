@@ -1,4 +1,4 @@
-"""``rulec draw``: scenes, graphs and traces as pictures."""
+"""``rulec draw``: scenes, graphs, traces and recorded drives as pictures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,13 @@ import click
 
 import rulec
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.scenario_options import graph_options, read_scene
+from rulec.cli.options.scenario_options import (
+    drives_options,
+    graph_options,
+    net_option,
+    read_scene,
+    requested_drives,
+)
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.diagnostics import RulecError, named
 from rulec.report.text.terminal_text import shown_count
@@ -24,6 +30,7 @@ if TYPE_CHECKING:
     from rulec.planning import Maneuvers
     from rulec.planning.ranking.cheapest import Maneuver
     from rulec.report.pictures.drawing.picture_formats import Drawing
+    from rulec.report.pictures.drawing.styles import Theme
     from rulec.trace import Trace
 
     Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
@@ -34,7 +41,7 @@ _picture_options = shared.combined(
         click.option(
             "--format",
             "form",
-            type=click.Choice(["svg", "png", "html"]),
+            type=click.Choice(["svg", "png", "pdf", "html"]),
             help="The format of the picture.  [default: what the file's name ends with, else svg]",
         ),
     ]
@@ -58,10 +65,10 @@ _judging_options = shared.combined(
 
 @click.group()
 def command() -> None:
-    """Draw the scene over time, the navigation graph, or a trace: as SVG, PNG or a page (HTML).
+    """Draw a recorded drive, the scene over time, the navigation graph, or a trace.
 
-    SVG and HTML need nothing else and come in light and dark, as the reader prefers; PNG takes
-    `pip install 'rulec[pictures]'`.
+    As SVG, PNG, PDF or a page (HTML). SVG and HTML need nothing else and come in light and dark, as
+    the reader prefers; PNG and PDF take `pip install 'rulec[pictures]'`.
     """
 
 
@@ -81,6 +88,12 @@ def command() -> None:
     metavar="ID",
     help="Of the objects only this one. May be given several times.",
 )
+@click.option(
+    "--all",
+    "every_row",
+    is_flag=True,
+    help="Draw what any rule reads, not only what the violated ones do.",
+)
 @shared.at_option
 @_picture_options
 def trace(
@@ -89,13 +102,15 @@ def trace(
     trace_id: str | None,
     patterns: tuple[str, ...],
     objects: tuple[str, ...],
+    every_row: bool,
     at: str,
     output: Path,
     form: str | None,
 ) -> None:
-    """Draw a trace of FILE (JSON Lines, CSV or Parquet): what a rulebook reads in it, over time.
+    """Draw a trace of FILE (JSON Lines, CSV or Parquet): what violated rules read, over time.
 
-    Violations are marked where they are decided, with the rule and its article.
+    Without a violation, what any rule reads. Violations are marked where they are decided, with the
+    rule and its article.
     """
     # Verdicts and pictures, 150 ms: not for --help.
     from rulec.api.pictures import trace_drawing
@@ -109,7 +124,67 @@ def trace(
                 f"trace `{drawn.id}` has no object `{item}`; it has {named(list(drawn.objects))}."
             )
     used = _only(rulebook_for_trace(drawn, rules), patterns)
-    _write(trace_drawing(drawn, used, objects, patterns), output, form)
+    _write(trace_drawing(drawn, used, objects, patterns, every_row=every_row), output, form)
+
+
+@command.command()
+@click.argument("file")
+@shared.rulebook_option()
+@click.option(
+    "--ego",
+    default="",
+    metavar="ID",
+    help="The vehicle, or one of its drives such as 373#2.  [default: the first that violates a "
+    "rule]",
+)
+@shared.rules_option(
+    "Only violations of rules like PATTERN; `*` and `?` are wild. May be given several times."
+)
+@click.option(
+    "--at-time",
+    "at_s",
+    type=float,
+    metavar="S",
+    help="The moment to draw, in s of the recording.  [default: the first violation]",
+)
+@click.option(
+    "--theme",
+    type=click.Choice(["auto", "light", "dark"]),
+    default="auto",
+    show_default=True,
+    help="Light or dark; `auto` is as the reader prefers, and light in PNG and PDF.",
+)
+@drives_options
+@net_option
+@shared.at_option
+@_picture_options
+def drive(
+    file: str,
+    rulebook: str,
+    ego: str,
+    patterns: tuple[str, ...],
+    at_s: float | None,
+    theme: Theme,
+    net: Path | None,
+    at: str,
+    output: Path,
+    form: str | None,
+    **options: Any,
+) -> None:
+    """Draw a drive of the recording FILE from above: the road, everybody on it, the violations.
+
+    FILE is recorded traffic, CommonRoad's (.xml) or SUMO's floating-car data. A picture shows the
+    moment of the first violation; a page (HTML) plays all moments and lists all violations.
+    """
+    # Recordings, verdicts and pictures, 400 ms: not for --help.
+    from rulec.api.pictures import drive_drawing
+
+    rules = read_machines(rulebook, at)
+    vehicle, part, _ = ego.partition("#")
+    wanted = requested_drives((vehicle,) if vehicle else (), options, rules.vocabulary)
+    kept = frozenset(rule.name for rule in _only(rules, patterns).rules) if patterns else None
+    verdicts = rulec.verify_recording(file, rules, wanted, net)
+    _write(drive_drawing(verdicts, ego if part else "", kept, at_s), output, form, theme)
 
 
 @command.command()
@@ -207,11 +282,11 @@ def _judged(
     return maneuvers.graph, maneuvers, maneuver
 
 
-def _write(drawing: Drawing, output: Path, form: str | None) -> None:
+def _write(drawing: Drawing, output: Path, form: str | None, theme: Theme = "auto") -> None:
     # Fonts and layout, 5 ms: not for --help.
     from rulec.report.pictures.drawing.picture_formats import as_bytes, format_of
 
-    data = as_bytes(drawing, form or format_of(str(output)), str(output))
+    data = as_bytes(drawing, form or format_of(str(output)), str(output), theme)
     with output_stream(output) as (stream, _):
         stream.write(data)
     print_written(str(output), output)

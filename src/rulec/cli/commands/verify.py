@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import stat
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import IO, TYPE_CHECKING, Any, cast
 
 import click
@@ -20,12 +21,12 @@ from rulec.cli.output import read_machines
 from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.report.findings.diagnostics_text import Complaints
-from rulec.report.text.console import print_result, progress
+from rulec.report.text.console import page_width, print_result, progress
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.extraction.selection import RequestedDrives
-    from rulec.monitoring.explain.explanation import Explanation
+    from rulec.monitoring.explain.explanation import Deciding, Explanation
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
@@ -136,7 +137,9 @@ class _Run:
                 print_result(
                     verdict_json.as_json(answer, used, explained)
                     if self.json_output
-                    else verdict_report.as_text(answer, used, explained, every_part=self.every_part)
+                    else verdict_report.as_text(
+                        answer, used, explained, every_part=self.every_part, width=page_width()
+                    )
                 )
         if not self.json_output:
             print_result(verdict_report.summary(satisfied, violated, not_judged))
@@ -165,9 +168,15 @@ class _Run:
                     verdict = answer.answer
                     if isinstance(verdict, NotJudged):
                         self._complain(verdict.error)
-                    elif explained := self._explained(verdict, answer.drive.trace, drives.rules):
+                    elif explained := self._explained(
+                        verdict, answer.drive.trace, drives.rules, answer.drive.decided_by
+                    ):
                         details = verdict_report.as_text(
-                            verdict, drives.rules, explained, every_part=self.every_part
+                            verdict,
+                            drives.rules,
+                            explained,
+                            every_part=self.every_part,
+                            width=page_width(),
                         )
                         blocks.append(f"\n{details}")
                 if self.json_output:
@@ -179,7 +188,11 @@ class _Run:
         self.not_answered |= not tally.judged
 
     def _explained(
-        self, verdict: Verdict, trace: Trace | RulecError, rules: CompiledRulebook
+        self,
+        verdict: Verdict,
+        trace: Trace | RulecError,
+        rules: CompiledRulebook,
+        decided_by: Mapping[str, Deciding] = MappingProxyType({}),
     ) -> list[Explanation]:
         """The first violations explained, as many as are still to be."""
         # Tables of automata, as for ``traces``.
@@ -187,7 +200,8 @@ class _Run:
 
         chosen = verdict.violations[: self.to_explain]
         self.to_explain -= len(chosen)
-        return [explain(violation, cast("Trace", trace), rules) for violation in chosen]
+        given = cast("Trace", trace)
+        return [explain(violation, given, rules, decided_by) for violation in chosen]
 
     def _complain(self, error: RulecError) -> None:
         self.complaints.add(error)

@@ -22,7 +22,7 @@ def participant_signals(context: DriveContext) -> SignalColumns:
     gap = relations.gap(context)
     bodies = context.tracks.participants
     speeds = context.zero_if_standing(context.extents.along * KMH)
-    follows = (station == relations.BEHIND) & (lateral == relations.SAME_LANE)
+    follows = _follows(station, lateral)
     return SignalColumns(
         about={
             "position": relations.position(context),
@@ -42,6 +42,17 @@ def participant_signals(context: DriveContext) -> SignalColumns:
         },
         only={"in_the_road": context.tracks.of_type("vulnerable_user")},
     )
+
+
+def _follows(station: relations.Codes, lateral: relations.Codes) -> Flags:
+    follows: Flags = (station == relations.BEHIND) & (lateral == relations.SAME_LANE)
+    return follows
+
+
+def gap_beside_safe_distance(context: DriveContext) -> tuple[Floats, Floats]:
+    """The two distances (m) that ``safe_gap`` compares; NaN where ego does not follow."""
+    follows = _follows(relations.station(context), relations.lateral(context))
+    return np.where(follows, relations.gap(context), np.nan), safe_distance(context)
 
 
 def _headway(context: DriveContext, gap: Floats) -> Floats:

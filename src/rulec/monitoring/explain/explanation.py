@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from types import MappingProxyType
+from typing import Protocol, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
@@ -15,6 +16,7 @@ from rulec.logic.causes import deciding_instants
 from rulec.logic.kleene import Unknown, holds, objects_counted, weighted_sum
 from rulec.logic.printing import formula_text, term_text
 from rulec.logic.semantics import values_of_parts
+from rulec.monitoring.explain.margins import Margin, margin_in
 from rulec.monitoring.explain.nearest_satisfying import Letter, Repair, nearest_satisfying
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_view import StateView
@@ -32,6 +34,7 @@ class Observation:
     """Read of a rule, such as ``position(v1)``, with its values by state.
 
     ``unit`` is a quantity's. ``objects`` are, for a count, those that counted in each state.
+    ``margins`` are, for a signal that was decided by a number, by how much, as far as is known.
     ``changed``: does the rule tell the value in the decisive state from the one before?
     ``decides``: does a part that decides read it?
     """
@@ -42,6 +45,7 @@ class Observation:
     decides: bool
     unit: str = ""
     objects: tuple[tuple[str, ...], ...] | None = None
+    margins: tuple[Margin | None, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +53,8 @@ class Part:
     """Subformula at a ``depth`` of nesting, with its truth by state.
 
     ``changed``: is its value in the decisive state another than in the one before? ``decides``: is
-    it one of those that, at some instant, make the formula come out as it does?
+    it one of those that, at some instant, make the formula come out as it does? ``margins`` are a
+    comparison's by state.
     """
 
     formula: ltl.Formula
@@ -58,6 +63,7 @@ class Part:
     values: tuple[bool, ...]
     changed: bool
     decides: bool
+    margins: tuple[Margin | None, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,9 +88,31 @@ class Explanation:
     repair: tuple[Repair, ...] | None
     vocabulary: Vocabulary
 
+    def margins(self) -> list[Margin]:
+        """By how much: the comparisons of quantities that decide, in the decisive state."""
+        at = self.states.index(self.decisive)
+        margins = [fact.margins[at] for fact in self.facts if fact.decides and fact.margins]
+        margins += [part.margins[at] for part in self.parts if part.decides and part.margins]
+        return [margin for margin in dict.fromkeys(margins) if margin is not None]
 
-def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> Explanation:
-    """Explain a violation that ``verify`` reported for this trace and rulebook."""
+
+class Deciding(Protocol):
+    """The numbers by which a signal about objects was decided."""
+
+    def margin(self, item: str, state: int) -> Margin | None:
+        """The margin for an object in a state of the trace."""
+
+
+def explain(
+    violation: Violation,
+    trace: Trace,
+    rulebook: CompiledRulebook,
+    decided_by: Mapping[str, Deciding] = MappingProxyType({}),
+) -> Explanation:
+    """Explain a violation that ``verify`` reported for this trace and rulebook.
+
+    ``decided_by``: signal -> the numbers behind it, for those that were decided by any.
+    """
     rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
     candidates = bindings(
         rule, rulebook.vocabulary, trace.objects, trace.present, len(trace.states)
@@ -114,12 +142,25 @@ def explain(violation: Violation, trace: Trace, rulebook: CompiledRulebook) -> E
         violation=violation,
         states=states,
         decisive=decisive,
-        facts=tuple(_facts(truths, deciding, observed)),
+        facts=tuple(
+            _with_margins(fact, decided_by, states) for fact in _facts(truths, deciding, observed)
+        ),
         parts=tuple(_parts((rule.formula, formula), values, deciding, observed)),
         repair=repair
         and tuple([replace(change, place=binding.first + change.place) for change in repair]),
         vocabulary=rulebook.vocabulary,
     )
+
+
+def _with_margins(
+    fact: Observation, decided_by: Mapping[str, Deciding], states: Sequence[int]
+) -> Observation:
+    name, _, rest = fact.text.partition("(")
+    if name not in decided_by:
+        return fact
+    numbers = decided_by[name]
+    margins = tuple([numbers.margin(rest.removesuffix(")"), state) for state in states])
+    return replace(fact, margins=margins)
 
 
 def _shown(stretch: range, decisive: int) -> tuple[int, ...]:
@@ -174,6 +215,13 @@ class _ObservedStates:
             )
             for view in self.views
         ]
+
+    def margins(self, comparison: ltl.Comparison) -> tuple[Margin | None, ...]:
+        """The margins of a comparison in the states that are shown; none of one of counts."""
+        if any(isinstance(term, ltl.Count) for _, term in comparison.terms):
+            return ()
+        margins = [margin_in(comparison, self.bound, self.views[number]) for number in self.shown]
+        return tuple([None if isinstance(one, Unknown) else one for one in margins])
 
     def changes(self, values: Sequence[object]) -> bool:
         """Tell whether the decisive state's value differs from the one before."""
@@ -235,6 +283,7 @@ def _parts(
         values=tuple(truths[stepped][n] for n in observed.shown),
         changed=observed.changes(truths[stepped]),
         decides=stepped in deciding,
+        margins=observed.margins(written) if isinstance(written, ltl.Comparison) else (),
     )
     match formulas:
         case ltl.Unary(_, operand), ltl.Unary(_, same):

@@ -11,14 +11,20 @@ from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import LabelText, Mark, Picture, Polyline
 from rulec.report.pictures.drawing.label_placement import Placing
 from rulec.report.pictures.picture_captions import ticks
-from rulec.report.pictures.trace_ribbon import Ribbon, RibbonRow, extremes, in_words
+from rulec.report.pictures.trace_ribbon import (
+    Ribbon,
+    RibbonRow,
+    ValueRun,
+    extremes,
+    in_words,
+    value_style,
+)
 from rulec.report.verdicts.verdict_report import MOST_VIOLATIONS, in_a_line
 
 WIDEST_TITLE = 34
 
 _ROW = 24.0
 _TOP = 4.0
-_COLOURS = 7
 _INDENT = 4 * canvas.CHARACTER
 
 
@@ -77,7 +83,9 @@ def _explanations(
     if len(ribbon.violations) > MOST_VIOLATIONS:
         notes.append(f"and {len(ribbon.violations) - MOST_VIOLATIONS:,} more")
     if ribbon.left_out:
-        notes.append(f"{ribbon.left_out:,} row{'s' * (ribbon.left_out != 1)} of defaults left out")
+        rows = f"{ribbon.left_out:,} row{'s' * (ribbon.left_out != 1)}"
+        asked = "no violated rule reads" if ribbon.violations else "are all default"
+        notes.append(f"without {rows} that {asked}")
     for note in notes:
         labels.append(LabelText(note, (canvas.MARGIN, y), style="faint"))
         y += canvas.LINE_HEIGHT
@@ -117,23 +125,67 @@ def _violations(ribbon: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
 def _segments(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
     """A segment for each run of a value, and the value where there is room for it."""
     for run in row.runs:
-        if run.value is not None:
-            left, right = axis.x(run.first), axis.x(run.last + 1)
-            text = in_words(run.value)
-            style = f"value{row.values.index(run.value) % _COLOURS}"
-            when = f"{run.first * axis.step_s:g} s to {(run.last + 1) * axis.step_s:g} s"
-            box = (left, y + 2, right, y + _ROW - 2)
-            yield canvas.filled(box, style, f"{row.title}: {text}, {when}")
-            if canvas.text_width([text]) + 6 <= right - left:
-                yield LabelText(text, ((left + right) / 2, y + _ROW / 2), "middle", "name")
+        if run.value is None:
+            yield from _unknown(row, run, axis, y)
+            continue
+        left, right = axis.x(run.first), axis.x(run.last + 1)
+        text = in_words(run.value)
+        tip = f"{row.title}: {text}, {_when(run, axis)}"
+        yield canvas.filled((left, y + 2, right, y + _ROW - 2), value_style(row, run.value), tip)
+        if canvas.text_width([text]) + 6 <= right - left:
+            yield LabelText(text, ((left + right) / 2, y + _ROW / 2), "middle", "name")
+
+
+def _when(run: ValueRun, axis: _Axis) -> str:
+    return f"{run.first * axis.step_s:g} s to {(run.last + 1) * axis.step_s:g} s"
+
+
+def _unknown(row: RibbonRow, run: ValueRun, axis: _Axis, y: float) -> Iterator[Mark]:
+    """A hatched segment; nothing where nobody is there to have a value."""
+    if not run.unknown:
+        return
+    left, right = axis.x(run.first), axis.x(run.last + 1)
+    box = (left, y + 2, right, y + _ROW - 2)
+    yield canvas.filled(box, "unknown", f"{row.title}: unknown, {_when(run, axis)}")
+    height = box[3] - box[1]
+    for n in range(1, int((right - left + height) / 6) + 1):
+        foot = left + 6.0 * n
+        up = min(foot - left, height)
+        down = max(foot - right, 0.0)
+        if up > down:
+            ends = (foot - down, box[3] - down), (foot - up, box[3] - up)
+            yield Polyline(ends, "hatch")
+
+
+def ribbon_entries(ribbon: Ribbon) -> list[tuple[str, str]]:
+    """What the styles of a ribbon mean, for the legend."""
+    used = {
+        value_style(row, run.value): row
+        for row in ribbon.rows
+        for run in row.runs
+        if (row.values and run.value is not None) or run.unknown
+    }
+    entries = [("true", "true"), ("off", "false"), ("unknown", "unknown")]
+    shown = [(style, text) for style, text in entries if style in used]
+    words = [style for style in used if style.startswith("word")]
+    if words:
+        shown.append((words[0], "other colours: a word each"))
+    if any(not row.values for row in ribbon.rows):
+        shown.append(("curve", "a number, from its least to its greatest value"))
+    if ribbon.violations:
+        shown.append(("moment", "a violation is decided"))
+    return shown
 
 
 def _curve(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
     low, high = extremes(row)
     scale = (_ROW - 8) / (high - low) if high > low else 0.0
     bottom = y + _ROW - 4 if high > low else y + _ROW / 2
-    for there, group in groupby(row.runs, key=lambda run: run.value is not None):
-        if there:
+    for known, group in groupby(row.runs, key=lambda run: run.value is not None):
+        if not known:
+            for run in group:
+                yield from _unknown(row, run, axis, y)
+        else:
             points = [
                 (axis.x(state), bottom - (float(run.value or 0) - low) * scale)
                 for run in group

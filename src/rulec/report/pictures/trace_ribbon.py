@@ -15,17 +15,21 @@ from rulec.report.verdicts.violation_table import shown
 from rulec.trace import State, Trace, Value
 from rulec.vocabulary import Enumeration, Quantity, Vocabulary
 
+WORD_STYLES = 6
+"""So many styles there are for the values of enumerations."""
+
 
 @dataclass(frozen=True, slots=True)
 class ValueRun:
     """A run of states, ``first`` to ``last`` included, with a constant value.
 
-    ``value`` is None where nothing is said, or who it is about is not there.
+    ``value`` is None where it is ``unknown``, or who it is about is not there.
     """
 
     first: int
     last: int
     value: Value | None
+    unknown: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +47,7 @@ class RibbonRow:
 
 @dataclass(frozen=True, slots=True)
 class Ribbon:
-    """A trace's rows and violations; ``left_out`` further rows are all default."""
+    """A trace's rows and violations; ``left_out`` further rows are default or not asked for."""
 
     trace: Trace
     rows: tuple[RibbonRow, ...]
@@ -56,12 +60,17 @@ class Ribbon:
 
 
 def ribbon(
-    trace: Trace, rules: CompiledRulebook, verdict: Verdict, only: Collection[str] = ()
+    trace: Trace,
+    rules: CompiledRulebook,
+    verdict: Verdict,
+    only: Collection[str] = (),
+    *,
+    every_row: bool = False,
 ) -> Ribbon:
-    """Collect the rows that the rules read, of nobody, of each object, then of pairs.
+    """Collect the rows that violated rules read: of nobody, of objects in question, of pairs.
 
-    What the trace does not speak of has a row only if a rule that is violated reads it. ``only``:
-    the objects to tell of, if not of all.
+    If there is no violation, or with ``every_row``, those that any rule reads and the trace speaks
+    of. ``only``: the objects to tell of, if not of all.
     """
     shown_objects = set(only) or set(trace.objects)
     violations = tuple(
@@ -69,20 +78,22 @@ def ribbon(
         for violation in verdict.violations
         if shown_objects.issuperset(violation.binding.values())
     )
-    violated = {violation.rule for violation in violations}
-    # Name -> whether a violated rule reads it.
-    read: dict[str, bool] = {}
-    for rule in rules.rules:
-        for name in names_in(rule.formula):
-            read[name] = read.get(name, False) or rule.name in violated
+    reads = {rule.name: tuple(names_in(rule.formula)) for rule in rules.rules}
+    asked = every_row or not violations
     rows = []
     left_out = 0
-    for objects in [(), *((name,) for name in trace.objects), *_pairs(trace, read)]:
-        for name, matters in read.items() if shown_objects.issuperset(objects) else ():
+    names = list(dict.fromkeys(name for rule in rules.rules for name in reads[rule.name]))
+    for objects in [(), *((name,) for name in trace.objects), *_pairs(trace, names)]:
+        for name in names if shown_objects.issuperset(objects) else ():
             row = _row(trace, rules.vocabulary, name, objects)
             if row is None:
                 continue
-            if matters or any(_said(state, name, objects) for state in trace.states):
+            matters = any(
+                name in reads[violation.rule]
+                and set(violation.binding.values()).issuperset(objects)
+                for violation in violations
+            )
+            if matters or (asked and any(_said(state, name, objects) for state in trace.states)):
                 rows.append(row)
             else:
                 left_out += 1
@@ -114,13 +125,15 @@ def _row(
     ):
         return None
     presences = [trace.present.get(item, (0, len(trace.states))) for item in objects]
-    values = [
-        value_in(state, name, objects, declaration)
-        if all(first <= number <= last for first, last in presences)
-        else None
-        for number, state in enumerate(trace.states)
+    there = [
+        all(first <= number <= last for first, last in presences)
+        for number in range(len(trace.states))
     ]
-    if all(value is None for value in values):
+    values = [
+        value_in(state, name, objects, declaration) if present else None
+        for state, present in zip(trace.states, there, strict=True)
+    ]
+    if not any(there):
         return None
     title = f"{name}({', '.join(objects)})" if objects else name
     possible: tuple[Value, ...] = (False, True)
@@ -130,7 +143,7 @@ def _row(
         case Quantity():
             possible = ()
             title += f" in {declaration.unit}" if declaration.unit else ""
-    return RibbonRow(title, objects, possible, tuple(_runs(values)))
+    return RibbonRow(title, objects, possible, tuple(_runs(values, there)))
 
 
 def _said(state: State, name: str, objects: Sequence[str]) -> bool:
@@ -140,17 +153,29 @@ def _said(state: State, name: str, objects: Sequence[str]) -> bool:
     return value is not None
 
 
-def _runs(values: Sequence[Value | None]) -> Iterator[ValueRun]:
+def _runs(values: Sequence[Value | None], there: Sequence[bool]) -> Iterator[ValueRun]:
     at = 0
-    for value, same in groupby(values):
+    for (value, present), same in groupby(zip(values, there, strict=True)):
         first, at = at, at + sum(1 for _ in same)
-        yield ValueRun(first, at - 1, value)
+        yield ValueRun(first, at - 1, value, unknown=present and value is None)
+
+
+_LIGHTS = {"red_light": "red", "amber_light": "yellow", "green_light": "green"}
+
+
+def value_style(row: RibbonRow, value: Value | None) -> str:
+    """The style of a value: what is true or false has other ones than words, lights their own."""
+    if value is None:
+        return "unknown"
+    if isinstance(value, bool):
+        return "true" if value else "off"
+    return _LIGHTS.get(str(value)) or f"word{row.values.index(value) % WORD_STYLES}"
 
 
 def extremes(row: RibbonRow) -> tuple[float, float]:
     """The least and the greatest value of a quantity."""
     numbers = [float(run.value) for run in row.runs if run.value is not None]
-    return min(numbers), max(numbers)
+    return min(numbers, default=0.0), max(numbers, default=0.0)
 
 
 def in_words(value: Value) -> str:

@@ -81,17 +81,17 @@ def fitting(
     """Columns that fit into the room, each as a range of states.
 
     If there is no room for all, neighbours that are alike become one. If that is not enough, the
-    decisive one and the one before it stay, and as many as possible of: the one before these, the
-    one behind them, the first, and those further back.
+    first, the decisive one and the one before it stay, and as many as possible of: the one before
+    these, the one behind them, and those further back.
     """
     places = [range(n, n + 1) for n in range(len(columns))]
     if sum(width(columns, states, place) for place in places) <= columns_left:
         return places
     places = _merged(columns, states, decisive)
     at = next(n for n, place in enumerate(places) if decisive in place)
-    needed = [one for one in (at, at - 1) if one >= 0]
+    needed = [one for one in (0, at, at - 1) if one >= 0]
     chosen: list[int] = []
-    for one in dict.fromkeys([*needed, at - 2, at + 1, 0, *range(at - 3, 0, -1)]):
+    for one in dict.fromkeys([*needed, at - 2, at + 1, *range(at - 3, 0, -1)]):
         if 0 <= one < len(places):
             columns_left -= width(columns, states, places[one])
             if columns_left < 0 and one not in needed:

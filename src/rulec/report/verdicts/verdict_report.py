@@ -21,11 +21,12 @@ def as_text(
     explained: Sequence[Explanation] = (),
     *,
     every_part: bool = False,
+    width: int = violation_table.WIDTH,
 ) -> str:
     """Write a trace's violations, a line each, below its name.
 
-    ``explained`` are explanations of the first violations; each follows its line, folded unless
-    ``every_part`` of it is wanted.
+    ``explained`` are explanations of the first violations; each follows its line, folded to a
+    ``width`` unless ``every_part`` of it is wanted.
     """
     if not verdict.violations:
         return f"{visible(verdict.trace)}: {styled('satisfied', 'green')}"
@@ -41,7 +42,9 @@ def as_text(
         line = in_a_line(violation, rules[violation.rule], rulebook.name)
         lines.append(f"  {visible(line)}")
         if number < len(explained):
-            lines.append(violation_table.as_text(explained[number], every_part=every_part))
+            lines.append(
+                violation_table.as_text(explained[number], every_part=every_part, width=width)
+            )
     if len(verdict.violations) > len(shown):
         lines.append(f"  and {len(verdict.violations) - len(shown):,} more; --json has them all")
     return "\n".join(lines)

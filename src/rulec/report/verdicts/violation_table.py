@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
-from itertools import groupby
 from operator import itemgetter
 from textwrap import wrap
 
 from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.explain.explanation import Explanation, Observation
+from rulec.monitoring.explain.margins import Margin
 from rulec.report.text.guard_text import GuardWording, runs
 from rulec.report.text.terminal_text import styled, table_lines, visible
 from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
 from rulec.trace import Value
 
 WIDTH = 100
-"""A wider table is folded, a longer sentence broken."""
+"""A wider table is folded, a longer sentence broken, where no terminal says how wide it is."""
 
-WIDEST = 60
-"""A part of the formula is cut at so many characters; what it is made of stands below it."""
+WIDEST = 0.6
+"""A part of the formula is cut at this share of the width; what it is made of stands below it."""
 
-NARROW = 48
+NARROW = 0.48
 """The same where the table would be too wide."""
 
 WIDEST_NUMBER = 20
@@ -41,13 +42,13 @@ MOST_OF_NAMES = 16
 INDENT = "    "
 
 
-def as_text(explanation: Explanation, *, every_part: bool = False) -> str:
+def as_text(explanation: Explanation, *, every_part: bool = False, width: int = WIDTH) -> str:
     """The rule's sentence and table, ``*`` marking changes at the decisive state.
 
-    A large table is folded, unless ``every_part`` of it is wanted.
+    A table that is large or wider than ``width`` is folded, unless ``every_part`` is wanted.
     """
     decisive = explanation.states.index(explanation.decisive)
-    table = _table(explanation, decisive, every_part)
+    table = _table(explanation, decisive, width, every_part=every_part)
     columns = [
         [
             styled(cell, "bold" if decisive in places else "")
@@ -55,22 +56,22 @@ def as_text(explanation: Explanation, *, every_part: bool = False) -> str:
         ]
         for places in table.columns
     ]
-    lines = [INDENT + line for line in wrap(visible(explanation.rule.says), WIDTH - len(INDENT))]
+    lines = [INDENT + line for line in wrap(visible(explanation.rule.says), width - len(INDENT))]
     rows = [[f"{title} " for title in ("state", *table.titles)], *columns]
     lines += table_lines(list(zip(*rows, strict=True)), indent=INDENT, ruled=(0, table.n_facts))
-    return "\n".join([*lines, *_left_out(explanation, table), *_repair(explanation)])
+    return "\n".join([*lines, *_left_out(explanation, table), *_repair(explanation, width)])
 
 
-def _repair(explanation: Explanation) -> Iterator[str]:
+def _repair(explanation: Explanation, width: int) -> Iterator[str]:
     if explanation.repair is None:
         yield f"{INDENT}no trace of as many states keeps it"
     changes = [
         (_states(list(run)), visible(says))
-        for says, run in groupby(repaired_states(explanation), key=itemgetter(1))
+        for says, run in itertools.groupby(repaired_states(explanation), key=itemgetter(1))
     ]
     for number, (states, says) in enumerate(changes[:MOST_CHANGES]):
         line = f"{'and' if number else 'kept'} if {states}: {says}"
-        yield from wrap(line, WIDTH, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+        yield from wrap(line, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
     if len(changes) > MOST_CHANGES:
         yield f"{INDENT}… and {len(changes) - MOST_CHANGES:,} more; --json has them all"
 
@@ -106,13 +107,13 @@ class _Table:
     columns: list[range]
 
 
-def _table(explanation: Explanation, decisive: int, every_part: bool) -> _Table:
+def _table(explanation: Explanation, decisive: int, width: int, *, every_part: bool) -> _Table:
     """Titles are cut before states are left out."""
-    for widest in (WIDEST, NARROW):
-        table = _rows(explanation, decisive, every_part, widest)
+    for share in (WIDEST, NARROW):
+        table = _rows(explanation, decisive, every_part, int(share * width))
         if every_part:
             return table
-        columns_left = WIDTH - len(INDENT) - max(map(len, ("state", *table.titles))) - 1
+        columns_left = width - len(INDENT) - max(map(len, ("state", *table.titles))) - 1
         columns = fitting(table.values, explanation.states, decisive, columns_left)
         if columns == table.columns:
             break
@@ -124,7 +125,7 @@ def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int
     facts = [fact for fact in explanation.facts if whole or fact.decides]
     parts = (titled if whole else folded)(explanation.parts, widest)
     cells = [_cells(fact, decisive) for fact in facts]
-    cells += [[shown(value) for value in one.values] for _, one in parts]
+    cells += [_with_margins(map(shown, one.values), one.margins) for _, one in parts]
     return _Table(
         [*(_title(fact, widest) for fact in facts), *(title for title, _ in parts)],
         len(facts),
@@ -151,11 +152,17 @@ def _title(fact: Observation, widest: int) -> str:
 
 
 def _cells(fact: Observation, decisive: int) -> list[str]:
-    cells = [shown(value) for value in fact.values]
+    cells = _with_margins(map(shown, fact.values), fact.margins)
     for n, names in enumerate(fact.objects or ()):
         cells[n] += f": {cut(visible(', '.join(names)), MOST_OF_NAMES)}" if names else ""
     cells[decisive] += "*" * fact.changed
     return cells
+
+
+def _with_margins(cells: Iterable[str], margins: Sequence[Margin | None]) -> list[str]:
+    """Truth values, beside them how narrowly, such as ``F 12.3 < 15.5``."""
+    beside = margins or itertools.repeat(None)
+    return [f"{cell} {margin.sides}" if margin else cell for cell, margin in zip(cells, beside)]  # noqa: B905
 
 
 def shown(value: Value) -> str:

@@ -1,8 +1,8 @@
-"""A drawing as the bytes of an SVG, PNG or HTML file."""
+"""A drawing as the bytes of an SVG, PNG, PDF or HTML file."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -10,14 +10,14 @@ from typing import Literal, cast, get_args
 
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
-from rulec.report.pictures.drawing.png import as_png
-from rulec.report.pictures.drawing.styles import as_css
+from rulec.report.pictures.drawing.matplotlib_file import Printed, as_printed
+from rulec.report.pictures.drawing.styles import Theme, as_css
 from rulec.report.text.terminal_text import visible
 
-Format = Literal["svg", "png", "html"]
+Format = Literal["svg", "png", "pdf", "html"]
 
 # The page may show itself and fetch nothing.
-_POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 
 _SLIDER = """\
 <form id="time" hidden>
@@ -30,11 +30,15 @@ _SLIDER = """\
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """Titled pictures, one for each moment, with a legend of their colours."""
+    """Titled pictures, one for each moment, with a legend of their colours.
+
+    ``page`` makes the page for a browser in a theme, if it is not just these pictures.
+    """
 
     title: str
     pictures: Sequence[Picture]
     legend: Picture | None = None
+    page: Callable[[Theme], str] | None = None
 
 
 def format_of(file: str) -> Format:
@@ -43,13 +47,13 @@ def format_of(file: str) -> Format:
     return cast("Format", ending) if ending in get_args(Format) else "svg"
 
 
-def as_bytes(drawing: Drawing, form: str, file: str) -> bytes:
-    """The file's content.
+def as_bytes(drawing: Drawing, form: str, file: str, theme: Theme = "auto") -> bytes:
+    """The file's content; PNG and PDF are light where the reader's theme would decide.
 
-    Raises RulecError: R0707 if a PNG cannot be made.
+    Raises RulecError: R0707 if a PNG or PDF cannot be made.
     """
     if form == "html":
-        return _as_page(drawing).encode()
+        return (drawing.page(theme) if drawing.page else _as_page(drawing)).encode()
     width = max(picture.width for picture in drawing.pictures)
     lines = canvas.paragraph(
         drawing.title, (canvas.MARGIN, canvas.MARGIN), width - 2 * canvas.MARGIN, "strong"
@@ -59,7 +63,9 @@ def as_bytes(drawing: Drawing, form: str, file: str) -> bytes:
     )
     below = [drawing.legend] if drawing.legend else []
     whole = canvas.stacked(drawing.title, [head, *drawing.pictures, *below])
-    return as_png(whole, file) if form == "png" else f"{as_svg(whole)}\n".encode()
+    if form in ("png", "pdf"):
+        return as_printed(whole, cast("Printed", form), file, dark=theme == "dark")
+    return f"{as_svg(whole, theme)}\n".encode()
 
 
 def _as_page(drawing: Drawing) -> str:
@@ -70,7 +76,7 @@ def _as_page(drawing: Drawing) -> str:
     parts = [
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
         f"<title>{title}</title>",
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">',
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         '<meta name="color-scheme" content="light dark">',
         f"<style>\n{as_css(_styles([*drawing.pictures, *below]))}\n{_beside('page.css')}</style>",
@@ -94,9 +100,9 @@ def _figure(picture: Picture) -> str:
     return f'<figure data-title="{name}" tabindex="0">\n{drawn}\n</figure>'
 
 
-def as_svg(picture: Picture) -> str:
+def as_svg(picture: Picture, theme: Theme = "auto") -> str:
     """A file of its own."""
-    return _inline_svg(picture, f"<style>\n{as_css(_styles([picture]))}\n</style>\n")
+    return _inline_svg(picture, f"<style>\n{as_css(_styles([picture]), theme)}\n</style>\n")
 
 
 def _styles(pictures: Iterable[Picture]) -> set[str]:

@@ -9,6 +9,10 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Literal
+
+Theme = Literal["auto", "light", "dark"]
+"""The ground; ``auto`` is the one that its reader prefers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,13 +58,34 @@ STYLES: Mapping[str, Style] = MappingProxyType(
         "violation": Style(stroke="rejected", width=5),
         "violated": Style("swept", "rejected", 1.5),
         "off": Style("ground", "faint", 0.8),
+        "true": Style("chosen", "satisfying", 0.8),
         **{
-            f"value{number}": Style(fill, "faint", 0.8)
+            f"word{number}": Style(fill, "faint", 0.8)
             for number, fill in enumerate(
-                ("cell", "swept", "crossing", "chosen", "value4", "value5", "taken")
+                ("crossing", "value4", "value5", "value6", "value7", "taken")
             )
         },
         "curve": Style(stroke="satisfying", width=1.8),
+        "unknown": Style("ground", "faint", 0.8, (2, 2)),
+        "hatch": Style(stroke="unsaid", width=1),
+        "verge": Style("verge"),
+        "road": Style("road", "road", 0.8),
+        "footway": Style("footway", "footway", 0.8),
+        "zebra": Style("crossing", "faint", 0.8),
+        "solid": Style(stroke="paint", width=1.6),
+        "broken": Style(stroke="paint", width=1.4, dash=(9, 9)),
+        "unsaid": Style(stroke="unsaid", width=0.8),
+        "vehicle": Style("vehicle", "ink", 1),
+        "against": Style("swept", "rejected", 2),
+        "own": Style("chosen", "satisfying", 2),
+        "trail": Style(stroke="satisfying", width=1.4, dash=(1, 4)),
+        "link": Style(stroke="rejected", width=2),
+        "number": Style("ink", "ground", 3, bold=True, halo=True),
+        "board": Style("ground", "ink", 1.2),
+        "light": Style("ground", "ink", 1),
+        "red": Style("red", "ink", 1),
+        "yellow": Style("yellow", "ink", 1),
+        "green": Style("green", "ink", 1),
     }
 )
 
@@ -77,6 +102,17 @@ _ON_LIGHT_AND_DARK = {
     "satisfying": ("#0072b2", "#6cb8f0"),
     "rejected": ("#d55e00", "#ff9d5c"),
     "unused": ("#8d969f", "#6b747d"),
+    "verge": ("#f4f6f3", "#12161a"),
+    "road": ("#dfe3e6", "#2a3037"),
+    "footway": ("#eae4d8", "#2b2a26"),
+    "paint": ("#7b858e", "#87919b"),
+    "unsaid": ("#b3bac1", "#4a525a"),
+    "vehicle": ("#f7f8f9", "#59636d"),
+    "red": ("#ff9a8d", "#a5231a"),
+    "yellow": ("#ffd54d", "#7a5c00"),
+    "green": ("#7fd6a4", "#0b6b40"),
+    "value6": ("#d9d2f0", "#3d3466"),
+    "value7": ("#e6d8c3", "#4d3d26"),
     "value4": ("#bfe5d9", "#0c4a3a"),
     "value5": ("#edcfdf", "#5c2f49"),
 }
@@ -85,14 +121,16 @@ LIGHT = MappingProxyType({name: light for name, (light, _) in _ON_LIGHT_AND_DARK
 DARK = MappingProxyType({name: dark for name, (_, dark) in _ON_LIGHT_AND_DARK.items()})
 
 
-def as_css(used: Collection[str]) -> str:
-    """CSS classes of the styles, light and, where preferred on screen, dark."""
+def as_css(used: Collection[str], theme: Theme = "auto") -> str:
+    """CSS classes of the styles; ``auto`` is light and, where preferred on screen, dark."""
+    first = DARK if theme == "dark" else LIGHT
     dark = "\n".join(f"  {rule}" for rule in _rules(used, DARK, shape=False))
+    preferred = f"@media screen and (prefers-color-scheme: dark) {{\n{dark}\n}}"
     return "\n".join(
         [
             'text { font: 12px ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace }',
-            *_rules(used, LIGHT, shape=True),
-            f"@media screen and (prefers-color-scheme: dark) {{\n{dark}\n}}",
+            *_rules(used, first, shape=True),
+            *([preferred] if theme == "auto" else []),
         ]
     )
 

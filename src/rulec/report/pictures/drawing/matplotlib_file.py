@@ -1,4 +1,4 @@
-"""A picture as PNG.
+"""A picture as PNG or PDF.
 
 The only file that knows matplotlib, which is installed on request.
 """
@@ -7,31 +7,38 @@ from __future__ import annotations
 
 import io
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 from rulec.diagnostics import SourceLocation
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.picture_messages import PNG_UNAVAILABLE
-from rulec.report.pictures.drawing.styles import LIGHT, STYLES
+from rulec.report.pictures.drawing.styles import DARK, LIGHT, STYLES
 from rulec.report.text.terminal_text import visible
 
 DOTS_PER_PX = 2
 """So that it can be printed."""
 
 MOST_DOTS = 30_000
-"""A PNG that is larger either way is drawn with one dot a px, or not at all."""
+"""A file that is larger either way is drawn with one dot a px, or not at all."""
 
 _POINTS = 72 / 96
 """A px in points, in which matplotlib measures lines and letters."""
 
 
+Printed = Literal["png", "pdf"]
+
+_METADATA: Mapping[str, Mapping[str, None]] = {
+    "png": {"Software": None},
+    "pdf": {"Creator": None, "Producer": None, "CreationDate": None},
+}
+
 _ALIGNMENTS = {"start": "left", "middle": "center", "end": "right"}
 
 
-def as_png(picture: Picture, file: str) -> bytes:
-    """The picture on light ground.
+def as_printed(picture: Picture, form: Printed, file: str, *, dark: bool = False) -> bytes:
+    """The picture on light or dark ground.
 
     Raises RulecError: R0707 if matplotlib is missing, or the picture is too large.
     """
@@ -40,40 +47,45 @@ def as_png(picture: Picture, file: str) -> bytes:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
-        message = "PNG takes the package `matplotlib`, which is not installed"
+        message = f"{form.upper()} takes the package `matplotlib`, which is not installed"
         way_out = "`pip install 'rulec[pictures]'`, or write SVG or HTML"
         raise PNG_UNAVAILABLE.error(SourceLocation(file), message, help=way_out) from None
     largest = max(picture.width, picture.height)
     if largest > MOST_DOTS:
-        message = f"the picture is {largest:,.0f} px long; as PNG it may have {MOST_DOTS:,}"
+        message = (
+            f"the picture is {largest:,.0f} px long; as {form.upper()} it may have {MOST_DOTS:,}"
+        )
         way_out = "write SVG or HTML, or draw fewer layers"
         raise PNG_UNAVAILABLE.error(SourceLocation(file), message, help=way_out)
     dots = DOTS_PER_PX if largest * DOTS_PER_PX <= MOST_DOTS else 1
-    figure = Figure((picture.width / 96, picture.height / 96), 96 * dots, facecolor=LIGHT["ground"])
+    colours = DARK if dark else LIGHT
+    size = picture.width / 96, picture.height / 96
+    figure = Figure(size, 96 * dots, facecolor=colours["ground"])
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_axis_off()
     axes.set_xlim(0, picture.width)
     axes.set_ylim(picture.height, 0)
     for order, mark in enumerate(picture.marks):
-        _draw(axes, mark, order)
+        _draw(axes, mark, order, colours)
     stream = io.BytesIO()
     FigureCanvasAgg(figure)
     with warnings.catch_warnings():
         # A letter that the font does not have is drawn as a box; nobody could do anything about it.
         warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)
-        figure.savefig(stream, format="png", metadata={"Software": None})
+        # Nothing that another run would write differently.
+        figure.savefig(stream, format=form, metadata=_METADATA[form])
     return stream.getvalue()
 
 
-def _draw(axes: Any, mark: Mark, order: int) -> None:
-    # As above: only who asks for PNG has matplotlib.
+def _draw(axes: Any, mark: Mark, order: int, colours: Mapping[str, str]) -> None:
+    # As above: only who asks for PNG or PDF has matplotlib.
     from matplotlib.lines import Line2D
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
     from matplotlib.patheffects import withStroke
 
     style = STYLES[mark.style]
-    stroke = LIGHT[style.stroke] if style.stroke else "none"
+    stroke = colours[style.stroke] if style.stroke else "none"
     width = style.width * _POINTS
     dash = (0, tuple(length * _POINTS for length in style.dash)) if style.dash else "solid"
     match mark:
@@ -81,7 +93,7 @@ def _draw(axes: Any, mark: Mark, order: int) -> None:
             turned_rings = [_turning(ring, left=n == 0) for n, ring in enumerate(rings)]
             paths = [Path([*ring, ring[0]], closed=True) for ring in turned_rings]
             path = Path.make_compound_path(*paths)
-            fill = LIGHT[style.fill] if style.fill else "none"
+            fill = colours[style.fill] if style.fill else "none"
             axes.add_patch(
                 PathPatch(path, fc=fill, ec=stroke, lw=width, ls=dash, zorder=order, clip_on=False)
             )
@@ -94,7 +106,7 @@ def _draw(axes: Any, mark: Mark, order: int) -> None:
                 x,
                 y,
                 visible(text).replace("$", r"\$"),
-                color=LIGHT[style.fill],
+                color=colours[style.fill],
                 size=12 * _POINTS,
                 family="DejaVu Sans Mono",
                 weight="bold" if style.bold else "normal",

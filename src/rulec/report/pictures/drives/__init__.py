@@ -1,0 +1,1 @@
+"""Pictures of recorded drives: the road from above, moment by moment."""

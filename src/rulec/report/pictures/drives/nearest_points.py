@@ -1,0 +1,46 @@
+"""The nearest points of two bodies, state by state."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.report.pictures.drives.drive_scene import Body
+from rulec.scenario.recorded.recording import Points
+
+_AS_NEAR_M = 0.25
+"""Points that are farther by less are as near: of parallel sides the middle is taken."""
+
+
+def nearest_points(ego: Body, other: Body | None, states: int) -> NDArray[float64]:
+    """Nearest points (x, y, x, y) by state, NaN where one of both is missing."""
+    links = np.full((states, 4), np.nan)
+    for state in range(states) if other else ():
+        own, theirs = ego.outline(state), other.outline(state) if other else None
+        if own is not None and theirs is not None:
+            links[state] = _nearest(own, theirs)
+    return links
+
+
+def _nearest(own: Points, theirs: Points) -> NDArray[float64]:
+    """The middle of all corners and feet that are as near as the nearest ones."""
+    feet, corners = _feet(own, theirs), _feet(theirs, own)
+    pairs = np.concatenate([np.hstack(feet[:2]), np.hstack(corners[1::-1])])
+    distances = np.concatenate([feet[2], corners[2]])
+    nearest: NDArray[float64] = pairs[distances <= distances.min() + _AS_NEAR_M]
+    low, high = nearest.min(axis=0), nearest.max(axis=0)
+    middle: NDArray[float64] = (low + high) / 2 if len(nearest) > 1 else nearest[0]
+    return middle
+
+
+def _feet(corners: Points, ring: Points) -> tuple[Points, Points, NDArray[float64]]:
+    """Corners, each with its nearest point on a ring, and their distances."""
+    start, along = ring, np.roll(ring, -1, axis=0) - ring
+    length = np.maximum((along**2).sum(axis=1), 1e-12)
+    part = np.clip(((corners[:, None] - start) * along).sum(axis=2) / length, 0, 1)
+    feet = start + part[..., None] * along
+    distances = np.hypot(*np.moveaxis(corners[:, None] - feet, 2, 0))
+    nearest = distances.argmin(axis=1)
+    rows = np.arange(len(corners))
+    return corners, feet[rows, nearest], distances[rows, nearest]

@@ -1,0 +1,203 @@
+"""A drive of a recording and its verdict, made a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.to_trace import Drive
+from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.extraction.tracks.tracks import Tracks, tracks_of
+from rulec.monitoring.explain.explanation import Explanation, explain
+from rulec.monitoring.verdict import Verdict, Violation
+from rulec.report.pictures.drives import scene_map
+from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViolation
+from rulec.report.pictures.drives.nearest_points import nearest_points
+from rulec.report.pictures.picture_captions import trace_title
+from rulec.report.pictures.trace_ribbon import in_words, ribbon
+from rulec.report.verdicts.verdict_report import in_a_line
+from rulec.scenario.recorded.recording import Points
+
+SIGHT_M = 120.0
+"""A participant that is farther from ego is not drawn."""
+
+MOST_VIOLATIONS = 50
+"""So many are drawn of a drive."""
+
+_KMH = 3.6
+
+
+def drive_scene(
+    drive: Drive,
+    verdict: Verdict,
+    verdicts: RecordingVerdicts,
+    kept: frozenset[str] | None = None,
+) -> DriveScene:
+    """The scene of a drive, with its violations of the rules ``kept``, None being all.
+
+    A recording that was mirrored to be judged is drawn as it was recorded.
+    """
+    chosen = [one for one in verdict.violations if kept is None or one.rule in kept]
+    verdict = replace(verdict, violations=tuple(chosen))
+    recording = verdicts.recording
+    if verdicts.mirrored:
+        recording = mirrored_recording(recording)
+    tracks = tracks_of(recording, verdicts.request.thresholds)
+    first = round(drive.start_s / recording.step_s)
+    columns = slice(first - tracks.first, first - tracks.first + len(drive.trace.states))
+    tracks = tracks.part(np.arange(len(tracks.participants)), columns)
+    row = next(n for n, body in enumerate(tracks.participants) if body.id == drive.ego)
+    path = np.stack([tracks.x[row], tracks.y[row]], axis=1)
+    origin: Points = np.round(path.mean(axis=0))
+    lanelets = scene_map.lanelets_near(recording, path)
+    bodies = _bodies(tracks, row, origin)
+    participants = {
+        name: _participant(name, {body.id for body in tracks.participants})
+        for name in drive.trace.objects
+    }
+    ids = {body.id: body for body in bodies}
+    steps = range(first, first + len(drive.trace.states))
+    return DriveScene(
+        title=f"{recording.name}, {trace_title(verdict, verdicts.rules)}",
+        notes=_notes(verdicts),
+        ego=drive.ego,
+        start_s=drive.start_s,
+        step_s=recording.step_s,
+        states=len(drive.trace.states),
+        areas=tuple(scene_map.road_areas(lanelets, origin)),
+        marks=tuple(scene_map.road_marks(lanelets, origin)),
+        lights=tuple(scene_map.scene_lights(lanelets, origin, steps)),
+        signs=tuple(scene_map.scene_signs(lanelets, origin)),
+        bodies=bodies,
+        violations=tuple(
+            _violation(violation, drive, verdicts.rules, ids, participants)
+            for violation in _in_time(chosen)[:MOST_VIOLATIONS]
+        ),
+        participants=participants,
+    )
+
+
+def _notes(verdicts: RecordingVerdicts) -> tuple[str, ...]:
+    mirrored = "drawn as recorded; judged as its mirror image, so that left is right in the rules"
+    return (mirrored,) * verdicts.mirrored
+
+
+def _in_time(violations: Sequence[Violation]) -> list[Violation]:
+    return sorted(violations, key=lambda one: float("inf") if one.step is None else one.step)
+
+
+def _participant(name: str, known: set[str]) -> str:
+    """The participant of an object, which has a number more when it has come back."""
+    return name if name in known else name.rpartition("_")[0]
+
+
+def _bodies(tracks: Tracks, ego: int, origin: Points) -> tuple[Body, ...]:
+    """Ego, then everybody else in sight of it at some time."""
+    distance = np.hypot(tracks.x - tracks.x[ego], tracks.y - tracks.y[ego])
+    in_sight = tracks.present & (np.nan_to_num(distance, nan=np.inf) <= SIGHT_M)
+    others = [row for row in np.flatnonzero(in_sight.any(axis=1)).tolist() if row != ego]
+    return tuple(_body(tracks, row, in_sight[row], origin) for row in (ego, *others))
+
+
+def _body(tracks: Tracks, row: int, in_sight: NDArray[np.bool_], origin: Points) -> Body:
+    body = tracks.participants[row]
+    columns = np.flatnonzero(in_sight)
+    first, last = int(columns[0]), int(columns[-1])
+    poses = np.stack([tracks.x[row], tracks.y[row], tracks.heading[row]], axis=1)
+    poses = np.where(in_sight[:, None], poses, np.nan)[first : last + 1]
+    known: dict[bytes, int] = {}
+    shapes: list[Points] = []
+    shape = np.zeros(len(poses), dtype=np.intp)
+    standing = next(iter(body.outlines.values())) if body.standing else None
+    for at in np.flatnonzero(~np.isnan(poses[:, 0])).tolist():
+        outline = body.outlines[tracks.first + first + at] if standing is None else standing
+        own = _ring(_in_own_frame(outline, poses[at]))
+        shape[at] = known.setdefault(own.tobytes(), len(shapes))
+        if shape[at] == len(shapes):
+            shapes.append(own)
+    return Body(
+        id=body.id,
+        type=body.type,
+        first=first,
+        poses=poses - (*origin, 0.0),
+        speeds=tracks.speed[row, first : last + 1] * _KMH,
+        shapes=tuple(shapes),
+        shape=shape,
+    )
+
+
+def _in_own_frame(outline: Points, pose: NDArray[float64]) -> Points:
+    x, y, heading = pose
+    cos, sin = np.cos(heading), np.sin(heading)
+    own: Points = np.round((outline - (x, y)) @ np.array([[cos, -sin], [sin, cos]]), 2) + 0.0
+    return own
+
+
+def _ring(points: Points) -> Points:
+    """The corners in their order: of a polygon the middles of its sides may stand behind them."""
+    corners = points[: len(points) // 2]
+    middles = (corners + np.roll(corners, -1, axis=0)) / 2
+    behind = len(points) % 2 == 0 and np.allclose(points[len(corners) :], middles, atol=0.02)
+    return corners if behind else points
+
+
+def _violation(
+    violation: Violation,
+    drive: Drive,
+    rules: CompiledRulebook,
+    bodies: Mapping[str, Body],
+    participants: Mapping[str, str],
+) -> SceneViolation:
+    trace = drive.trace
+    rule = next(rule for rule in rules.rules if rule.name == violation.rule)
+    only = replace(rules, rules=(rule,))
+    objects = tuple(violation.binding.values())
+    last = len(trace.states) - 1
+    state = last if violation.step is None else violation.step
+    explanation = explain(violation, trace, only, drive.decided_by)
+    against = tuple(dict.fromkeys(participants[item] for item in objects))
+    other = next((bodies[item] for item in against if item in bodies), None)
+    return SceneViolation(
+        rule=rule.name,
+        strength=violation.strength,
+        state=state,
+        time_s=drive.time_s(state),
+        title=in_a_line(violation, rule, rules.name),
+        short=", ".join(filter(None, (rule.strength, rule.cite, _whom(violation)))),
+        says=rule.says,
+        against=against,
+        measured=tuple(map(str, explanation.margins())),
+        told=tuple(_told(explanation)),
+        read=ribbon(trace, only, Verdict(trace.id, (violation,)), objects),
+        decides=frozenset(fact.text for fact in explanation.facts if fact.decides),
+        links=nearest_points(bodies[drive.ego], other, last + 1),
+        gaps=tuple(_gaps(drive, objects)),
+    )
+
+
+def _whom(violation: Violation) -> str:
+    objects = " and ".join(violation.binding.values())
+    end = "decided by the end" if violation.step is None else ""
+    return ", ".join(filter(None, (f"for {objects}" if objects else "", end)))
+
+
+def _told(explanation: Explanation) -> Iterator[str]:
+    """The values that decide, but for numbers: these are measured."""
+    at = explanation.states.index(explanation.decisive)
+    for fact in explanation.facts:
+        value = fact.values[at]
+        if fact.decides and isinstance(value, bool | str) and not any(fact.margins):
+            yield f"{fact.text} {in_words(value)}"
+
+
+def _gaps(drive: Drive, objects: Sequence[str]) -> Iterator[float | None]:
+    for state in drive.trace.states:
+        gaps = state.get("gap")
+        gap = gaps.get(objects[0]) if objects and isinstance(gaps, Mapping) else None
+        yield gap if isinstance(gap, float) else None
