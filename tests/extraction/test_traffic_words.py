@@ -133,7 +133,8 @@ def test_overtaking(x, mps, overtaking):
 )
 def test_being_overtaken(x, mps, overtaken):
     # From 8 m behind at 5 m/s more it is beside in 1.6 s, from 16 m in 3.2 s
-    assert first("being_overtaken", [going(7, 0, 1, 20), going(1, x, 2, mps)]) is overtaken
+    cars = [going(7, -60, 1, 20, count=12), going(1, x - 60, 2, mps, count=12)]
+    assert first("being_overtaken", cars) is overtaken
 
 
 @pytest.mark.parametrize(("gap_m", "safe"), [(19, False), (21, True)])

@@ -18,6 +18,9 @@ from rulec.scenario.recorded.recording import Recording, Side
 KMH = 3.6
 """km/h in one m/s."""
 
+_ACROSS = np.pi / 4
+"""The angle to the road from which on who comes from another one drives across."""
+
 _ONCOMING_COSINE = -0.7
 """The cosine of the angle to the road from which on a vehicle counts as coming towards ego."""
 
@@ -26,9 +29,10 @@ _ONCOMING_COSINE = -0.7
 class DriveContext:
     """Arrays of one drive: a row per participant, a column per state.
 
-    The rows are the participants that are ever relevant; ``ego`` and ``ego_extents`` have one.
-    ``relevant``: whether a participant counts for ego; ``touched``: the lanes that it reaches into,
-    a third axis.
+    The rows are the participants that are ever relevant or in sight; ``ego`` and ``ego_extents``
+    have one. ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's
+    lanes, so near that ego could reach it within ``catching_up_s``? ``touched``: the lanes that it
+    reaches into, a third axis.
     """
 
     recording: Recording
@@ -40,6 +44,7 @@ class DriveContext:
     tracks: Tracks
     extents: RoadExtents
     relevant: Flags
+    in_sight: Flags
     touched: Flags
 
     @property
@@ -79,9 +84,14 @@ class DriveContext:
     @cached_property
     def going_along(self) -> Flags:
         """Flags of participants that are vehicles going ego's way on its lanes."""
+        return self.relevant & self.driving_along
+
+    @cached_property
+    def driving_along(self) -> Flags:
+        """The same of those in sight, however far away."""
         drives = self.tracks.of_type("vehicle")[:, None]
         turned = abs(self.extents.turned)
-        return self.relevant & drives & (turned < 1.0) & self.touched.any(axis=-1)
+        return self.in_sight & drives & (turned < 1.0) & self.touched.any(axis=-1)
 
     def zero_if_standing(self, speed_kmh: Floats) -> Floats:
         """Speeds (km/h), exactly 0 below the threshold of standing."""
@@ -98,12 +108,18 @@ def drive_context(
     extents: RoadExtents,
     ego: int,
     columns: slice,
+    elsewhere: Flags | None = None,
 ) -> DriveContext:
-    """The part of a recording that one drive is about: ``ego``'s row, in a range of columns."""
-    own = np.array([ego])
-    relevant = _relevant(ego, tracks, extents, road, thresholds)[:, columns]
-    rows = relevant.any(axis=1).nonzero()[0]
-    others = extents.part(rows, columns)
+    """The part of a recording that one drive is about: ``ego``'s row, in a range of columns.
+
+    ``elsewhere``: who drives on lanelets that are not of the road, if anybody is matched to any.
+    """
+    near = _near(ego, tracks, extents, road, thresholds)
+    if elsewhere is not None:
+        near = {name: flags & ~_crosses(tracks, extents, elsewhere) for name, flags in near.items()}
+    near = {name: flags[:, columns] for name, flags in near.items()}
+    rows = np.any([flags.any(axis=1) for flags in near.values()], axis=0).nonzero()[0]
+    own, others = np.array([ego]), extents.part(rows, columns)
     return DriveContext(
         recording=recording,
         thresholds=thresholds,
@@ -113,15 +129,24 @@ def drive_context(
         ego_extents=extents.part(own, columns),
         tracks=tracks.part(rows, columns),
         extents=others,
-        relevant=relevant[rows],
+        relevant=near["relevant"][rows],
+        in_sight=near["in_sight"][rows],
         touched=lanes_touched(others, road, thresholds),
     )
 
 
-def _relevant(
+def _crosses(tracks: Tracks, extents: RoadExtents, elsewhere: Flags) -> Flags:
+    """Flags of cross traffic: vehicles that drive on another road, and across ego's."""
+    turned = np.abs(np.nan_to_num(extents.turned))
+    across = (turned > _ACROSS) & (turned < np.pi - _ACROSS)
+    crosses: Flags = elsewhere & across & tracks.of_type("vehicle")[:, None]
+    return crosses
+
+
+def _near(
     ego: int, tracks: Tracks, extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds
-) -> Flags:
-    """Flags of participants (rows) that count for ego, by step.
+) -> dict[str, Flags]:
+    """Flags of participants (rows) that count for ego, and that are in its sight, by step.
 
     On ego's lanes everything counts that is near; beside them only vulnerable road users, and
     oncoming vehicles that move at some time.
@@ -137,6 +162,11 @@ def _relevant(
     moves = fastest * KMH >= thresholds.standing_kmh
     oncoming = (np.cos(extents.turned) < _ONCOMING_COSINE) & moves[:, None]
     counts = (gap <= thresholds.near_m) & (on_lanes | (close & (vulnerable[:, None] | oncoming)))
-    counts[ego] = False
-    relevant: Flags = counts & ~np.isnan(own.s_min)
-    return relevant
+    reach = np.maximum(own.along - extents.along, 0.0) * thresholds.catching_up_s
+    near = {
+        "relevant": counts & ~np.isnan(own.s_min),
+        "in_sight": on_lanes & (gap <= np.maximum(thresholds.near_m, reach)),
+    }
+    for flags in near.values():
+        flags[ego] = False
+    return near

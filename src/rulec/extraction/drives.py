@@ -62,6 +62,7 @@ class Drives:
         self._junctions = junction_lanelets(recording)
         self._graph = LaneletGraph(recording)
         self._matching = MapMatching(recording, self._tracks, self._graph)
+        self._numbers = {name: number for number, name in enumerate(recording.lanelets)}
         self._roads: dict[tuple[str, ...], tuple[DrivenRoad, RoadExtents | None] | str] = {}
 
     def egos(self) -> tuple[str, ...]:
@@ -101,11 +102,13 @@ class Drives:
         road, extents = laid_out
         tracks, columns = self._tracks, slice(stretch.first, stretch.last + 1)
         lanelets = self._matching.lanelets
+        elsewhere = (lanelets >= 0) & ~np.isin(lanelets, self._numbers_along(road))
         if extents is None:
             rows = tracks.present[:, columns].any(axis=1).nonzero()[0]
             row = int(np.searchsorted(rows, row))
             tracks, columns = tracks.part(rows, columns), slice(0, None)
-            lanelets = lanelets[rows, stretch.first : stretch.last + 1]
+            driven = slice(stretch.first, stretch.last + 1)
+            lanelets, elsewhere = lanelets[rows, driven], elsewhere[rows, driven]
             expected = self._expected(tracks, road, row, stretch, lanelets)
             extents = road_extents(tracks, road, expected)
         if np.isnan(extents.w[row, columns]).any():
@@ -119,8 +122,12 @@ class Drives:
             extents=extents,
             ego=row,
             columns=columns,
+            elsewhere=elsewhere,
         )
         return to_trace(context, ego, name, self._writer)
+
+    def _numbers_along(self, road: DrivenRoad) -> list[int]:
+        return [self._numbers[one.id] for row in road.rows for one in row if one is not None]
 
     def _expected(
         self,
@@ -134,8 +141,7 @@ class Drives:
             return None
         columns = [column - stretch.first for column in stretch.columns]
         pieces = [road.first_piece + piece for piece in stretch.pieces]
-        numbers = {name: number for number, name in enumerate(self.recording.lanelets)}
-        ego = EgoPieces(row, columns, pieces, numbers)
+        ego = EgoPieces(row, columns, pieces, self._numbers)
         reach_m = self._thresholds.near_m + _LONGEST_M
         return expected_places(tracks, road, ego, lanelets, reach_m)
 

@@ -58,7 +58,9 @@ def presences(context: DriveContext) -> Iterator[Presence]:
             for k in range(1, len(columns))
             if columns[k] - columns[k - 1] > longest + 1 or gone[columns[k]] > gone[columns[k - 1]]
         ]
-        for number, part in enumerate(np.split(columns, breaks), 1):
+        # Who is in sight only, too far away to count, is no object
+        parts = np.split(columns, breaks) if len(columns) else []
+        for number, part in enumerate(parts, 1):
             name = body.id
             if number > 1:
                 name = next(free for k in count(2) if (free := f"{body.id}_{k}") not in taken)

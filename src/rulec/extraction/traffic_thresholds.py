@@ -45,6 +45,8 @@ class Thresholds:
     """Ego is overtaking when it will be beside a slower vehicle so soon."""
     passed_s: float = 2.0
     """And until it is so far ahead of it, by time."""
+    clearly_faster_kmh: float = 5.0
+    """One that is faster by less does not overtake ego."""
     congested_kmh: float = 30.0
     walking_pace_kmh: float = 10.0
     slow_queue_kmh: float = 60.0

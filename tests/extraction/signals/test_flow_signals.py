@@ -4,7 +4,7 @@ import pytest
 
 from rulec.extraction.signals.flow_signals import flow_signals
 from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording
+from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 
@@ -78,22 +78,81 @@ def test_overtaking_is_passing_a_slower_vehicle_on_its_far_side():
     assert not overtakes(0, 10, side="left")
 
 
-def test_being_overtaken_is_having_a_faster_vehicle_on_the_far_side():
-    def overtaken(x, speed, y=4.0, **more):
-        return first(steady(8, x, y, speed=speed), **more)["being_overtaken"]
+def coming(*others, y=4.0, side="right", count=2, steps=12, **thresholds):
+    """Is ego being overtaken in the first state, by one of those on the far lane? None: unknown."""
+    ego = steady(7, 0, 0, steps=steps)
+    bodies = [steady(8 + k, x, y, speed, steps) for k, (x, speed) in enumerate(others)]
+    context = context_of(recording(lanes(count), [ego, *bodies]), ("1",), side, **thresholds)
+    found = flow_signals(context)
+    return None if found.unknown["being_overtaken"][0] else bool(found.world["being_overtaken"][0])
 
-    assert overtaken(0, 15)
-    assert overtaken(-13, 15)  # 9 m behind at 5 m/s more: 1.8 s
-    assert not overtaken(-15, 15)
-    assert not overtaken(20, 15)
-    assert not overtaken(0, 10)
-    assert not overtaken(0, 15, side="left")
+
+def test_being_overtaken_is_having_a_faster_vehicle_on_the_far_side():
+    # To get past 4 m of ego and its own 4 m at 5 m/s more takes 1.6 s from beside
+    assert coming((0, 15)) is True
+    assert coming((-13, 15)) is True  # 9 m behind at 5 m/s more: 1.8 s
+    assert coming((-15, 15)) is False
+    assert coming((20, 15)) is False
+    assert coming((0, 10)) is False
+    assert coming((0, 15), side="left") is False
+
+
+def test_who_is_hardly_faster_does_not_overtake():
+    assert coming((0, 11.3)) is False  # 4.7 km/h
+    assert coming((3, 11.5)) is True  # 5.4 km/h: past in 3.4 s
+    assert coming((0, 11.3), clearly_faster_kmh=4) is True
+
+
+def test_who_overtakes_is_on_the_next_lane():
+    assert coming((0, 15), y=8.0, count=3) is False
+
+
+def test_who_gets_past_overtakes_and_the_recording_may_end_before():
+    # Faster for a second, then as fast as ego: it stays beside
+    places = {k: (-3 + 2 * min(k, 2) + 5.0 * k, 4.0) for k in range(40)}
+    ego, other = steady(7, 0, 0, steps=40), vehicle(8, places)
+    context = context_of(recording(lanes(2), [ego, other]), near_m=200)
+    found = flow_signals(context)
+    # And so it does 10 s later
+    assert not found.world["being_overtaken"].any()
+    assert not found.unknown["being_overtaken"][0]
+    assert coming((-13, 15), steps=4) is None
 
 
 def test_nobody_is_overtaken_where_all_lanes_queue():
-    # All drive at 10 m/s, but one beside ego is a little faster
-    queues = [*line(10, 2), *line(11, 3, y=4.0, start=0.0, number=30)]
+    # All drive at 10 m/s, but those beside ego are a little faster
+    queues = [*line(10, 2), *line(12, 3, y=4.0, start=0.0, number=30)]
     found = first(*queues)
     assert found["dense_all_lanes"]
     assert not found["being_overtaken"]
-    assert first(queues[2])["being_overtaken"]
+    assert coming((0, 12)) is True
+
+
+def test_a_lane_too_short_for_a_queue_does_not_decide():
+    # An acceleration lane of 40 m beside a lane on which all queue
+    through = straight(1, -100, 100, left_of=None, successors=("3",))
+    joined = [
+        straight(3, 100, 140, predecessors=("1",), right_of=4, successors=("5",)),
+        straight(4, 100, 140, y=-4, left_of=3),
+        straight(5, 140, 300, predecessors=("3",)),
+    ]
+    queue = line(10, 3, start=110.0)
+    ego = steady(7, 100, 0)
+    found = recording([through, *joined], [ego, *queue])
+    dense = flow_signals(context_of(found, ("1", "3"))).world["dense_all_lanes"]
+    assert dense[1:].all()
+    # A lane that is there all along, without anybody, decides
+    assert not first(*line(10, 2))["dense_all_lanes"]
+
+
+def test_where_the_map_ends_soon_nothing_is_said_of_queues():
+    short = recording([straight(1, 0, 40)], [steady(7, 10, 0)])
+    assert flow_signals(context_of(short)).unknown["dense_all_lanes"].all()
+
+
+def test_overtaking_looks_as_far_as_ten_seconds_of_the_difference_need():
+    # 200 m at 25 m/s more are 8 s, and farther than what counts for anything else
+    ego, slow = steady(7, -90, 4.0, speed=40), steady(8, 114, 0, speed=15)
+    context = context_of(recording(lanes(2), [ego, slow]), ("2",))
+    assert flow_signals(context).world["overtaking"][0]
+    assert not context.relevant[0, 0]

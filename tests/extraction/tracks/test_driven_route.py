@@ -59,7 +59,11 @@ def test_where_no_lane_leads_through_the_road_changes_lanes():
     ((first, last, route, pieces),) = stretches(TURNS, *CHANGES)
     assert (first, last, route) == (0, 7, ("1", "2", "3", "4"))
     assert pieces == (0, 0, 1, 1, 1, 1, 2, 2)
-    assert pieces_of(recording(TURNS), route) == (("1",), ("2", "3"), ("4",))
+    assert pieces_of(recording(TURNS), route, LaneletGraph(recording(TURNS)).beside) == (
+        ("1",),
+        ("2", "3"),
+        ("4",),
+    )
 
 
 def test_a_road_that_changes_lanes_has_its_lanes_side_by_side():

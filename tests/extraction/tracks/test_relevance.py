@@ -1,7 +1,8 @@
 """The participants that count for ego."""
 
-from math import pi
+from math import pi, radians, sin
 
+import numpy as np
 import pytest
 
 from rulec.extraction.drives import Drives
@@ -55,3 +56,22 @@ def test_ego_never_counts_for_itself():
     assert relevant() == {}
     (drive,) = Drives(recording(lanes(1), [steady(7, 0, 0)]), "right").of("7")
     assert drive.trace.objects == {}
+
+
+def crossing(heading, elsewhere=True):
+    """Does a car count whose front reaches 0.5 m into ego's lane, from another road or its own?"""
+    # A car of 4 m that stands in a side road, the middle 2 m beside the reach into the lane
+    reach = 0.5 + (-2 - 2) if abs(sin(heading)) > 0.5 else -2.0
+    waits = steady(8, 40, reach, speed=0, heading=heading)
+    found = recording(lanes(2), [steady(7, 0, 0), waits])
+    flags = np.array([[False] * 4, [elsewhere] * 4])
+    context = context_of(found, elsewhere=flags)
+    return bool(context.relevant.any())
+
+
+def test_who_waits_in_a_side_road_is_not_on_egos():
+    assert not crossing(pi / 2)
+    assert not crossing(radians(60))
+    # Who joins ego's road, or came along it and stands across, is on it
+    assert crossing(radians(20))
+    assert crossing(pi / 2, elsewhere=False)

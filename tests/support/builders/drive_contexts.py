@@ -14,8 +14,11 @@ from support.builders.recordings import vehicle
 EGO = "7"
 
 
-def context_of(found, route=("1",), side="right", ego=EGO, **thresholds):
-    """The context of ego's drive along a chain of lanelets, while ego is in the recording."""
+def context_of(found, route=("1",), side="right", ego=EGO, elsewhere=None, **thresholds):
+    """The context of ego's drive along a chain of lanelets, while ego is in the recording.
+
+    ``elsewhere``: flags of participants by step that drive on other roads.
+    """
     limits = replace(USUAL, **thresholds)
     tracks = tracks_of(found, limits)
     road = driven_road(found, route, junction_lanelets(found))
@@ -30,6 +33,7 @@ def context_of(found, route=("1",), side="right", ego=EGO, **thresholds):
         extents=road_extents(tracks, road),
         ego=row,
         columns=slice(int(columns[0]), int(columns[-1]) + 1),
+        elsewhere=elsewhere,
     )
 
 

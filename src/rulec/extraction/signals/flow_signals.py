@@ -13,6 +13,9 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.tracks import Flags, Floats
 
+_BODY_M = 5.0
+"""About how long a vehicle is."""
+
 
 def flow_signals(context: DriveContext) -> SignalColumns:
     """The signals of traffic as a whole."""
@@ -21,9 +24,9 @@ def flow_signals(context: DriveContext) -> SignalColumns:
     enough = counts >= limits.fewest
     congested = enough & (speeds < limits.congested_kmh)
     queues, queue_speeds = _queues(context)
-    overtakes, overtaken = _overtaking(context)
-    existing = context.existing_lanes
-    dense = np.all(np.logical_or(queues, ~existing), axis=1) & np.any(existing, axis=1)
+    overtakes, overtaken, open_end = _overtaking(context)
+    decides = context.existing_lanes & (_seen(context) | queues)
+    dense = np.all(queues | ~decides, axis=1) & np.any(decides, axis=1)
     return SignalColumns(
         {
             "congested": congested,
@@ -34,8 +37,33 @@ def flow_signals(context: DriveContext) -> SignalColumns:
             "overtaking": overtakes,
             # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
             "being_overtaken": ~dense & overtaken,
-        }
+        },
+        unknown={
+            "dense_all_lanes": ~np.any(decides, axis=1),
+            "being_overtaken": ~dense & ~overtaken & open_end,
+        },
     )
+
+
+def _seen(context: DriveContext) -> Flags:
+    """Flags of lanes (second axis) of which the map has so much that a queue on them would show.
+
+    A lane that is a short acceleration lane here, or of which the map ends soon, has no room for
+    ``fewest`` vehicles at the largest distances of a queue.
+    """
+    limits, lanes = context.thresholds, context.road.lanes
+    places = np.stack(
+        [context.ego_extents.s[0] + way * limits.flow_reach_m for way in (-1, 1)], axis=-1
+    )
+    # How much there is of each lane from the road's beginning to each place
+    sums = np.cumsum(lanes.there * np.diff(lanes.s)[:, None], axis=0)
+    columns = np.concatenate((np.zeros((1, sums.shape[1])), sums)).T
+    seen = np.stack(
+        [np.diff(np.interp(places, lanes.s, column))[:, 0] for column in columns], axis=1
+    )
+    gap = np.maximum(limits.queue_gap_m, limits.queue_headway_s * context.ego_extents.along[0])
+    room: Flags = seen >= limits.fewest * (gap[:, None] + _BODY_M)
+    return room
 
 
 def _close(context: DriveContext) -> Flags:
@@ -86,11 +114,12 @@ def _beside(context: DriveContext, lanes: Flags) -> Flags:
     return beside
 
 
-def _overtaking(context: DriveContext) -> tuple[Flags, Flags]:
+def _overtaking(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     """Flags of ego overtaking a slower vehicle, and of a faster one overtaking ego.
 
     Who overtakes is at the far side, from shortly before it is beside the other; ego overtakes
-    until it is just past.
+    until it is just past. One that overtakes ego is on the next lane, clearly faster, and gets past
+    within ``catching_up_s``. The third are flags of states after which it is lost from sight.
     """
     limits = context.thresholds
     station, lateral = relations.station(context), relations.lateral(context)
@@ -101,10 +130,37 @@ def _overtaking(context: DriveContext) -> tuple[Flags, Flags]:
     ahead, beside = station == relations.IN_FRONT_OF, station == relations.BESIDE
     soon = (station == relations.BEHIND) & (gap <= faster * limits.catching_up_s)
     past = ahead & (gap <= context.ego_extents.along * limits.passed_s)
-    closing = ahead & (gap <= -faster * limits.passed_s)
     overtakes = (faster > 0) & (lateral == far) & (soon | beside | past)
-    overtaken = (faster < 0) & (lateral == near) & (closing | beside)
+    closing = ahead & (gap <= -faster * limits.passed_s)
+    clearly = -faster * KMH >= limits.clearly_faster_kmh
+    comes = clearly & (lateral == near) & _on_next_lane(context) & (closing | beside)
+    comes &= context.going_along
+    gets_past, lost = _gets_past(context, station == relations.BEHIND)
     return (
-        (context.going_along & overtakes).any(axis=0),
-        (context.going_along & overtaken).any(axis=0),
+        (context.driving_along & overtakes).any(axis=0),
+        (comes & gets_past).any(axis=0),
+        (comes & lost).any(axis=0),
     )
+
+
+def _on_next_lane(context: DriveContext) -> Flags:
+    """Flags of participants that reach into the lane at ego's far side."""
+    lane = context.ego_lane + (1 if context.side == "right" else -1)
+    lanes = np.arange(context.touched.shape[-1])
+    on: Flags = (context.touched & (lanes == lane[None, :, None])).any(axis=-1)
+    return on
+
+
+def _gets_past(context: DriveContext, past: Flags) -> tuple[Flags, Flags]:
+    """Flags of participants that are past within ``catching_up_s``, and of those lost before."""
+    horizon = round(context.thresholds.catching_up_s / context.recording.step_s)
+    states = np.arange(context.states)
+    seen = context.relevant
+    never = len(states) + horizon
+    next_past = np.minimum.accumulate(np.where(past & seen, states, never)[:, ::-1], axis=1)[
+        :, ::-1
+    ]
+    absent = np.where(seen, len(states), states)
+    next_absent = np.minimum.accumulate(absent[:, ::-1], axis=1)[:, ::-1]
+    gets_past = next_past <= states + horizon
+    return gets_past, ~gets_past & (next_absent <= states + horizon)

@@ -78,7 +78,11 @@ def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -
     along a line.
     """
     behind, ahead = roads_beyond(recording, way)
-    driven = pieces_of(recording, way)
+
+    def beside(start: str, end: str) -> bool:
+        return any(end in lanes_beside(recording, start, left=left) for left in (True, False))
+
+    driven = pieces_of(recording, way, beside)
     pieces = (*((number,) for number in behind), *driven, *((number,) for number in ahead))
     entries = tuple(piece[0] for piece in pieces)
     lanelets = tuple(recording.lanelets[number] for number in entries)

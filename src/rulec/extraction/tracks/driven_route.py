@@ -9,7 +9,7 @@ lanelet as long as possible.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
@@ -63,14 +63,18 @@ class _Choice:
     lanelets: tuple[str, ...]
 
 
-def pieces_of(recording: Recording, route: Sequence[str]) -> tuple[tuple[str, ...], ...]:
-    """A route's lanelets by row: one, or those from which and to which it changes lanes."""
+def pieces_of(
+    recording: Recording, route: Sequence[str], beside: Callable[[str, str], bool]
+) -> tuple[tuple[str, ...], ...]:
+    """A route's lanelets by row: one, or those from which and to which it changes lanes.
+
+    ``beside``: is a lane beside another one?
+    """
     pieces: list[tuple[str, ...]] = []
-    graph = LaneletGraph(recording)
     for lanelet in route:
         last = pieces[-1][-1] if pieces else None
         leads = last is not None and lanelet in recording.lanelets[last].successors
-        if last is not None and not leads and lanelet != last and lanelet in graph.row(last):
+        if last is not None and not leads and lanelet != last and beside(last, lanelet):
             pieces[-1] = (*pieces[-1], lanelet)
         else:
             pieces.append((lanelet,))
@@ -81,7 +85,7 @@ def route_stretches(
     recording: Recording, matched: MatchedStretch, graph: LaneletGraph
 ) -> Iterator[RouteStretch]:
     """The roads of a matched stretch, which is one as far as the map is consistent."""
-    pieces = pieces_of(recording, matched.chain)
+    pieces = pieces_of(recording, matched.chain, graph.beside)
     piece_of = [k for k, piece in enumerate(pieces) for _ in piece]
     at = [piece_of[place] for place in matched.places]
     counts = Counter((piece_of[place], matched.chain[place]) for place in matched.places)

@@ -1,10 +1,16 @@
-"""The ways from lanelet to lanelet: successors, and lanes beside that lead the same way."""
+"""The ways from lanelet to lanelet: successors, and lanes beside that lead the same way.
+
+Lanes whose borders run together for a while, as where a ramp joins, are beside each other there
+even where the map does not name them neighbours; to change to such a one costs two changes.
+"""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from rulec.scenario.recorded.adjacency import bordering
 from rulec.scenario.recorded.recording import Lanelet, Recording
 from rulec.scenario.recorded.route import is_lane, lanelet_length, lanes_beside
 
@@ -12,6 +18,8 @@ MOST_HOPS = 4
 """The number of lanelets that a vehicle passes at most between two of its states."""
 
 _LANE_M = 4.0
+_SHORTEST_M = 5.0
+_UNNAMED_CHANGES = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +46,15 @@ class LaneletGraph:
         self._recording = recording
         self._ways: dict[str, Mapping[str, Way]] = {}
         self._rows: dict[str, tuple[str, ...]] = {}
+        self._bordering: dict[str, list[str]] = defaultdict(list)
+        for pair in bordering(recording.lanelets.values()):
+            if pair.length >= _SHORTEST_M:
+                self._bordering[pair.right.id].append(pair.left.id)
+                self._bordering[pair.left.id].append(pair.right.id)
+
+    def beside(self, start: str, end: str) -> bool:
+        """Is a lane beside another one, in its row or along a part of its border?"""
+        return end in self.row(start) or end in self._bordering[start]
 
     def row(self, start: str) -> tuple[str, ...]:
         """The lanes beside each other at a lanelet, from the right."""
@@ -75,8 +92,11 @@ class LaneletGraph:
         for here in ring:
             row, way = self.row(here), found[here]
             own = row.index(here)
-            for place, other in enumerate(row):
-                changes = way.changes + abs(place - own)
+            changes_to = {other: abs(place - own) for place, other in enumerate(row)}
+            for other in self._bordering[here]:
+                changes_to.setdefault(other, _UNNAMED_CHANGES)
+            for other, more in changes_to.items():
+                changes = way.changes + more
                 if other not in found or changes < found[other].changes:
                     added.append(other)
                     found[other] = Way((*way.lanelets, other), way.length, changes)

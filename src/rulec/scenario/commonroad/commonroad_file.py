@@ -25,6 +25,7 @@ from rulec.scenario.commonroad.commonroad_participants import (
 )
 from rulec.scenario.commonroad.required_elements import COMMONROAD, check_form
 from rulec.scenario.recorded import recording
+from rulec.scenario.recorded.adjacency import with_neighbours
 from rulec.scenario.scenario_messages import COMMONROAD_MISSING
 from rulec.scenario.xml_element import LARGEST
 
@@ -65,7 +66,7 @@ def read_commonroad(path: Path) -> recording.Recording:
         reader = _library(path)
         try:
             scenario, problems = reader(path).open()
-            return _recording(path.stem, scenario, problems)
+            return with_neighbours(_recording(path.stem, scenario, problems))
         except (OSError, MemoryError, RulecError):
             raise
         except Exception as reason:  # the library has no exception of its own
