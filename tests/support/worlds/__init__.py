@@ -1,0 +1,1 @@
+"""Simulated traffic, what is true of it by the simulator, and verdicts held against that."""

@@ -1,0 +1,16 @@
+"""Where verdicts are not right yet: some violation is missed or open, or somebody is accused.
+
+Kind of world -> rules. Everywhere else every verdict has to be right. What has been mended is taken
+out; nothing is added.
+"""
+
+STORED = {
+    "grid": {"following_distance", "speed_limit"},
+    "spider_left": {"red_light"},
+    "priority": {"give_way_sign"},
+    "all_way_stop": {"following_distance"},
+    "right_before_left": {"following_distance", "junction_priority"},
+    "roundabout": {"following_distance", "roundabout_priority"},
+    "motorway": {"near_side_passing", "speed_limit"},
+}
+SIMULATED = {}

@@ -1,0 +1,84 @@
+"""Zebra crossings: who drove onto one while somebody was on it or had to wait beside it."""
+
+import numpy as np
+
+from support.worlds.facts import Fact
+from support.worlds.world_state import LENGTH_M
+
+_SOON_S = 3.0
+_WAITED_S = 3.0
+_STANDS_MPS = 0.1
+_CLEAR_M = 1.0
+
+
+def pedestrian_facts(world):
+    """Vehicles on a crossing; sure where a walker has yet to pass ego's lane, or has waited."""
+    for crossing in world.crossings:
+        walk = f":{crossing.link.junction}_c0"
+        if walk not in world.net.edges:
+            continue
+        placed = world.along(crossing)
+        length = sum(world.net.lanes[lane].length for lane in crossing.link.inner)
+        on_it = np.flatnonzero((placed > 0) & (placed - LENGTH_M < length))
+        steps = [crossing.track.step[row] for row in on_it]
+        at = (steps[0] * world.step_s, steps[-1] * world.step_s)
+        for walker in world.walkers.values():
+            grade = _grade(world, walker, walk, (steps, crossing.link.inner[0]))
+            if grade is not None:
+                yield Fact(crossing.track.id, "give_way_to_pedestrians", *at, grade, walker.id)
+
+
+def _grade(world, walker, walk, where):
+    """True for a violation, False where one cannot tell, None for none."""
+    steps = where[0]
+    found = _on_crossing(world, walker, walk, where)
+    if found or _waited(world, walker, walk, steps[0]):
+        # In Britain who waits is another rule's, and only advice
+        return bool(found) or world.book != "gb"
+    if found is False or _soon_on_it(world, walker, walk, steps):
+        return False
+    return None
+
+
+def _on_crossing(world, walker, walk, where):
+    """True if it is on the crossing and has yet to pass ego's lane; False where that is close."""
+    steps, key = where
+    lane = world.net.lanes[key]
+    beside = world.net.edges[lane.edge].lanes.values()
+    grades = set()
+    for step in steps:
+        row = walker.at(step)
+        if row is None or walker.lane[row] != walk:
+            continue
+        x, y, angle = (walker.column(name)[row] for name in ("x", "y", "angle"))
+        ahead = np.array([np.sin(np.radians(angle)), np.cos(np.radians(angle))])
+        left = [(one.shape.mean(axis=0) - (x, y)) @ ahead + one.width / 2 for one in beside]
+        own = (lane.shape.mean(axis=0) - (x, y)) @ ahead + lane.width / 2
+        grades.add(True if own > 0.3 else (False if max(left) > -_CLEAR_M else None))
+    return True if True in grades else (False if False in grades else None)
+
+
+def _soon_on_it(world, walker, walk, steps):
+    """True if it gets onto the crossing within so many seconds, or stands before it."""
+    reach = round(_SOON_S / world.step_s)
+    for step in (steps[0], steps[-1]):
+        row = walker.at(step)
+        if row is None or walk not in walker.lane[row:]:
+            continue
+        if walk in walker.lane[row : row + reach + 1]:
+            return True
+        if walker.column("speed")[row] < _STANDS_MPS:
+            return True
+    return False
+
+
+def _waited(world, walker, walk, step):
+    """True if it stood beside the crossing for so long, and then walked over it."""
+    row = walker.at(step)
+    if row is None or walk not in walker.lane[row:]:
+        return False
+    first = row - round(_WAITED_S / world.step_s)
+    area = walk.rpartition("_")[0] + "_w"
+    if first < 0 or not all(edge.startswith(area) for edge in walker.lane[first : row + 1]):
+        return False
+    return bool((walker.column("speed")[first : row + 1] < _STANDS_MPS).all())

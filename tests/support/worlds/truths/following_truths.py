@@ -1,0 +1,134 @@
+"""Tailgating: the gap to SUMO's leader, against what both need to stop."""
+
+import numpy as np
+
+from support.worlds.facts import graded
+from support.worlds.world_state import LENGTH_M
+
+REACTION_S, BRAKING_MPS2 = 1.0, 8.0
+"""The numbers of this reading of the law: as documented, not as programmed."""
+
+_SURELY_M, _LEAST_S = 0.7, 0.6
+_CHANGE_S = 4.0
+_NEAR_M = 150.0
+_ALIKE, _ASIDE_M = 0.4, 6.0
+"""The cosine between two headings that are much alike, and how far one is beside the other's."""
+
+
+_HEADWAY_S = {"gb": 2.0, "fr": 2.0}
+"""Where the law counts seconds instead."""
+
+
+def needed(book, speed, leading):
+    """The gap (m) in which who reacts after a second still stops behind the other."""
+    if book in _HEADWAY_S:
+        return _HEADWAY_S[book] * speed
+    return np.maximum(speed * REACTION_S + (speed**2 - leading**2) / (2 * BRAKING_MPS2), 0.0)
+
+
+def following_facts(world):
+    """Too short a gap; sure to a leader on the same lane of a road, nobody changing lanes."""
+    for track in world.vehicles.values():
+        speed, gap = track.column("speed"), track.column("gap")
+        leading = track.column("leader_speed")
+        led = np.array([bool(name) for name in track.leader]) & (gap > -1)
+        short = np.where(led, needed(world.book, speed, leading) - gap, -np.inf)
+        steady = led & _same_road(world, track) & ~changing(world, track)
+        steady &= ~_leader_changing(world, track)
+        possible = (short > -_SURELY_M) | _beside_short(world, track)
+        possible |= _merging_short(world, track)
+        masks = (steady & (short > _SURELY_M), possible, _LEAST_S)
+        yield from graded(world, track, "following_distance", masks)
+
+
+def _same_road(world, track):
+    """Where the leader is on the same lane, outside junctions."""
+    same = []
+    for row, (lane, name) in enumerate(zip(track.lane, track.leader, strict=True)):
+        other = world.vehicles.get(name)
+        k = None if other is None else other.at(track.step[row])
+        same.append(k is not None and not lane.startswith(":") and other.lane[k] == lane)
+    return np.array(same)
+
+
+def changing(world, track):
+    """Rows within so many seconds of a change of lanes."""
+    edges = [world.net.lanes[lane].edge for lane in track.lane]
+    reach = round(_CHANGE_S / world.step_s)
+    mask = np.zeros(len(track.lane), dtype=bool)
+    for row in range(1, len(edges)):
+        if edges[row] == edges[row - 1] and track.lane[row] != track.lane[row - 1]:
+            mask[max(0, row - reach) : row + reach + 1] = True
+    return mask
+
+
+def _leader_changing(world, track):
+    masks = {name: changing(world, world.vehicles[name]) for name in set(track.leader) - {""}}
+    found = []
+    for row, name in enumerate(track.leader):
+        k = world.vehicles[name].at(track.step[row]) if name else None
+        found.append(k is not None and masks[name][k])
+    return np.array(found)
+
+
+def _beside_short(world, track):
+    """Rows where somebody on a lane beside, or in a junction, would be too near, had it changed."""
+    mask = np.zeros(len(track.lane), dtype=bool)
+    own_change = changing(world, track)
+    speed, pos = track.column("speed"), track.column("pos")
+    for other in world.vehicles.values():
+        if other is track:
+            continue
+        shift = track.step[0] - other.step[0]
+        if not _share_edges(world, track, other):
+            continue
+        rows = np.arange(len(track.lane))
+        theirs = rows + shift
+        rows = rows[(theirs >= 0) & (theirs < len(other.lane))]
+        if len(rows) == 0:
+            continue
+        theirs = rows + shift
+        lanes = zip(rows, theirs, strict=True)
+        beside = np.array([_neighbours(world, track.lane[a], other.lane[b]) for a, b in lanes])
+        moves = own_change[rows] | changing(world, other)[theirs]
+        gap = other.column("pos")[theirs] - LENGTH_M - pos[rows]
+        need = needed(world.book, speed[rows], other.column("speed")[theirs])
+        near = (gap > -LENGTH_M) & (gap < _NEAR_M) & (gap < need + _SURELY_M)
+        mask[rows[beside & moves & near]] = True
+    return mask
+
+
+def _merging_short(world, track):
+    """Rows where, at a junction, somebody who goes about ego's way would be too near."""
+    mask = np.zeros(len(track.lane), dtype=bool)
+    inside = track.inside
+    for other in world.vehicles.values():
+        rows = np.arange(len(track.lane))
+        theirs = rows + track.step[0] - other.step[0]
+        there = (theirs >= 0) & (theirs < len(other.lane))
+        if other is track or not there.any():
+            continue
+        rows, theirs = rows[there], theirs[there]
+        their_inside = other.inside[theirs]
+        x, y, angle = (
+            other.column(name)[theirs] - track.column(name)[rows] for name in ("x", "y", "angle")
+        )
+        own = np.radians(track.column("angle")[rows])
+        ahead, aside = x * np.sin(own) + y * np.cos(own), x * np.cos(own) - y * np.sin(own)
+        alike = np.cos(np.radians(angle)) > _ALIKE
+        need = needed(world.book, track.column("speed")[rows], other.column("speed")[theirs])
+        near = (ahead > 0) & (ahead - LENGTH_M < need + _SURELY_M) & (np.abs(aside) < _ASIDE_M)
+        mask[rows[(inside[rows] | their_inside) & alike & near]] = True
+    return mask
+
+
+def _share_edges(world, one, other):
+    """True if both are on roads of several lanes at some time."""
+    edges = {world.net.lanes[lane].edge for lane in set(one.lane)}
+    edges &= {world.net.lanes[lane].edge for lane in set(other.lane)}
+    return any(len(world.net.edges[edge].lanes) > 1 for edge in edges)
+
+
+def _neighbours(world, one, other):
+    one, other = world.net.lanes[one], world.net.lanes[other]
+    return one.edge == other.edge and abs(one.index - other.index) == 1

@@ -1,0 +1,65 @@
+"""Passing on the near side of a motorway: who got past whom on which lanes."""
+
+import numpy as np
+
+from support.worlds.facts import Fact, runs
+from support.worlds.truths.following_truths import changing
+from support.worlds.world_state import LENGTH_M
+
+_QUEUE_M, _QUEUE = 110.0, 3
+_SLOW_MPS = 18.0
+
+
+def near_side_facts(world):
+    """Who came from behind, was beside on a lane nearer to the kerb, and got in front."""
+    changes = {key: changing(world, one) for key, one in world.vehicles.items()}
+    for track in world.vehicles.values():
+        for other in world.vehicles.values():
+            if other is not track:
+                yield from _passes(world, track, other, changes)
+
+
+def _passes(world, track, other, changes):
+    first = max(track.step[0], other.step[0])
+    last = min(track.step[-1], other.step[-1])
+    if last <= first:
+        return
+    own = slice(first - track.step[0], last - track.step[0] + 1)
+    theirs = slice(first - other.step[0], last - other.step[0] + 1)
+    ahead = track.column("pos")[own] - other.column("pos")[theirs]
+    same = np.array(
+        [
+            world.net.lanes[a].edge == world.net.lanes[b].edge
+            for a, b in zip(track.lane[own], other.lane[theirs], strict=True)
+        ]
+    )
+    nearer = _index(world, track, own) < _index(world, other, theirs)
+    for begin, end in runs((np.abs(ahead) <= LENGTH_M) & same):
+        if begin == 0 or end == len(ahead) - 1 or ahead[begin] > 0 or ahead[end] < 0:
+            continue
+        # Who changes lanes beside the other may be there for some of the time only
+        around = slice(max(0, begin - 1), end + 2)
+        moves = changes[track.id][own][around].any() or changes[other.id][theirs][around].any()
+        if not nearer[around].any() and not moves:
+            continue
+        sure = nearer[around].all() and not moves
+        sure &= not _in_queues(world, track, other, first + begin)
+        at = ((first + begin - 10) * world.step_s, (first + end + 10) * world.step_s)
+        yield Fact(track.id, "near_side_passing", *at, bool(sure), other.id)
+
+
+def _index(world, track, rows):
+    return np.array([world.net.lanes[lane].index for lane in track.lane[rows]])
+
+
+def _in_queues(world, track, other, step):
+    """True if queues might excuse it: traffic is dense, or slow."""
+    lanes = {}
+    place = track.column("pos")[track.at(step)]
+    for one in world.vehicles.values():
+        row = one.at(step)
+        if row is not None and abs(one.column("pos")[row] - place) < _QUEUE_M:
+            lanes.setdefault(one.lane[row], []).append(one.id)
+    slow = other.column("speed")[other.at(step)] < _SLOW_MPS
+    dense = lanes and min(map(len, lanes.values())) >= _QUEUE
+    return bool(slow or dense)

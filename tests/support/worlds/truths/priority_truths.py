@@ -1,0 +1,151 @@
+"""Priority: who drove over a junction before one to whom the net's `request` bits make it yield."""
+
+import numpy as np
+
+from support.worlds.facts import Fact
+from support.worlds.world_state import LENGTH_M, WIDTH_M
+
+_HINDERED_S, _FREE_S = 1.0, 3.5
+_BEHIND_S = 0.6
+_MOVING_MPS = 3.0
+_APART_M = WIDTH_M + 0.2
+_SIDEWAYS_DEG = (40.0, 140.0)
+
+
+def right_facts(world):
+    """Where nothing but right before left holds."""
+    for crossing, other, grade, at in _conflicts(world):
+        kind = world.net.junctions[crossing.link.junction].get("type")
+        if kind == "right_before_left":
+            side = _comes_from(world, crossing.link, other.link)
+            sure = grade and _SIDEWAYS_DEG[0] < side < _SIDEWAYS_DEG[1]
+            yield Fact(crossing.track.id, "junction_priority", *at, sure, other.track.id)
+
+
+def give_way_facts(world):
+    """Where a sign makes a road give way, at junctions that are no roundabouts."""
+    for crossing, other, grade, at in _conflicts(world):
+        link = crossing.link
+        if _gives_way(world, link) and not _on_ring(world, link.end):
+            side = abs(_comes_from(world, link, other.link))
+            sure = grade and _SIDEWAYS_DEG[0] < side < _SIDEWAYS_DEG[1]
+            yield Fact(crossing.track.id, "give_way_sign", *at, sure, other.track.id)
+
+
+def roundabout_facts(world):
+    """Who enters a roundabout before one that is on it."""
+    for crossing, other, grade, at in _conflicts(world):
+        if _on_ring(world, crossing.link.end) and not _on_ring(world, crossing.link.start):
+            sure = grade and _on_ring(world, other.link.start)
+            yield Fact(crossing.track.id, "roundabout_priority", *at, sure, other.track.id)
+
+
+def _conflicts(world):
+    """Pairs of ways over a junction of which the first has to yield, and does not, or may not."""
+    by_junction = {}
+    for crossing in world.crossings:
+        by_junction.setdefault(crossing.link.junction, []).append(crossing)
+    for junction, ways in by_junction.items():
+        yields = world.net.yields[junction]
+        for one in ways:
+            for other in ways:
+                if one.track is not other.track and other.link.number in yields.get(
+                    one.link.number, ()
+                ):
+                    grade = _grade(world, one, other)
+                    if grade is not None:
+                        at = world.time(one.track, one.row)
+                        yield one, other, grade, (at, at)
+
+
+def _grade(world, one, other):
+    """True for a violation, False where one cannot tell, None for none."""
+    within = conflict_area(world.net, one.link, other.link)
+    if within is None:
+        return None
+    own = _occupied(world, one, within[0])
+    theirs = _occupied(world, other, within[1])
+    if own[0] < theirs[0]:
+        spare = theirs[0] - own[1]
+        if spare >= _FREE_S:
+            return None
+        row = other.track.at(one.track.step[one.row])
+        if row is None:
+            return False
+        speed = other.track.column("speed")
+        waited = speed[row : other.row + 1].min(initial=np.inf) if row <= other.row else np.inf
+        # Who had to stop for it, or to wait for others, may have had its own reasons
+        moved = speed[row] > _MOVING_MPS and waited > _MOVING_MPS
+        return bool(spare < _HINDERED_S and moved)
+    spare = own[0] - theirs[1]
+    if spare >= _BEHIND_S:
+        return None
+    entered = world.time(one.track, one.row)
+    # It drove into the side of one that was in the junction already
+    return bool(spare < -0.3 and entered < theirs[1] - 0.3 and _moves(other))
+
+
+def _moves(crossing):
+    return crossing.track.column("speed")[crossing.row] > _MOVING_MPS
+
+
+def conflict_area(net, one, other):
+    """From where to where on each way the other is too near to be there, too; None if nowhere."""
+    ways = [_way(net, link) for link in (one, other)]
+    distance = np.hypot(*(ways[0][0][:, None] - ways[1][0][None]).T).T
+    near = distance < _APART_M
+    if not near.any():
+        return None
+    found = []
+    for axis, (_, along) in enumerate(ways):
+        places = along[near.any(axis=1 - axis)]
+        merges = one.end == other.end
+        found.append((places[0], np.inf if merges and one.end else places[-1]))
+    if one.end == other.end:
+        # Beyond the junction they follow each other: what counts is who gets there first
+        found = [(begin, ways[k][1][-1]) for k, (begin, _) in enumerate(found)]
+    return found
+
+
+def _way(net, link):
+    """Places on a way over a junction each 0.25 m, and how far on they are."""
+    shape = np.concatenate([net.lanes[lane].shape for lane in link.inner])
+    length = sum(net.lanes[lane].length for lane in link.inner)
+    steps = np.append(0.0, np.hypot(*np.diff(shape, axis=0).T).cumsum())
+    along = np.linspace(0.0, steps[-1], max(2, int(steps[-1] / 0.25)))
+    places = np.stack([np.interp(along, steps, shape[:, axis]) for axis in (0, 1)], axis=1)
+    return places, along * length / max(steps[-1], 1e-9)
+
+
+def _occupied(world, crossing, area):
+    """From when to when a body is in an area of its way; infinite where it has not left it."""
+    placed, track = world.along(crossing), crossing.track
+    times = np.array(track.step) * world.step_s
+    there = ~np.isnan(placed)
+    placed, times = placed[there], times[there]
+    inside = np.flatnonzero(placed >= area[0])
+    gone = np.flatnonzero(placed - LENGTH_M > area[1])
+    begin = times[inside[0]] if len(inside) else np.inf
+    return begin, times[gone[0]] if len(gone) else np.inf
+
+
+def _comes_from(world, own, other):
+    """Where the other comes from: degrees to the right of ahead, negative to the left."""
+    ahead, theirs = (_heading(world.net.lanes[link.start].shape) for link in (own, other))
+    turned = np.degrees(theirs - ahead - np.pi)
+    return float((-turned + 180.0) % 360.0 - 180.0)
+
+
+def _heading(shape):
+    return np.arctan2(*(shape[-1] - shape[-2])[::-1])
+
+
+def _gives_way(world, link):
+    """True if the whole road gives way: its way straight on does."""
+    ways = [one for one in world.net.links.values() if one.start == link.start]
+    return all(one.state == "m" for one in ways)
+
+
+def _on_ring(world, lane):
+    edge = world.net.edges[world.net.lanes[lane].edge]
+    return edge.start.startswith("r") and edge.end.startswith("r") and "_r" in f"_{edge.end}"

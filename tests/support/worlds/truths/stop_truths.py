@@ -1,0 +1,33 @@
+"""Stop signs: whether who crosses the line has stood in the ten seconds before."""
+
+from support.worlds.facts import Fact, runs
+
+_BEFORE_S = 10.0
+_STOOD_MPS, _ROLLED_MPS = 0.1, 0.8
+_STOOD_S = 0.8
+_SIGNED = frozenset("sw")
+"""SUMO's letters: a stop sign, and an all-way stop."""
+
+
+def stop_facts(world):
+    """Who crosses the line of a stop sign without having stood."""
+    for crossing in world.crossings:
+        if not _signed(world, crossing.link):
+            continue
+        track, row = crossing.track, crossing.row
+        first = max(0, row - round(_BEFORE_S / world.step_s))
+        speed = track.column("speed")[first : row + 1]
+        stood = any(
+            (end - begin + 1) * world.step_s >= _STOOD_S for begin, end in runs(speed < _STOOD_MPS)
+        )
+        if not stood:
+            at = world.time(track, row)
+            # Who was not there for ten seconds may have stood before it came
+            sure = speed.min() > _ROLLED_MPS and row * world.step_s > 2.0
+            yield Fact(track.id, "stop_sign", at, at, bool(sure))
+
+
+def _signed(world, link):
+    """True if there is a sign: all ways from the lane have to stop."""
+    ways = [one for one in world.net.links.values() if one.start == link.start]
+    return all(one.state in _SIGNED for one in ways)

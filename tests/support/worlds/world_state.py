@@ -1,0 +1,126 @@
+"""What the simulator says of everybody at every step: lane, place on it, speed, leader, lights."""
+
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from support.worlds.net_state import NetState
+
+LENGTH_M, WIDTH_M = 4.5, 1.8
+"""Of all vehicles in these worlds."""
+
+
+@dataclass
+class Track:
+    """Columns of one road user: ``lane`` is an edge for walkers, ``pos`` that of the front."""
+
+    id: str
+    kind: str
+    step: list = field(default_factory=list)
+    lane: list = field(default_factory=list)
+    leader: list = field(default_factory=list)
+    rows: list = field(default_factory=list)
+
+    def column(self, name):
+        return self._table[:, _COLUMNS.index(name)]
+
+    @cached_property
+    def _table(self):
+        return np.array(self.rows)
+
+    @cached_property
+    def inside(self):
+        """Where it is within a junction."""
+        return np.array([lane.startswith(":") for lane in self.lane])
+
+    def at(self, step):
+        """The row of a step; None where it is not there."""
+        k = step - self.step[0]
+        return k if 0 <= k < len(self.step) else None
+
+
+_COLUMNS = ("x", "y", "angle", "speed", "pos", "gap", "leader_speed")
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A vehicle's way over a junction: ``row`` is the first one beyond the line."""
+
+    track: Track
+    link: object
+    row: int
+
+
+class WorldState:
+    """A world by its files."""
+
+    def __init__(self, files, step_s, book="de"):
+        self.book = book
+        self.net = NetState(files.net)
+        self.step_s = step_s
+        self.vehicles, self.walkers = {}, {}
+        for _, moment in ElementTree.iterparse(files.data):
+            if moment.tag == "timestep":
+                step = round(float(moment.get("time")) / step_s)
+                for one in moment:
+                    self._add(one, step)
+                moment.clear()
+        self.lights = _lights(files.lights, step_s) if files.lights.exists() else {}
+
+    def _add(self, one, step):
+        home = self.vehicles if one.tag == "vehicle" else self.walkers
+        key = one.get("id")
+        track = home.get(key)
+        if track is None:
+            track = home[key] = Track(key, one.get("type"))
+        track.step.append(step)
+        track.lane.append(one.get("lane") or one.get("edge"))
+        track.leader.append(one.get("leaderID", ""))
+        names = ("x", "y", "angle", "speed", "pos", "leaderGap", "leaderSpeed")
+        track.rows.append([float(one.get(name, "nan")) for name in names])
+
+    def time(self, track, row):
+        return track.step[row] * self.step_s
+
+    @cached_property
+    def crossings(self):
+        """Every way over a junction, in each of its links."""
+        return [one for track in self.vehicles.values() for one in self._crossings_of(track)]
+
+    def _crossings_of(self, track):
+        for row in range(1, len(track.lane)):
+            link = self.net.links.get(track.lane[row])
+            if link is not None and track.lane[row - 1] == link.start:
+                yield Crossing(track, link, row)
+
+    def along(self, crossing):
+        """The front's place on a way over a junction and beyond, 0 at the line; else NaN."""
+        link, track = crossing.link, crossing.track
+        pos = track.column("pos")
+        before = {link.start: -self.net.lanes[link.start].length}
+        done = 0.0
+        for lane in link.inner:
+            before[lane] = done
+            done += self.net.lanes[lane].length
+        before[link.end] = done
+        # A lane beside the one where the way ends is as far on
+        offsets = [before.get(lane, self._beside(lane, link, done)) for lane in track.lane]
+        placed = np.array(offsets) + pos
+        first = next(k for k, lane in enumerate(track.lane) if lane in before)
+        placed[:first] = np.nan
+        return placed
+
+    def _beside(self, lane, link, done):
+        same = self.net.lanes[lane].edge == self.net.lanes[link.end].edge
+        return done if same else np.nan
+
+
+def _lights(file, step_s):
+    """Light -> state at each step."""
+    found = {}
+    for one in ElementTree.parse(file).getroot():
+        step = round(float(one.get("time")) / step_s)
+        found.setdefault(one.get("id"), {})[step] = one.get("state")
+    return found

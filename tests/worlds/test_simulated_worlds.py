@@ -1,0 +1,61 @@
+"""Twenty seeds of each kind of world: whoever is planted there is found, and nobody else accused.
+
+SUMO takes 600 MB in an environment of its own; hence only in the long run of the tests.
+"""
+
+import os
+
+import pytest
+
+from support.worlds.judging import DISTURBANCES, judged
+from support.worlds.not_yet import SIMULATED
+from support.worlds.scoring import Score, wrong
+from support.worlds.simulate import simulate
+from support.worlds.sumo_environment import sumo_programs
+from support.worlds.world_kinds import KINDS
+
+pytestmark = pytest.mark.skipif(
+    os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"
+)
+SEEDS = range(1, 21)
+
+
+@pytest.fixture(scope="module")
+def sumo():
+    return sumo_programs()
+
+
+@pytest.mark.parametrize("name", list(KINDS))
+def test_verdicts_are_true(name, sumo, tmp_path):
+    total = {}
+    for seed in SEEDS:
+        for rule, score in judged(sumo, name, seed, tmp_path / str(seed)).items():
+            total.setdefault(rule, Score()).add(score)
+    assert list(wrong(total, SIMULATED.get(name, ()))) == []
+
+
+def test_a_mirror_image_has_the_same_verdicts(sumo, tmp_path):
+    plain, mirrored = (
+        judged(sumo, "spider", 1, tmp_path / str(way), way) for way in (None, "mirrored")
+    )
+    assert plain == mirrored
+
+
+@pytest.mark.parametrize("way", ["rounded", "24", "29.97", "30"])
+def test_a_little_less_precise_is_as_good(way, sumo, tmp_path):
+    """At the rates of cameras, and with places to a decimetre, the same violations are found."""
+    score = judged(sumo, "grid", 1, tmp_path, way)["red_light"]
+    assert score.found == score.planted > 0
+    assert score.false == []
+
+
+def test_a_seed_makes_the_same_world(sumo, tmp_path):
+    one, other = (
+        simulate(sumo, KINDS["roundabout"], 3, tmp_path / name) for name in ("one", "other")
+    )
+    assert one.net.read_bytes() == other.net.read_bytes()
+    assert DISTURBANCES.keys() >= {"mirrored", "noise"}
+    lines = [file.data.read_text(encoding="utf-8").splitlines() for file in (one, other)]
+    assert [line for line in lines[0] if "<vehicle" in line] == [
+        line for line in lines[1] if "<vehicle" in line
+    ]
