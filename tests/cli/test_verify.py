@@ -48,6 +48,9 @@ def test_the_documented_line_of_json(verify):
                 "weight": 1,
             }
         ],
+        "open": [],
+        "not_judged": [],
+        "presumed": [],
     }
 
 
@@ -59,6 +62,9 @@ def test_satisfied(verify):
         "trace": "t1",
         "satisfied": True,
         "violations": [],
+        "open": [],
+        "not_judged": [],
+        "presumed": [],
     }
 
 

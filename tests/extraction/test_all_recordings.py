@@ -27,7 +27,7 @@ def test_its_drives(file):
     tally = ViolationTally()
     seen = []
     for one in judged.answers():
-        tally.add(one)
+        tally.add(one, [rule.name for rule in judged.rules.rules])
         seen.append(one.ego if isinstance(one, NoDrive) else one.drive.ego)
         if not isinstance(one, NoDrive):
             # Many together are judged as each alone

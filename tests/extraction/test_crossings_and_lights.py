@@ -8,6 +8,7 @@ from rulec.api.rulebook_compilation import machines
 from rulec.extraction.drives import Drives
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.recording import Light
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
@@ -130,7 +131,7 @@ def test_lights_that_differ_tell_nothing():
     lanes = lit((("red", 10),))
     both = replace(lanes[0], lights=(Light(0, (("red", 10),)), Light(0, (("green", 10),))))
     found = states(recording([both, lanes[1]], [going(7, 90, 10.0)]), "7")
-    assert ["light" in state for state in found[:4]] == [False, False, False, True]
+    assert [state["light"] is UNKNOWN for state in found[:4]] == [True, True, True, False]
 
 
 def test_a_stop_sign():

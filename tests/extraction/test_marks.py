@@ -3,6 +3,7 @@
 import pytest
 
 from rulec.extraction.drives import Drives
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.recordings import recording, straight, vehicle
 
 
@@ -26,7 +27,7 @@ def test_marked_lanes(right, left, marked):
 
 
 def test_marks_that_nobody_knows():
-    assert "marked_lanes" not in state(0, None, None)
+    assert state(0, None, None).get("marked_lanes", UNKNOWN) is UNKNOWN
 
 
 @pytest.mark.parametrize(

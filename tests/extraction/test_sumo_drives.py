@@ -40,7 +40,7 @@ def judged(folder, bodies, book, net=ROAD_NET):
     """Ego -> the hard rules that it violated, and when first; and whether a mirror was needed."""
     steps = [moment(STEP_S * k, *each) for k, each in enumerate(zip(*bodies, strict=True))]
     found = read_recording(written(folder, data(*steps), net=net))
-    answers = RecordingVerdicts(found, BOOKS[book], Wanted(), "by hand")
+    answers = RecordingVerdicts(found, BOOKS[book], Wanted(defaults=True), "by hand")
     times = {}
     for one in answers.answers():
         known = times.setdefault(one.drive.ego, {})

@@ -4,6 +4,7 @@ import pytest
 
 from rulec.extraction.to_trace import TraceWriter, to_trace
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
@@ -99,9 +100,9 @@ def test_assumptions_hold_in_every_state_whatever_was_recorded():
     assert found.kinds == {"speed": float, "built_up": bool}
 
 
-def test_what_is_not_known_in_a_state_is_missing_there():
+def test_what_is_not_known_in_a_state_is_unknown_there():
     highway = straight(1, 0, 10, successors=(2,), types=frozenset({"highway"}))
     body = vehicle(7, {0: (5, 0), 1: (15, 0)})
     found = recording([highway, straight(2, 10, 90, predecessors=(1,))], [body])
     states = to_trace(context_of(found, ("1", "2")), "7", "7", TraceWriter()).trace.states
-    assert [state.get("road_class") for state in states] == ["motorway", None]
+    assert [state["road_class"] for state in states] == ["motorway", UNKNOWN]

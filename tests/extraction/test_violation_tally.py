@@ -20,7 +20,7 @@ def verdict(own, *violations):
 def tally(*verdicts):
     counted = ViolationTally()
     for each in verdicts:
-        counted.add(each)
+        counted.add(each, ("fast", "gentle", "late"))
     return counted
 
 

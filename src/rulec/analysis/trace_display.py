@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 from rulec.analysis.counterexample import declarations_read
 from rulec.analysis.shared_compilation import AnalyzedRule
@@ -48,7 +49,9 @@ def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceT
     rows = []
     for (name, items), declaration in subjects_of(vocabulary, trace.objects):
         if name in names and len(set(items)) == len(items):
-            values = tuple(value_in(trace.states[n], name, items, declaration) for n in starts)
+            values: tuple[Any, ...] = tuple(
+                value_in(trace.states[n], name, items, declaration) for n in starts
+            )
             unit = declaration.unit if isinstance(declaration, Quantity) else ""
             is_default = all(value == declaration.default for value in values)
             rows.append(SignalRow(str(Atom(name, items)), unit, values, is_default))

@@ -53,9 +53,9 @@ def compile_rulebook(
     they need not have. R0407 for a bound that is no multiple of the step, R0507 if the rules have
     been compiled for another one.
     """
-    from rulec.automata.thresholds import exact
+    from rulec.automata.thresholds import exact_step
 
-    step = None if step_s is None else exact(step_s)
+    step = None if step_s is None else exact_step(step_s)
     if isinstance(reference, str | Path):
         if Path(reference).suffix != ".json":
             from rulec.pipeline import compile_source

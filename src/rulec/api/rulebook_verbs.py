@@ -164,7 +164,7 @@ class RulebookVerbs(SessionSettings):
 
         from rulec.analysis.diff.rulebook_comparison import diff_rulebooks, setting_pairs
         from rulec.analysis.lineage.book_lineage import read_with_lineage
-        from rulec.automata.thresholds import exact
+        from rulec.automata.thresholds import exact_step
 
         book, lineage = read_with_lineage(first, self.search_path, self.at)
         second_book, second_lineage = read_with_lineage(second, self.search_path, self.at)
@@ -173,7 +173,7 @@ class RulebookVerbs(SessionSettings):
             first=book.rulebook,
             second=second_book.rulebook,
             patterns=patterns,
-            step_s=None if step_s is None else exact(step_s),
+            step_s=None if step_s is None else exact_step(step_s),
             tell=on_progress,
             most=witnesses,
         )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
@@ -109,20 +109,12 @@ def build_all(
     """
     compiled: list[CompiledRule] = []
     problems = list(formulas.problems)
-    waiting = list(formulas.rules)
-    spot = ""
-    while waiting or not spot:
-        # A worker lives until it is done or a rule has killed it; the next one takes the rest.
-        with _worker() as (process, spot):
-            while waiting:
-                lowered = waiting.pop(0)
-                answer = _ask(process, _job(rulebook, lowered, cpu_limit_s))
-                if isinstance(answer, Done):
-                    compiled.append(_compiled(lowered.rule, lowered.step_s, answer))
-                else:
-                    problems.append(no_machine(lowered.rule, answer, cpu_limit_s))
-                if answer is None:
-                    break
+    answers, spot = answers_to([_job(rulebook, rule, cpu_limit_s) for rule in formulas.rules])
+    for lowered, answer in zip(formulas.rules, answers, strict=True):
+        if isinstance(answer, Done):
+            compiled.append(_compiled(lowered.rule, lowered.step_s, answer))
+        else:
+            problems.append(no_machine(lowered.rule, answer, cpu_limit_s))
     if problems:
         # Facts that contradict each other do so in every rule.
         raise RulecError(dict.fromkeys(problems))
@@ -140,6 +132,23 @@ def build_all(
         priorities=rulebook.priorities,
         source=rulebook,
     )
+
+
+def answers_to(jobs: Sequence[Job]) -> tuple[list[Done | Failed | None], str]:
+    """The worker's answers, None to a job that was its end; and Spot's version.
+
+    Raises RulecError R0403 if Spot is not installed.
+    """
+    answers: list[Done | Failed | None] = []
+    spot = ""
+    while len(answers) < len(jobs) or not spot:
+        # A worker lives until it is done or a job has killed it; the next one takes the rest.
+        with _worker() as (process, spot):
+            for job in jobs[len(answers) :]:
+                answers.append(_ask(process, job))
+                if answers[-1] is None:
+                    break
+    return answers, spot
 
 
 @contextmanager

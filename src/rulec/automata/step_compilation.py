@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from math import ceil, floor
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import RulebookFormulas, build_all, lower
 from rulec.diagnostics import RulecError
+from rulec.logic.bounds import Rounding, in_steps
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 
 MOST_STEPS = 100
@@ -27,6 +29,7 @@ class StepCompiler:
         self._machines: dict[tuple[str, Fraction | None], CompiledRule] = {}
         self._answers: dict[Fraction, CompiledRulebook | RulecError] = {}
         self._header: CompiledRulebook | None = None
+        self._roundings: dict[tuple[str, Fraction], StepCompiler] = {}
 
     def __reduce__(self) -> tuple[Callable[[Rulebook], StepCompiler], tuple[Rulebook]]:
         return StepCompiler, (self.rulebook,)
@@ -48,6 +51,27 @@ class StepCompiler:
         if isinstance(answer, RulecError):
             raise answer
         return answer
+
+    def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
+        """The rulebook with bounds rounded down to multiples of a step (s), and rounded up.
+
+        Its formulas are in steps. Where all bounds fit, both are the same. Raises RulecError as
+        ``build_automata``.
+        """
+        down, up = (self._rounded(step_s, rounding) for rounding in (floor, ceil))
+        return down, up
+
+    def _rounded(self, step_s: Fraction, rounding: Rounding) -> CompiledRulebook:
+        rules = tuple(
+            [
+                replace(rule, formula=in_steps(rule.formula, step_s, rounding))
+                for rule in self.rulebook.rules
+            ]
+        )
+        key = rounding.__name__, step_s
+        if key not in self._roundings:
+            self._roundings[key] = StepCompiler(replace(self.rulebook, rules=rules))
+        return self._roundings[key](step_s)
 
     def at_own_steps(self, rules: Sequence[Rule] | None = None) -> CompiledRulebook:
         """Compile rules for their examples' steps, all by default. Raises RulecError."""

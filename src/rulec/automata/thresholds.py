@@ -22,6 +22,25 @@ def exact(value: Fraction | float) -> Fraction:
     return _decimal(value) if isinstance(value, float) else Fraction(value)
 
 
+@lru_cache(maxsize=1 << 8)
+def exact_step(step_s: Fraction | float) -> Fraction:
+    """The exact step (s) that a number stands for.
+
+    Frame rates have steps that no decimal is: one that rounds a whole number of frames a second, or
+    a thousand of them in 1001 s as video has, to five digits or more means that.
+    """
+    step = exact(step_s)
+    digits = str(step_s).partition("e")[0].replace(".", "").lstrip("0")
+    if not isinstance(step_s, float) or len(digits) < 5 or step <= 0:
+        return step
+    for frames in (Fraction(1), Fraction(1000, 1001)):
+        rate = round(1 / step / frames)
+        near = 1 / (rate * frames) if rate else step
+        if abs(near - step) <= step / 10 ** (len(digits) - 1):
+            return near
+    return step
+
+
 @lru_cache(maxsize=1 << 14)
 def _decimal(value: float) -> Fraction:
     # A subclass, such as numpy's, may have its own idea of repr.

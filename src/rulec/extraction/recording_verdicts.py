@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,7 +13,7 @@ from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_chunk
-from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.monitoring.verdict import NotJudged, Verdict, agreed
 from rulec.scenario.recorded.recording import Recording
 from rulec.value_display import Rows, short_repr
 
@@ -33,15 +34,16 @@ class DriveVerdict:
 class RecordingVerdicts(Rows):
     """The verdicts of a rulebook on a recording's drives, computed on demand.
 
-    Raises RulecError R0407 if the rulebook has bounds that are no multiples of the recording's
-    step, R0507 if it was compiled for another step, R0612 for a vehicle that is not there.
+    Bounds that are no multiples of the recording's step are rounded down and up. Raises RulecError
+    R0507 if the rulebook was compiled for another step, R0612 for a vehicle that is not there.
     """
 
     def __init__(
         self, recording: Recording, rulebook: CompiledRulebook, request: RequestedDrives, file: str
     ) -> None:
         self.request = request
-        self.rules = rulebook.fitted_to(recording.step_s)
+        self._roundings = rulebook.rounded_to(recording.step_s)
+        self.rules = self._roundings[0]
         formulas = [rule.formula for rule in self.rules.rules]
         formulas += [axiom.formula for axiom in self.rules.axioms]
         self.drives = selected_drives(
@@ -54,6 +56,7 @@ class RecordingVerdicts(Rows):
         )
         self.recording = self.drives.recording
         self.mirrored = self.drives.mirrored
+        self.defaults = request.defaults
         self.egos = self.drives.egos
 
     def answers(self) -> Iterator[DriveVerdict | NoDrive]:
@@ -70,17 +73,24 @@ class RecordingVerdicts(Rows):
 
     def _verified(self, drives: list[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
         traces = [drive.trace for drive in drives if isinstance(drive, Drive)]
-        answers = iter(verify_chunk(traces, self.rules))
+        answers = zip(*(verify_chunk(traces, rules) for rules in self._roundings), strict=True)
         for drive in drives:
-            yield DriveVerdict(drive, next(answers)) if isinstance(drive, Drive) else drive
+            yield DriveVerdict(drive, _agreed(next(answers))) if isinstance(drive, Drive) else drive
 
     def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
-        """Rule -> names beyond ``words`` that it reads, which have their defaults in all states."""
+        """Rule -> names beyond ``words`` that it reads, which have their defaults in all states.
+
+        Only what is presumed has, unless defaults have been asked for.
+        """
         declared = self.rules.vocabulary.declarations
         by_rule = {}
         for rule in self.rules.rules:
             missing = set(names_in(rule.formula)) - words
-            by_rule[rule.name] = tuple(name for name in declared if name in missing)
+            by_rule[rule.name] = tuple(
+                name
+                for name, declaration in declared.items()
+                if name in missing and (self.defaults or declaration.presumed)
+            )
         return by_rule
 
     def rows(self) -> list[dict[str, Any]]:
@@ -89,6 +99,11 @@ class RecordingVerdicts(Rows):
 
     def __repr__(self) -> str:
         return f"RecordingVerdicts({self.rules.name}, {len(self.egos):,} vehicles)"
+
+
+def _agreed(answers: Sequence[Verdict | NotJudged]) -> Verdict | NotJudged:
+    verdicts = [answer for answer in answers if isinstance(answer, Verdict)]
+    return agreed(verdicts) if len(verdicts) == len(answers) else answers[0]
 
 
 def _row(answer: DriveVerdict | NoDrive) -> dict[str, Any]:
@@ -108,23 +123,30 @@ def _row(answer: DriveVerdict | NoDrive) -> dict[str, Any]:
 class ViolationTally:
     """Verdicts, counted drive by drive.
 
-    ``first_s``: rule -> drive -> time of its first violation (s of the recording). ``words`` are
-    the names of the signals that every drive supplies.
+    ``first_s``: rule -> drive -> time of its first violation (s of the recording). ``open_rules``
+    and ``untold``: rule -> the names for want of which it is open, or not judged, in some drive.
+    ``judged_in``: rule -> the number of drives in which it is neither. ``words`` are the names of
+    the signals that every drive supplies.
     """
 
     satisfied: list[str] = field(default_factory=list)
     violated: list[str] = field(default_factory=list)
+    doubtful: list[str] = field(default_factory=list)
     not_judged: list[NoDrive] = field(default_factory=list)
     first_s: dict[str, dict[str, float]] = field(default_factory=dict)
+    open_rules: dict[str, dict[str, None]] = field(default_factory=dict)
+    untold: dict[str, dict[str, None]] = field(default_factory=dict)
+    judged_in: Counter[str] = field(default_factory=Counter)
+    open_hard: int = 0
     words: frozenset[str] | None = None
 
     @property
     def judged(self) -> int:
         """The number of drives that have a verdict."""
-        return len(self.satisfied) + len(self.violated)
+        return len(self.satisfied) + len(self.violated) + len(self.doubtful)
 
-    def add(self, verdict: DriveVerdict | NoDrive) -> None:
-        """Count a drive."""
+    def add(self, verdict: DriveVerdict | NoDrive, rules: Sequence[str]) -> None:
+        """Count a drive's verdict on these rules."""
         if isinstance(verdict, NoDrive):
             self.not_judged.append(verdict)
             return
@@ -133,8 +155,17 @@ class ViolationTally:
             self.not_judged.append(NoDrive(drive.ego, answer.error.diagnostics[0].message))
             return
         self.words = drive.words if self.words is None else self.words & drive.words
-        (self.satisfied if answer.satisfied else self.violated).append(drive.trace.id)
+        by_outcome = {True: self.satisfied, False: self.violated, None: self.doubtful}
+        by_outcome[answer.satisfied].append(drive.trace.id)
         for violation in answer.violations:
             times = self.first_s.setdefault(violation.rule, {})
             at = drive.time_s(violation.step)
             times[drive.trace.id] = min(at, times.get(drive.trace.id, at))
+        for result in answer.open:
+            names = self.open_rules.setdefault(result.rule, {})
+            names.update(dict.fromkeys(result.depends_on))
+            self.open_hard += result.strength == "hard"
+        for rule in answer.not_judged:
+            self.untold.setdefault(rule.rule, {}).update(dict.fromkeys(rule.untold))
+        doubtful = {x.rule for x in answer.open} | {x.rule for x in answer.not_judged}
+        self.judged_in.update(rule for rule in rules if rule not in doubtful)

@@ -30,7 +30,8 @@ class RequestedDrives:
     """A choice of egos and thresholds, and what is assumed.
 
     No ``egos`` are all vehicles. ``assumed`` holds in every state. ``as_recorded``: a recording of
-    traffic on the other side than the rulebook's is not mirrored.
+    traffic on the other side than the rulebook's is not mirrored. ``defaults``: what is unknown has
+    its default, and the recording's end is taken for the end of what happened.
     """
 
     __repr__ = short_repr
@@ -39,6 +40,7 @@ class RequestedDrives:
     thresholds: Thresholds = USUAL
     assumed: Mapping[str, Value] = field(default_factory=dict)
     as_recorded: bool = False
+    defaults: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +74,7 @@ def selected_drives(
     mirrored = recording.side not in (None, side) and not request.as_recorded
     if mirrored:
         recording = mirrored_recording(recording)
-    writer = TraceWriter(vocabulary, names, request.assumed)
+    writer = TraceWriter(vocabulary, names, request.assumed, request.defaults)
     drives = Drives(recording, side, request.thresholds, writer)
     known = drives.egos()
     for ego in request.egos:

@@ -29,6 +29,7 @@ from rulec.trace import State, Trace, Value
 from rulec.trace.vocabulary_projection import fits, is_about, known_type, known_types
 from rulec.value_display import short_repr
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,12 +139,14 @@ class Drive:
 class TraceWriter:
     """The choice of signals to write: a vocabulary's, optionally only ``names``.
 
-    ``assumed`` are values that hold in every state, whatever the recording says.
+    ``assumed`` are values that hold in every state, whatever the recording says. With ``defaults``
+    what is unknown is left out, so that it takes its default, and the trace is over when it ends.
     """
 
     vocabulary: Vocabulary | None = None
     names: frozenset[str] | None = None
     assumed: Mapping[str, Value] = field(default_factory=dict)
+    defaults: bool = False
 
 
 ALL_SIGNALS = TraceWriter()
@@ -173,8 +176,10 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
         name,
         context.recording.step_s,
         objects,
-        _states(signals, present, context.states),
+        _states(signals, present, context.states, defaults=writer.defaults),
         {object_name: span for object_name, span in spans.items() if span != whole},
+        ends="complete" if writer.defaults else "cut",
+        told=None if writer.defaults else frozenset((*signals.world, *signals.about)),
     )
     start_s = round(context.first_step * context.recording.step_s, 9)
     columns = {**signals.world, **signals.about}
@@ -230,13 +235,17 @@ def _fits(name: str, column: SignalColumn, declaration: Declaration) -> bool:
     return fits(name, values.tolist(), declaration)
 
 
-def _states(signals: SignalColumns, present: Sequence[Presence], count: int) -> tuple[State, ...]:
+def _states(
+    signals: SignalColumns, present: Sequence[Presence], count: int, *, defaults: bool
+) -> tuple[State, ...]:
     states: list[dict[str, Any]] = [{} for _ in range(count)]
     for name, column in signals.world.items():
         unknown = signals.unknown.get(name)
         for state, value in enumerate(column.tolist()):
             if unknown is None or not unknown[state]:
                 states[state][name] = value
+            elif not defaults:
+                states[state][name] = UNKNOWN
     for name, rows in signals.about.items():
         only, unknown = signals.only.get(name), signals.unknown.get(name)
         by_state: list[dict[str, Any]] = [{} for _ in range(count)]
@@ -246,6 +255,8 @@ def _states(signals: SignalColumns, present: Sequence[Presence], count: int) -> 
                 for state, value in zip(span, rows[presence.row, span].tolist(), strict=True):
                     if unknown is None or not unknown[presence.row, state]:
                         by_state[state][presence.name] = value
+                    elif not defaults:
+                        by_state[state][presence.name] = UNKNOWN
         for state, values in enumerate(by_state):
             if values:
                 states[state][name] = values

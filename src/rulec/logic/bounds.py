@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 from math import gcd, lcm
@@ -124,39 +124,50 @@ def operations_of(formula: ltl.Formula) -> Iterator[ltl.Unary | ltl.Binary]:
                 waiting += [right, left]
 
 
-def in_steps(formula: ltl.Formula, step_s: Fraction) -> ltl.Formula:
-    """The formula with bounds in steps of ``step_s`` seconds.
+Rounding = Callable[[Fraction], int]
+"""How to make a whole number of steps of a bound: ``math.floor`` or ``math.ceil``."""
+
+
+def in_steps(
+    formula: ltl.Formula, step_s: Fraction, rounding: Rounding | None = None
+) -> ltl.Formula:
+    """The formula with bounds in steps of ``step_s`` seconds, rounded if there is a ``rounding``.
 
     It no longer says where its bounds are written.
 
     Raises:
-        NotAMultipleError: for the first bound, from left to right, that is no multiple of the step.
+        NotAMultipleError: for the first bound, from left to right, that is no multiple of the step,
+            if there is no rounding.
         ValueError: if the step is not above 0.
     """
     if step_s <= 0:
         raise ValueError("a step lasts more than 0 s")
     match formula:
         case ltl.Unary(operator, operand, bound):
-            steps = _steps(bound, step_s)
-            return ltl.Unary(operator, in_steps(operand, step_s), steps)
+            steps = _steps(bound, step_s, rounding)
+            return ltl.Unary(operator, in_steps(operand, step_s, rounding), steps)
         case ltl.Binary(operator, left, right, bound):
-            first = in_steps(left, step_s)
-            steps = _steps(bound, step_s)
-            return ltl.Binary(operator, first, in_steps(right, step_s), steps)
+            first = in_steps(left, step_s, rounding)
+            steps = _steps(bound, step_s, rounding)
+            return ltl.Binary(operator, first, in_steps(right, step_s, rounding), steps)
         case ltl.Atom() | ltl.Comparison() | ltl.Same() | ltl.Constant():
             return formula
 
 
-def _steps(bound: ltl.Bound | None, step_s: Fraction) -> ltl.Bound | None:
+def _steps(
+    bound: ltl.Bound | None, step_s: Fraction, rounding: Rounding | None
+) -> ltl.Bound | None:
     if bound is None:
         return None
     if bound.unit == "steps":
         return replace(bound, span=None)
-    for seconds in (bound.low, bound.high):
-        if seconds is not None and (seconds / step_s).denominator != 1:
+    low, high = bound.low / step_s, None if bound.high is None else bound.high / step_s
+    if rounding is not None:
+        low, high = Fraction(rounding(low)), None if high is None else Fraction(rounding(high))
+    for seconds, steps in ((bound.low, low), (bound.high, high)):
+        if seconds is not None and steps is not None and steps.denominator != 1:
             raise NotAMultipleError(seconds, step_s, bound.span)
-    high = None if bound.high is None else bound.high / step_s
-    return replace(bound, low=bound.low / step_s, high=high, unit="steps", span=None)
+    return replace(bound, low=low, high=high, unit="steps", span=None)
 
 
 def total_bound(formula: ltl.Formula) -> int:

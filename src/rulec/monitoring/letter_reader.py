@@ -153,12 +153,20 @@ class LetterReader:
         return read.digit(total)
 
     def _missing(self, name: str, items: tuple[str, ...], number: int, rule: str) -> RulecError:
-        of = f" of `{', '.join(items)}`" if items else ""
-        return MISSING_VALUE.error(
-            self.place,
-            f"{self.where(number)} does not say the `{name}`{of}, which rule `{rule}` needs",
-            help="supply it in every state, or declare a default in the vocabulary",
-        )
+        return missing_value((name, items), self.where(number), rule, self.place)
+
+
+def missing_value(
+    subject: tuple[str, tuple[str, ...]], where: str, rule: str, place: SourceLocation | None
+) -> RulecError:
+    """The error (R0504) about a state that lacks the value of a name, asked of objects."""
+    name, items = subject
+    of = f" of `{', '.join(items)}`" if items else ""
+    return MISSING_VALUE.error(
+        place,
+        f"{where} does not say the `{name}`{of}, which rule `{rule}` needs",
+        help="supply it in every state, or declare a default in the vocabulary",
+    )
 
 
 def present_in(

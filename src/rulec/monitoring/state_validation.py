@@ -16,6 +16,7 @@ from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALU
 from rulec.trace import State
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
 
 NUMBERS = frozenset({int, float})
 TRUTHS = frozenset({bool})
@@ -37,11 +38,17 @@ class StateValidator:
         states: Iterable[State],
         where: Callable[[int], str],
         place: SourceLocation | None = None,
-    ) -> None:
-        """Check each state as ``check_state`` does; ``where`` names it by its number."""
+    ) -> bool:
+        """Check each state as ``check_state`` does; ``where`` names it by its number.
+
+        True if some value is partly known only.
+        """
+        is_partial = False
         for number, state in enumerate(states):
             if not self.passes(state):
                 check_state(state, self._objects, self._vocabulary, where(number), place)
+                is_partial = is_partial or has_partial_values(state)
+        return is_partial
 
     def passes(self, state: Any) -> bool:
         """Quick check that a state fits; False leaves it open."""
@@ -86,6 +93,14 @@ def check_objects(
                 f"`{vocabulary.name}` does not know",
                 help=_suggest(kind, vocabulary.types),
             )
+
+
+def has_partial_values(state: Mapping[str, Any]) -> bool:
+    """Tell whether a state has values that are unknown, or intervals."""
+    return any(
+        has_partial_values(value) if isinstance(value, Mapping) else type(value) in UNKNOWN_TYPES
+        for value in state.values()
+    )
 
 
 def check_state(
@@ -189,6 +204,8 @@ def _many_values(declaration: Declaration) -> _Look:
 
 
 def _misfit(value: Any, declaration: Declaration) -> str:
+    if value is UNKNOWN:
+        return ""
     match declaration:
         case Enumeration():
             if not isinstance(value, str) or value not in declaration.values:
@@ -196,7 +213,7 @@ def _misfit(value: Any, declaration: Declaration) -> str:
         case Signal():
             if not isinstance(value, bool):
                 return "it is true or false"
-        case Quantity():
+        case Quantity() if not isinstance(value, Interval):
             number = isinstance(value, int | float) and not isinstance(value, bool)
             # Neither infinite nor nan; whole numbers may be larger than any float.
             if not number or not -math.inf < value < math.inf:

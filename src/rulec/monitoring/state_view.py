@@ -14,6 +14,7 @@ from rulec.automata.thresholds import exact
 from rulec.logic.kleene import Unknown
 from rulec.trace import State, Value
 from rulec.vocabulary import Declaration, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +33,14 @@ class StateView:
             value = value.get(item) if value is not None else None
         if value is None:
             value = self.vocabulary.declarations[name].default
-        return Unknown(name, items) if value is None else value
+        if value is None or value is UNKNOWN or type(value) is Interval:
+            return Unknown(name, items)
+        known: Value = value
+        return known
+
+    def given(self, name: str, items: tuple[str, ...]) -> PartialValue | None:
+        """The value, be it partial, that the state gives, or the declared default."""
+        return value_in(self.state, name, items, self.vocabulary.declarations[name])
 
     def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
         """The quantity's value: exact."""
@@ -43,7 +51,7 @@ class StateView:
 
 def value_in(
     state: State, name: str, objects: Sequence[str], declaration: Declaration
-) -> Value | None:
+) -> PartialValue | None:
     """Value in a state, or its default; None if there is neither."""
     value: Any = state.get(name)
     for item in objects:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from rulec.diagnostics import RulecError
 from rulec.rulebook.rulebook_model import Strength
@@ -28,19 +28,78 @@ class Violation:
     step: int | None
 
 
+OutcomeName: TypeAlias = Literal["kept", "violated", "open"]
+
+Reason: TypeAlias = Literal["not told", "not over", "began before", "step"]
+"""Why a verdict is open: values are unknown, a duty is pending, the past has not been seen, or a
+bound that is no multiple of the step comes out one way if rounded down and the other if rounded up.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionalOutcome:
+    """How an open verdict comes out if some unknown names always have these values."""
+
+    when: Mapping[str, bool | str]
+    outcome: OutcomeName
+
+
+@dataclass(frozen=True, slots=True)
+class OpenVerdict:
+    """A rule that some completions of a trace keep and others do not, or whose end is not seen.
+
+    ``depends_on``: the smallest set of names such that completions that agree on them agree on the
+    outcome; of equally small ones the first in the vocabulary's order. ``exact`` is false where
+    there was too much to look at: the verdict may then be known after all.
+    """
+
+    __repr__ = short_repr
+
+    rule: str
+    strength: Strength
+    binding: Mapping[str, str]
+    because: tuple[Reason, ...]
+    depends_on: tuple[str, ...] = ()
+    outcomes: tuple[ConditionalOutcome, ...] = ()
+    exact: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class RuleNotJudged:
+    """A rule that no trace from this source can be known to violate, for want of ``untold``.
+
+    ``why`` is another reason, if there is one.
+    """
+
+    rule: str
+    strength: Strength
+    untold: tuple[str, ...]
+    why: str = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Verdict(Rows):
-    """Verdict of a rulebook: a trace's violations by rule and objects."""
+    """Verdict of a rulebook: what a trace violates for sure, by rule and objects.
+
+    ``open`` is what depends on something unknown, ``not_judged`` what this source cannot tell.
+    ``presumed``: names that hold by presumption, because no source tells them.
+    """
 
     __repr__ = short_repr
 
     trace: str
     violations: tuple[Violation, ...]
+    open: tuple[OpenVerdict, ...] = ()
+    not_judged: tuple[RuleNotJudged, ...] = ()
+    presumed: tuple[str, ...] = ()
 
     @property
-    def satisfied(self) -> bool:
-        """Tell whether no hard rule is violated; soft rules may be."""
-        return all(violation.strength != "hard" for violation in self.violations)
+    def satisfied(self) -> bool | None:
+        """Whether no hard rule is violated; None if one is open or not judged."""
+        if any(violation.strength == "hard" for violation in self.violations):
+            return False
+        doubtful: tuple[OpenVerdict | RuleNotJudged, ...] = (*self.open, *self.not_judged)
+        return None if any(rule.strength == "hard" for rule in doubtful) else True
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a violation."""
@@ -54,6 +113,43 @@ class Verdict(Rows):
             }
             for violation in self.violations
         ]
+
+
+def agreed(verdicts: Sequence[Verdict]) -> Verdict:
+    """What verdicts on one trace by rules with differently rounded bounds have in common.
+
+    Where they differ the verdict is open, on the step.
+    """
+    first, *others = verdicts
+    violations = {_key(violation): violation for violation in first.violations}
+    doubtful = {_key(result): result for result in first.open}
+    for verdict in others:
+        further = {_key(violation): violation for violation in verdict.violations}
+        further_open = {_key(result): result for result in verdict.open}
+        for key in violations.keys() ^ further.keys():
+            known = violations.get(key) or further[key]
+            doubtful[key] = OpenVerdict(known.rule, known.strength, known.binding, ("step",))
+        for key in doubtful.keys() ^ further_open.keys():
+            known_open = doubtful.get(key) or further_open[key]
+            because = tuple(dict.fromkeys((*known_open.because, *_STEP)))
+            doubtful[key] = replace(known_open, because=because, outcomes=())
+        violations = {
+            key: replace(found, step=_later(found.step, further[key].step))
+            for key, found in violations.items()
+            if key in further
+        }
+    return replace(first, violations=tuple(violations.values()), open=tuple(doubtful.values()))
+
+
+_STEP: tuple[Reason, ...] = ("step",)
+
+
+def _key(result: Violation | OpenVerdict) -> tuple[str, tuple[str, ...]]:
+    return result.rule, tuple(result.binding.values())
+
+
+def _later(first: int | None, second: int | None) -> int | None:
+    return None if first is None or second is None else max(first, second)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,51 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.mealy_monitor import MealyMonitor
-from rulec.automata.thresholds import exact
+from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.monitoring.axiom_violations import check_counting_axioms
+from rulec.monitoring.bindings import bindings
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects
-from rulec.monitoring.verdict import NotJudged, Verdict, Violation
+from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
+from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
-from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.vocabulary_model import choices
-
-
-@dataclass(frozen=True, slots=True)
-class Binding:
-    """Objects for a rule's variables, from state ``first`` to ``last`` (inclusive)."""
-
-    objects: Mapping[str, str]
-    first: int
-    last: int
-
-
-def bindings(
-    rule: CompiledRule,
-    vocabulary: Vocabulary,
-    objects: Mapping[str, str],
-    present: Mapping[str, tuple[int, int]],
-    n_states: int,
-) -> Iterator[Binding]:
-    """All bindings of a rule's variables to distinct objects of their types.
-
-    A binding counts on the stretch in which all its objects are present; one whose objects are
-    never present together is left out. A rule without variables has one binding, the empty one.
-    """
-    names = [variable.name for variable in rule.variables]
-    for chosen in choices([variable.type for variable in rule.variables], objects, vocabulary):
-        stretches = [present.get(item, (0, n_states - 1)) for item in chosen]
-        first = max((start for start, _ in stretches), default=0)
-        last = min((end for _, end in stretches), default=n_states - 1)
-        if first <= last:
-            yield Binding(dict(zip(names, chosen, strict=True)), first, last)
 
 
 def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
@@ -57,13 +27,19 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     that a rule depends on, with the trace's own place.
     """
     check_trace(trace)
+    if trace.ends == "cut":
+        roundings = rulebook.rounded_to(trace.step_s)
+        if len(roundings) > 1:
+            return agreed([verify(trace, rounded) for rounded in roundings])
     rulebook = rulebook_for_trace(trace, rulebook)
     for rule in rulebook.rules:
         if rule.step_s is not None:
-            check_step(rule, exact(trace.step_s), "the trace", trace.place)
+            check_step(rule, exact_step(trace.step_s), "the trace", trace.place)
     check_objects(trace.objects, rulebook.vocabulary, trace.place)
     validator = StateValidator(rulebook.vocabulary, trace.objects)
-    validator.check(trace.states, "state {}".format, trace.place)
+    is_partial = validator.check(trace.states, "state {}".format, trace.place)
+    if is_partial or trace.ends == "cut" or trace.told is not None:
+        return uncertain_verdict(trace, rulebook)
     reader = letter_reader_of(trace, rulebook)
     check_counting_axioms(rulebook, len(trace.states), reader.view, "state {}".format, trace.place)
     violations = []

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.automata.thresholds import exact
+from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.online.monitor_sources import read_saved, replay_trace
@@ -83,9 +83,9 @@ def _monitor(
 ) -> tuple[Monitor, SourceLocation | None]:
     rules = tuple(rule for rule in rulebook.rules if rule.strength in strengths)
     if isinstance(before, Trace):
-        if exact(before.step_s) != step_s:
+        if exact_step(before.step_s) != step_s:
             raise _no_way(
-                f"the past has steps of {number_in_words(exact(before.step_s))} s, "
+                f"the past has steps of {number_in_words(exact_step(before.step_s))} s, "
                 f"the scenario's future of {number_in_words(step_s)} s",
                 before.place,
             )

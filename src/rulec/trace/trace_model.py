@@ -7,15 +7,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import islice
+from typing import Literal
 
 from rulec.diagnostics import SourceLocation
 from rulec.trace.trace_messages import NO_STATES, NOT_A_TRACE, UNKNOWN_OBJECT
 from rulec.value_display import short_repr
+from rulec.vocabulary.partial_values import PartialValue
 
 Value = bool | float | str
 
-State = Mapping[str, "Value | Mapping[str, Value]"]
+State = Mapping[str, "PartialValue | Mapping[str, PartialValue]"]
 """Vocabulary name -> its value, or for a per-object name object -> value."""
+
+Ending = Literal["complete", "cut"]
+"""How a trace ends: it is over, or whoever recorded it stopped, and had begun in the middle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +29,7 @@ class Trace:
 
     ``objects`` maps each object's id to its type. ``present`` gives, for an object that is not
     there all the time, the first and the last state (both from 0, inclusive) in which it is.
+    ``told`` are the names that its source can tell, None for all: any other one is unknown.
     ``place`` is where it was read, for messages.
     """
 
@@ -35,6 +41,8 @@ class Trace:
     states: tuple[State, ...]
     present: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     place: SourceLocation | None = field(default=None, compare=False, repr=False)
+    ends: Ending = "complete"
+    told: frozenset[str] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from rulec.trace.trace_model import State, TraceGraph, Value
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+from rulec.vocabulary.partial_values import PartialValue
 
 RECORDED_UNITS = {
     "speed": "km/h",
@@ -25,7 +26,7 @@ RECORDED_UNITS = {
 }
 """The units of the quantities that recordings supply."""
 
-_Signal = Value | Mapping[str, Value]
+_Signal = PartialValue | Mapping[str, PartialValue]
 
 
 def known_type(types: Iterable[str], vocabulary: Vocabulary) -> str | None:
@@ -145,4 +146,6 @@ class _StateProjection:
 def _fits(name: str, value: _Signal, declaration: Declaration) -> bool:
     if isinstance(value, Mapping) != bool(declaration.parameters):
         return False
-    return fits(name, value.values() if isinstance(value, Mapping) else (value,), declaration)
+    values = value.values() if isinstance(value, Mapping) else (value,)
+    known = [x for x in values if isinstance(x, bool | int | float | str)]
+    return fits(name, known, declaration)

@@ -34,6 +34,8 @@ class Enumeration:
     parameters: tuple[str, ...]
     values: tuple[str, ...]
     default: str | None = None
+    constant: bool = False
+    presumed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +45,8 @@ class Signal:
     name: str
     parameters: tuple[str, ...] = ()
     default: bool | None = None
+    constant: bool = False
+    presumed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +57,13 @@ class Quantity:
     parameters: tuple[str, ...]
     unit: str
     default: float | None = None
+    constant: bool = False
+    presumed: bool = False
 
 
 Declaration = Enumeration | Signal | Quantity
+"""What can be said of a state. ``constant``: it stays the same as long as a trace goes on.
+``presumed``: where no source tells it, its default holds, and verdicts name it."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,9 @@ from rulec.monitoring.verdict import Verdict
 
 def violated(found, book, **wanted):
     """Ego -> the rules that it violated, with when first (s of the recording)."""
-    judged = RecordingVerdicts(found, book, RequestedDrives(**wanted), "by hand")
+    judged = RecordingVerdicts(
+        found, book, RequestedDrives(**{"defaults": True, **wanted}), "by hand"
+    )
     answers = {}
     for one in judged.answers():
         assert not isinstance(one, NoDrive)

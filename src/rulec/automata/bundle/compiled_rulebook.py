@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, Protocol
 
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.mealy_monitor import MealyMonitor
-from rulec.automata.thresholds import exact
-from rulec.diagnostics import SourceLocation
+from rulec.automata.thresholds import exact_step
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Formula
 from rulec.logic.printing import number_in_words
 from rulec.rulebook import rulebook_model as model
 from rulec.value_display import Rows, short_repr
 from rulec.vocabulary import Vocabulary
+
+NO_MULTIPLE = "R0407"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +54,16 @@ class CompiledAxiom:
     place: SourceLocation | None = field(default=None, compare=False)
 
 
+class Recompiler(Protocol):
+    """A compiler of one rulebook for any step (s)."""
+
+    def __call__(self, step_s: Fraction) -> CompiledRulebook:
+        """The rulebook for a step. Raises RulecError R0407 for a bound that does not fit."""
+
+    def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
+        """The rulebook with bounds rounded down to multiples of a step, and rounded up."""
+
+
 @dataclass(frozen=True, slots=True)
 class CompiledRulebook(Rows):
     """Compiled rules of a rulebook, with the vocabulary of their traces.
@@ -81,9 +92,7 @@ class CompiledRulebook(Rows):
     axioms: tuple[CompiledAxiom, ...] = ()
     traffic: model.Traffic = ""
     source: model.Rulebook | None = field(default=None, compare=False, repr=False)
-    recompile: Callable[[Fraction], CompiledRulebook] | None = field(
-        default=None, compare=False, repr=False
-    )
+    recompile: Recompiler | None = field(default=None, compare=False, repr=False)
 
     def at_step(self, step_s: Fraction | float) -> CompiledRulebook:
         """These rules for traces whose states are ``step_s`` seconds apart.
@@ -93,7 +102,7 @@ class CompiledRulebook(Rows):
         step and cannot be compiled again, R0407 for a bound that is no multiple of the step, else
         as ``compile_rulebook``.
         """
-        step = exact(step_s)
+        step = exact_step(step_s)
         if self.recompile is None:
             for rule in self.rules:
                 check_step(rule, step)
@@ -109,6 +118,20 @@ class CompiledRulebook(Rows):
     def fitted_to(self, step_s: Fraction | float) -> CompiledRulebook:
         """Rulebook recompiled for a step (s) if possible, else this one unchanged."""
         return self if self.recompile is None else self.at_step(step_s)
+
+    def rounded_to(self, step_s: Fraction | float) -> tuple[CompiledRulebook, ...]:
+        """The rulebook recompiled for a step (s), if possible.
+
+        With bounds that are no multiples of it there are two: these rounded down, and rounded up.
+        Raises RulecError as ``at_step``, but for R0407.
+        """
+        try:
+            return (self.fitted_to(step_s),)
+        except RulecError as error:
+            misfits = all(problem.code == NO_MULTIPLE for problem in error.diagnostics)
+            if self.recompile is None or not misfits:
+                raise
+            return self.recompile.rounded(exact_step(step_s))
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a rule."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import stat
 import sys
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,6 +48,11 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Explain by every part of a formula and every state, however large the table becomes.",
 )
+@click.option(
+    "--strict",
+    is_flag=True,
+    help="Count hard rules that are open, for want of values or of an end, as violated.",
+)
 @shared.table_format_option("traces")
 @click.option(
     "--ego",
@@ -64,6 +70,7 @@ def command(
     rulebook: str,
     n_explained: int | None,
     every_part: bool,
+    strict: bool,
     form: Format | None,
     json_output: bool,
     at: str,
@@ -79,7 +86,7 @@ def command(
     FILE may also be recorded traffic: CommonRoad's (.xml), or SUMO's floating-car data. Then every
     vehicle is judged by what it did, and a table says who violated what.
 
-    Exit status: 0 every hard rule is kept, 1 one is violated, 2 a trace could not be judged.
+    Exit status: 0 no hard rule is violated, 1 one is, 2 a trace could not be judged, or no rule.
     """
     # Formats of recordings, 80 ms: not for --help.
     from rulec.scenario.scenario_files import is_recording
@@ -90,7 +97,7 @@ def command(
     if option and not recordings:
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
-    run = _Run(rules, json_output, Complaints(), to_explain, every_part)
+    run = _Run(rules, json_output, Complaints(), to_explain, every_part=every_part, strict=strict)
     if recordings:
         about = scenario_options.requested_drives(egos, options, rules.vocabulary)
         for file in recordings:
@@ -98,7 +105,7 @@ def command(
     if len(recordings) < len(files):
         run.traces([file for file in files if file not in recordings], form)
     run.complaints.close()
-    return ExitStatus.after(answered=not run.not_answered, failed=run.violated)
+    return ExitStatus.after(answered=run.judged and not run.not_answered, failed=run.violated)
 
 
 @dataclass
@@ -110,7 +117,9 @@ class _Run:
     complaints: Complaints
     to_explain: int
     every_part: bool
+    strict: bool
     violated: bool = False
+    judged: bool = False
     not_answered: bool = False
 
     def traces(self, files: Sequence[str], form: Format | None) -> None:
@@ -120,7 +129,8 @@ class _Run:
         from rulec.monitoring.verdict import NotJudged
         from rulec.report.verdicts import verdict_json, verdict_report
 
-        satisfied = violated = not_judged = 0
+        counts: Counter[bool | None] = Counter()
+        not_judged = 0
         for traces, place, answer in _answers(files, form, self.rules):
             if isinstance(answer, NotJudged):
                 not_judged += 1
@@ -128,9 +138,10 @@ class _Run:
                 if self.json_output:
                     print_result(verdict_json.not_judged_as_json(answer))
                 continue
-            satisfied += answer.satisfied
-            violated += not answer.satisfied
-            if answer.violations or self.json_output:
+            counts[answer.satisfied] += 1
+            self.violated |= self.strict and any(x.strength == "hard" for x in answer.open)
+            self.judged |= len(answer.not_judged) < max(len(self.rules.rules), 1)
+            if answer.violations or answer.open or answer.not_judged or self.json_output:
                 used = rulebook_for(traces, place, self.rules)
                 # A trace of a table is made only if it is looked at.
                 explained = self._explained(answer, traces[place], used) if self.to_explain else []
@@ -142,8 +153,8 @@ class _Run:
                     )
                 )
         if not self.json_output:
-            print_result(verdict_report.summary(satisfied, violated, not_judged))
-        self.violated |= violated > 0
+            print_result(verdict_report.summary(counts, not_judged))
+        self.violated |= counts[False] > 0
 
     def recording(self, file: str, net: Path | None, request: RequestedDrives) -> None:
         """Judge every drive of a recording."""
@@ -157,12 +168,12 @@ class _Run:
         except RulecError as error:
             self._complain(error)
             return
-        tally = ViolationTally()
-        blocks = []
+        tally, blocks = ViolationTally(), []
+        names = [rule.name for rule in self.rules.rules]
         with progress(f"judging {file}", len(drives.egos)) as tell:
             for number, answer in enumerate(drives.answers(), 1):
                 tell(number)
-                tally.add(answer)
+                tally.add(answer, names)
                 explained: list[Explanation] = []
                 if isinstance(answer, DriveVerdict):
                     verdict = answer.answer
@@ -177,6 +188,7 @@ class _Run:
                             explained,
                             every_part=self.every_part,
                             width=page_width(),
+                            doubts=False,
                         )
                         blocks.append(f"\n{details}")
                 if self.json_output:
@@ -184,7 +196,8 @@ class _Run:
         if not self.json_output:
             table, summary = recording_table.as_text(drives, tally), recording_table.summary(tally)
             print_result("\n".join([table, *blocks, summary]))
-        self.violated |= bool(tally.violated)
+        self.violated |= bool(tally.violated) or (self.strict and bool(tally.open_hard))
+        self.judged |= bool(tally.judged_in) or not names
         self.not_answered |= not tally.judged
 
     def _explained(

@@ -147,7 +147,8 @@ drives_options = combined(
             "assumed",
             multiple=True,
             metavar="NAME=VALUE",
-            help="In recorded traffic: what holds all along, such as built_up=true.",
+            help="In recorded traffic: what holds all along, such as built_up=true; or `defaults`: "
+            "what the recording does not tell has its default, and nothing comes after its end.",
         ),
         click.option(
             "--threshold",
@@ -187,12 +188,14 @@ def requested_drives(
 
     if options["assumed"] and vocabulary is None:
         raise click.UsageError("--assume needs a rulebook, in whose words it is: --rulebook R")
+    texts = [text for text in options["assumed"] if text != "defaults"]
     try:
         return RequestedDrives(
             egos,
             threshold_options(options["thresholds"]),
-            {} if vocabulary is None else assumption_options(options["assumed"], vocabulary),
+            {} if vocabulary is None else assumption_options(texts, vocabulary),
             options["as_recorded"],
+            len(texts) < len(options["assumed"]),
         )
     except ValueError as problem:
         raise click.UsageError(f"{problem}.") from None

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
-from rulec.automata.thresholds import exact
+from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.batch import trace_groups
@@ -19,7 +19,7 @@ from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.limits import LIMITS
-from rulec.monitoring.state_validation import check_objects, check_state
+from rulec.monitoring.state_validation import check_objects, check_state, has_partial_values
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
@@ -73,7 +73,7 @@ def verify_chunk(
     answers: list[Answer | None] = [None] * len(items)
     shapes: dict[trace_groups.Shape, list[_Placed]] = {}
     for place, item in enumerate(items):
-        if isinstance(item, Trace):
+        if isinstance(item, Trace) and item.ends == "complete" and item.told is None:
             try:
                 shapes.setdefault(trace_groups.shape_of(item), []).append((place, item))
             except (TypeError, AttributeError, KeyError):
@@ -116,6 +116,9 @@ def _verify_group(
             columns = columnize(group.cells, rules.vocabulary, group.names)
             verdicts = verify_columns(columns, rules)
         except (UnencodableError, NotGivenError):
+            known = [placed for placed in traces if not _is_partial(placed[1])]
+            if len(known) < len(traces):
+                _verify_group(known, rulebook, answers)
             return
     else:
         cells = trace_groups.under_common_names(group)
@@ -139,11 +142,15 @@ def _verify_group(
         answers[place] = Verdict(trace.id, own)
 
 
+def _is_partial(trace: Trace) -> bool:
+    return any(isinstance(state, Mapping) and has_partial_values(state) for state in trace.states)
+
+
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
     """Rulebook for traces of this shape. Raises RulecError if it cannot judge."""
     rules = rulebook_for_trace(trace, rulebook)
     for rule in rules.rules:
-        check_step(rule, exact(trace.step_s))
+        check_step(rule, exact_step(trace.step_s))
     check_objects(trace.objects, rules.vocabulary)
     return rules
 
@@ -151,7 +158,7 @@ def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
 def _fits(
     state: object, objects: Mapping[str, str], scene: Mapping[str, str], rulebook: CompiledRulebook
 ) -> bool:
-    if not isinstance(state, Mapping):
+    if not isinstance(state, Mapping) or has_partial_values(state):
         return False
     try:
         check_state(state, objects, rulebook.vocabulary, "")

@@ -15,8 +15,8 @@ from rulec.monitoring.batch.verdict_columns import (
     VerdictColumns,
     verdict_columns,
 )
+from rulec.monitoring.bindings import bindings
 from rulec.monitoring.letter_reader import LetterReader
-from rulec.monitoring.verify import bindings
 from rulec.trace.trace_columns import TraceCells, TraceColumns
 
 

@@ -9,19 +9,23 @@ from typing import Protocol, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
-from rulec.automata.thresholds import exact
+from rulec.automata.thresholds import exact_step
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import in_steps
 from rulec.logic.causes import deciding_instants
 from rulec.logic.kleene import Unknown, holds, objects_counted, weighted_sum
 from rulec.logic.printing import formula_text, term_text
 from rulec.logic.semantics import values_of_parts
+from rulec.monitoring.bindings import bindings
 from rulec.monitoring.explain.margins import Margin, margin_in
 from rulec.monitoring.explain.nearest_satisfying import Letter, Repair, nearest_satisfying
 from rulec.monitoring.limits import LIMITS
+from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.one_completion import completed, with_all_defaults
+from rulec.monitoring.uncertainty.possible_letters import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
-from rulec.monitoring.verify import bindings, letter_reader_of
+from rulec.monitoring.verify import letter_reader_of
 from rulec.trace import Trace, Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Quantity, Vocabulary
@@ -33,14 +37,15 @@ _Known = TypeVar("_Known")
 class Observation:
     """Read of a rule, such as ``position(v1)``, with its values by state.
 
-    ``unit`` is a quantity's. ``objects`` are, for a count, those that counted in each state.
-    ``margins`` are, for a signal that was decided by a number, by how much, as far as is known.
+    A value that is unknown is None. ``unit`` is a quantity's. ``objects`` are, for a count, those
+    that counted in each state. ``margins`` are, for a signal that was decided by a number, by how
+    much, as far as is known.
     ``changed``: does the rule tell the value in the decisive state from the one before?
     ``decides``: does a part that decides read it?
     """
 
     text: str
-    values: tuple[Value, ...]
+    values: tuple[Value | None, ...]
     changed: bool
     decides: bool
     unit: str = ""
@@ -111,8 +116,14 @@ def explain(
 ) -> Explanation:
     """Explain a violation that ``verify`` reported for this trace and rulebook.
 
+    What is unknown is shown as such; as every completion violates the rule, one stands for all.
     ``decided_by``: signal -> the numbers behind it, for those that were decided by any.
     """
+    given, declared = trace, rulebook.vocabulary
+    untold = untold_names(declared, trace.told)
+    if untold or trace.ends == "cut" or any(map(has_partial_values, trace.states)):
+        trace = completed(trace, declared)
+        rulebook = replace(rulebook, vocabulary=with_all_defaults(declared))
     rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
     candidates = bindings(
         rule, rulebook.vocabulary, trace.objects, trace.present, len(trace.states)
@@ -127,12 +138,13 @@ def explain(
         binding.objects,
         [number - binding.first for number in states],
         decisive - binding.first,
+        [StateView(given.states[n], {}, with_untold(declared, untold)) for n in stretch],
     )
     truths = {atom: observed.truths(atom) for atom in dict.fromkeys(ltl.atoms_of(rule.formula))}
     word = [
         frozenset(atom for atom, column in truths.items() if column[n]) for n in range(len(stretch))
     ]
-    formula = in_steps(rule.formula, exact(trace.step_s))
+    formula = in_steps(rule.formula, exact_step(trace.step_s))
     values = values_of_parts(formula, word, rulebook.semantics)
     instants = deciding_instants(formula, word, rulebook.semantics)
     deciding = {part for part, at in instants.items() if any(at)}
@@ -180,13 +192,15 @@ def _known(value: _Known | Unknown) -> _Known:
 class _ObservedStates:
     """States of a binding, all of whose values are known.
 
-    ``shown`` are the indices of the states to show, ``decisive`` is one of them.
+    ``shown`` are the indices of the states to show, ``decisive`` is one of them. ``given`` are the
+    states of which they are completions.
     """
 
     views: Sequence[StateView]
     bound: Mapping[str, str]
     shown: Sequence[int]
     decisive: int
+    given: Sequence[StateView]
 
     def items(self, variables: Sequence[str]) -> tuple[str, ...]:
         """The objects of some variables."""
@@ -247,7 +261,7 @@ def _facts(
         passes = isinstance(read, ltl.Atom) or any(
             observed.changes(truths[proposition]) for proposition in propositions
         )
-        values: Sequence[Value]
+        values: list[Value | None]
         unit, objects = "", None
         if isinstance(read, ltl.Count):
             text = term_text(read)
@@ -256,6 +270,10 @@ def _facts(
         else:
             text = str(ltl.Atom(read.name, observed.items(read.arguments)))
             values = [observed.value(read.name, read.arguments, view) for view in views]
+            items = observed.items(read.arguments)
+            for index, view in enumerate(observed.given):
+                if isinstance(view.value(read.name, items), Unknown):
+                    values[index] = None
             declaration = vocabulary.declarations[read.name]
             unit = declaration.unit if isinstance(declaration, Quantity) else ""
         yield Observation(

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
-from rulec.automata.thresholds import exact
+from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.monitor_state import (
@@ -52,7 +52,7 @@ class Monitor:
 
     def __init__(self, rulebook: CompiledRulebook, step_s: Fraction | float | None = None) -> None:
         steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
-        self._step_s = exact(step_s) if step_s is not None else steps[0] if steps else None
+        self._step_s = exact_step(step_s) if step_s is not None else steps[0] if steps else None
         if self._step_s is not None:
             rulebook = rulebook.fitted_to(self._step_s)
             for rule in rulebook.rules:

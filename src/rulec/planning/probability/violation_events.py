@@ -12,9 +12,10 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.formula import Count, Formula
 from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import holds
+from rulec.monitoring.bindings import Binding, bindings
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.verify import Binding, bindings, run
+from rulec.monitoring.verify import run
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event

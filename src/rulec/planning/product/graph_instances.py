@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
-from rulec.automata.thresholds import exact
+from rulec.automata.thresholds import exact_step
 from rulec.monitoring.axiom_violations import check_counting_axioms
+from rulec.monitoring.bindings import Binding, bindings
 from rulec.monitoring.letter_reader import LetterReader, present_in
 from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
-from rulec.monitoring.verify import Binding, bindings, run
+from rulec.monitoring.verify import run
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph
 
@@ -62,7 +63,7 @@ def instances(
     vocabulary = rulebook.vocabulary
     rules = [rule for rule in rulebook.rules if rule.strength in strengths]
     for rule in rules:
-        check_step(rule, exact(graph.step_s) if step_s is None else step_s, "the graph")
+        check_step(rule, exact_step(graph.step_s) if step_s is None else step_s, "the graph")
     check_objects(graph.objects, vocabulary)
     validator = StateValidator(vocabulary, graph.objects)
     places = [f"a cell of layer {layer}".format for layer in range(len(graph.states))]

@@ -14,6 +14,7 @@ from rulec.monitoring.verdict import Verdict, Violation
 from rulec.report.verdicts.violation_table import shown
 from rulec.trace import State, Trace, Value
 from rulec.vocabulary import Enumeration, Quantity, Vocabulary
+from rulec.vocabulary.partial_values import PartialValue
 
 WORD_STYLES = 6
 """So many styles there are for the values of enumerations."""
@@ -106,10 +107,8 @@ def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
         (first, second)
         for name in names
         for state in trace.states
-        if isinstance(value := state.get(name), Mapping)
-        for first, inner in value.items()
-        if isinstance(inner, Mapping)
-        for second in inner
+        for first, inner in _about_objects(state.get(name))
+        for second, _ in _about_objects(inner)
     }
     order = {name: place for place, name in enumerate(trace.objects)}
     return sorted(pairs, key=lambda pair: (order[pair[0]], order[pair[1]]))
@@ -130,7 +129,7 @@ def _row(
         for number in range(len(trace.states))
     ]
     values = [
-        value_in(state, name, objects, declaration) if present else None
+        _known(value_in(state, name, objects, declaration)) if present else None
         for state, present in zip(trace.states, there, strict=True)
     ]
     if not any(there):
@@ -144,6 +143,14 @@ def _row(
             possible = ()
             title += f" in {declaration.unit}" if declaration.unit else ""
     return RibbonRow(title, objects, possible, tuple(_runs(values, there)))
+
+
+def _about_objects(value: Any) -> Iterable[tuple[str, Any]]:
+    return value.items() if isinstance(value, Mapping) else ()
+
+
+def _known(value: PartialValue | None) -> Value | None:
+    return value if isinstance(value, bool | int | float | str) else None
 
 
 def _said(state: State, name: str, objects: Sequence[str]) -> bool:

@@ -13,7 +13,7 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged
-from rulec.report.json_document import JsonDocument, as_line
+from rulec.report.json_document import JsonDocument, as_line, filled
 from rulec.report.text.terminal_text import first_of, table_lines, visible
 from rulec.report.verdicts import verdict_json, verdict_report
 
@@ -41,9 +41,32 @@ def as_text(verdicts: RecordingVerdicts, tally: ViolationTally) -> str:
     defaults = defaulted_names(verdicts, tally.words or frozenset())
     if defaults:
         lines.append(f"by default  {first_of(defaults, MOST_DEFAULTS)}: the recording does not say")
+    if verdicts.defaults:
+        lines.append("assumed     defaults, and that nothing comes after the recording's end")
+    lines += _rule_counts(verdicts, tally)
     lines += [f"note        {remark}" for remark in recording.remarks]
     lines += _table(verdicts, tally)
     return "\n".join(visible(line) for line in lines)
+
+
+def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
+    """How many rules were judged, open, and not judgeable from this recording, and why."""
+    if not tally.judged:
+        return
+    names = [rule.name for rule in verdicts.rules.rules]
+    order = list(verdicts.rules.vocabulary.declarations)
+    never = [name for name in names if not tally.judged_in[name] and name not in tally.open_rules]
+    some_open = [name for name in names if name in tally.open_rules and name not in never]
+    parts = [f"{len(names) - len(never) - len(some_open):,} judged"]
+    for rules, what, reasons in (
+        (some_open, "open in some drive", tally.open_rules),
+        (never, "cannot be judged from this recording", tally.untold),
+    ):
+        if rules:
+            about = {word for rule in rules for word in reasons.get(rule, ())}
+            words = first_of(sorted(about, key=order.index), MOST_DEFAULTS)
+            parts.append(f"{len(rules):,} {what}" + (f" ({words})" if words else ""))
+    yield f"rules       {len(names):,} rules: {', '.join(parts)}"
 
 
 def _not_judged(no_drives: Sequence[NoDrive]) -> Iterator[str]:
@@ -83,7 +106,8 @@ def _table(verdicts: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
 
 def summary(tally: ViolationTally) -> str:
     """The line that ends a run."""
-    line = verdict_report.summary(len(tally.satisfied), len(tally.violated), len(tally.not_judged))
+    counts = {True: len(tally.satisfied), False: len(tally.violated), None: len(tally.doubtful)}
+    line = verdict_report.summary(counts, len(tally.not_judged))
     return line.replace("traces", "drives").replace("trace", "drive")
 
 
@@ -146,7 +170,11 @@ def as_json(
         for violation, written in zip(answer.violations, data, strict=True)
     ]
     return as_line(
-        RecordedVerdict(
-            trace=answer.trace, satisfied=answer.satisfied, violations=violations, **recorded
+        filled(
+            RecordedVerdict,
+            answer,
+            violations=violations,
+            **verdict_json.doubts(answer),
+            **recorded,
         )
     )

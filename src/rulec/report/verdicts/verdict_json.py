@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
-from typing import Literal
+from typing import Any, Literal
 
 from msgspec import UNSET, UnsetType
 
@@ -15,11 +15,11 @@ from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.verdicts.violation_table import repaired_states
 
-Value = bool | int | float | str
+Value = bool | int | float | str | None
 
 
 class FactData(JsonPart, frozen=True, kw_only=True):
-    """Something that the rule reads, and its value in each state.
+    """Something that the rule reads, and its value in each state, null where it is unknown.
 
     ``unit`` is a quantity's; ``objects`` are, for a count, those that counted in each state.
     """
@@ -89,12 +89,51 @@ class ViolationData(JsonPart, frozen=True, kw_only=True):
     by_default: Sequence[str] | UnsetType = UNSET
 
 
+class ConditionalData(JsonPart, frozen=True, kw_only=True):
+    """The outcome if unknown names always have these values; numbers are within the bounds."""
+
+    when: Mapping[str, bool | str]
+    outcome: Literal["kept", "violated", "open"]
+
+
+class OpenData(JsonPart, frozen=True, kw_only=True):
+    """A rule and binding whose outcome is not settled.
+
+    ``depends_on`` is the smallest set of names that decides; ``exact`` is false if there was too
+    much to look at.
+    """
+
+    rule: str
+    binding: Mapping[str, str]
+    strength: Literal["hard", "soft"]
+    because: Sequence[Literal["not told", "not over", "began before", "step"]]
+    depends_on: Sequence[str]
+    outcomes: Sequence[ConditionalData]
+    exact: bool
+
+
+class NotJudgedRule(JsonPart, frozen=True, kw_only=True):
+    """A rule that this source cannot be known to violate, for want of ``untold`` names."""
+
+    rule: str
+    strength: Literal["hard", "soft"]
+    untold: Sequence[str]
+    why: str
+
+
 class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
-    """The verdict on a trace: does it keep every hard rule?"""
+    """The verdict on a trace: does it keep every hard rule?
+
+    ``satisfied`` is null if no hard rule is violated, but one is open or not judged. ``presumed``
+    names hold by presumption, because no source tells them.
+    """
 
     trace: str
-    satisfied: bool
+    satisfied: bool | None
     violations: Sequence[ViolationData]
+    open: Sequence[OpenData] = ()
+    not_judged: Sequence[NotJudgedRule] = ()
+    presumed: Sequence[str] = ()
 
 
 class TraceNotJudged(JsonDocument, frozen=True, kw_only=True):
@@ -109,9 +148,23 @@ def as_json(
 ) -> str:
     """Write a verdict; ``explained`` are explanations of its first violations."""
     violations = violations_data(verdict, rulebook, explained)
-    return as_line(
-        TraceVerdict(trace=verdict.trace, satisfied=verdict.satisfied, violations=violations)
-    )
+    return as_line(filled(TraceVerdict, verdict, violations=violations, **doubts(verdict)))
+
+
+def doubts(verdict: Verdict) -> dict[str, Any]:
+    """The fields on what is open, not judged, and presumed."""
+    return {
+        "open": [
+            filled(
+                OpenData,
+                rule,
+                outcomes=[filled(ConditionalData, outcome) for outcome in rule.outcomes],
+            )
+            for rule in verdict.open
+        ],
+        "not_judged": [filled(NotJudgedRule, rule) for rule in verdict.not_judged],
+        "presumed": verdict.presumed,
+    }
 
 
 def not_judged_as_json(answer: NotJudged) -> str:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.explain.explanation import Explanation
-from rulec.monitoring.verdict import Verdict, Violation
+from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.report.text.terminal_text import styled, visible
 from rulec.report.verdicts import violation_table
+
+MOST_CASES = 4
+"""So many values of unknown names are shown with their outcome."""
 
 MOST_VIOLATIONS = 20
 """So many are shown for a trace; JSON has them all."""
@@ -22,19 +25,18 @@ def as_text(
     *,
     every_part: bool = False,
     width: int = violation_table.WIDTH,
+    doubts: bool = True,
 ) -> str:
-    """Write a trace's violations, a line each, below its name.
+    """Write a trace's violations, a line each, below its name; with what is open and not judged.
 
     ``explained`` are explanations of the first violations; each follows its line, folded to a
     ``width`` unless ``every_part`` of it is wanted.
     """
-    if not verdict.violations:
+    doubtful = [*_open_lines(verdict, rulebook), *_not_judged_lines(verdict)] if doubts else []
+    if not verdict.violations and not doubtful:
         return f"{visible(verdict.trace)}: {styled('satisfied', 'green')}"
-    word = (
-        styled("satisfied, but for soft rules", "yellow")
-        if verdict.satisfied
-        else styled("violated", "red")
-    )
+    word, style = _WORDS[verdict.satisfied]
+    word = styled(word, style)
     rules = {rule.name: rule for rule in rulebook.rules}
     lines = [f"{visible(verdict.trace)}: {word}"]
     shown = verdict.violations[:MOST_VIOLATIONS]
@@ -47,19 +49,74 @@ def as_text(
             )
     if len(verdict.violations) > len(shown):
         lines.append(f"  and {len(verdict.violations) - len(shown):,} more; --json has them all")
-    return "\n".join(lines)
+    return "\n".join([*lines, *doubtful])
+
+
+_WORDS: dict[bool | None, tuple[str, str]] = {
+    True: ("satisfied, but for soft rules", "yellow"),
+    False: ("violated", "red"),
+    None: ("open", "yellow"),
+}
+
+
+def _open_lines(verdict: Verdict, rulebook: CompiledRulebook) -> Iterator[str]:
+    rules = {rule.name: rule for rule in rulebook.rules}
+    for result in verdict.open[:MOST_VIOLATIONS]:
+        rule = rules[result.rule]
+        title = f"{rule.strength} rule {_title(rule, rulebook.name)}{_about(result.binding)}"
+        yield f"  {visible(f'{title}: {open_in_words(result)}')}"
+    if len(verdict.open) > MOST_VIOLATIONS:
+        yield f"  and {len(verdict.open) - MOST_VIOLATIONS:,} more open; --json has them all"
+
+
+def open_in_words(result: OpenVerdict) -> str:
+    """Why a verdict is open, and how it comes out by what it depends on."""
+    parts = []
+    if result.depends_on:
+        parts.append(f"depends on {', '.join(result.depends_on)}")
+    if "began before" in result.because:
+        parts.append("depends on what was before the first state")
+    if "not over" in result.because:
+        parts.append("not over when the trace is cut" if not parts else "not over")
+    if "step" in result.because:
+        parts.append("hangs on a bound that is no multiple of the step")
+    cases = [
+        f"{case.outcome} if {' and '.join(_condition(*pair) for pair in case.when.items())}"
+        for case in result.outcomes[:MOST_CASES]
+    ]
+    text = f"open, {' and '.join(parts)}"
+    return f"{text}: {', '.join(cases)}" if cases else text
+
+
+def _condition(name: str, value: bool | str) -> str:
+    if isinstance(value, bool):
+        return name if value else f"not {name}"
+    return f"{name} {value}" if value[0] in "<>" else f"{name} = {value}"
+
+
+def _not_judged_lines(verdict: Verdict) -> Iterator[str]:
+    by_reason: dict[str, list[str]] = {}
+    for rule in verdict.not_judged:
+        why = rule.why or f"the source does not tell {', '.join(rule.untold)}"
+        by_reason.setdefault(why, []).append(rule.rule)
+    for why, rules in by_reason.items():
+        text = f"{', '.join(rules)} ({why})"
+        yield f"  not judged: {visible(text)}"
+
+
+def _about(binding: Mapping[str, str]) -> str:
+    where = ", ".join(f"{name} = {item}" for name, item in binding.items())
+    return f" for {where}" if where else ""
 
 
 def in_a_line(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
     """The violated rule of ``rulebook``, its binding and its time."""
-    where = ", ".join(f"{name} = {item}" for name, item in violation.binding.items())
     when = (
         "not fulfilled when the trace ends"
         if violation.step is None
         else f"cannot be kept any more after state {violation.step}"
     )
-    about = f" for {where}" if where else ""
-    return f"{rule.strength} rule {_title(rule, rulebook)}{about}: {when}"
+    return f"{rule.strength} rule {_title(rule, rulebook)}{_about(violation.binding)}: {when}"
 
 
 def _title(rule: CompiledRule, rulebook: str) -> str:
@@ -74,10 +131,13 @@ def _title(rule: CompiledRule, rulebook: str) -> str:
     return f"{title} [{place}]" if place else title
 
 
-def summary(satisfied: int, violated: int, not_judged: int) -> str:
-    """The line that ends a run."""
-    total = satisfied + violated + not_judged
+def summary(counts: Mapping[bool | None, int], not_judged: int) -> str:
+    """The line that ends a run: counts of traces by whether they are satisfied."""
+    total = sum(counts.values()) + not_judged
+    satisfied, violated, doubtful = (counts.get(key, 0) for key in (True, False, None))
     parts = [f"{satisfied:,} satisfied", f"{violated:,} violated"]
+    if doubtful:
+        parts.append(f"{doubtful:,} open")
     if not_judged:
         parts.append(f"{not_judged:,} not judged")
     return f"{total:,} {'trace' if total == 1 else 'traces'}: {', '.join(parts)}"

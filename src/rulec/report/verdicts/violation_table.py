@@ -165,8 +165,10 @@ def _with_margins(cells: Iterable[str], margins: Sequence[Margin | None]) -> lis
     return [f"{cell} {margin.sides}" if margin else cell for cell, margin in zip(cells, beside)]  # noqa: B905
 
 
-def shown(value: Value) -> str:
-    """A value as a cell of a table."""
+def shown(value: Value | None) -> str:
+    """A value as a cell of a table; None is unknown."""
+    if value is None:
+        return "?"
     if isinstance(value, bool):
         return "T" if value else "F"
     if isinstance(value, str):

@@ -6,14 +6,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import chain
-from typing import IO, Any
+from typing import IO, Any, cast
 
 import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats import json_line_problems
+from rulec.trace.formats.partial_json import from_json, to_json
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
-from rulec.trace.trace_model import State, Trace
+from rulec.trace.trace_model import Ending, State, Trace
 
 _LONGEST_HEAD_BYTES = 1 << 16
 
@@ -23,10 +24,12 @@ class _Header(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     step_s: float = 1.0
     objects: dict[str, str] = {}
     present: dict[str, tuple[int, int]] = {}
+    ends: Ending = "complete"
+    told: list[str] | None = None
 
 
 class _Record(_Header):
-    states: list[dict[str, bool | float | str | dict[str, Any]]]
+    states: list[dict[str, bool | float | str | dict[str, Any] | None]]
 
 
 class _Outline(_Header):
@@ -128,12 +131,22 @@ def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trac
             return _made(outline, [read_state[bytes(raw)] for raw in outline.states], place)
     # Read as a whole, it says what is wrong.
     record = _TRACE.read(line, place)
-    return record if isinstance(record, RulecError) else _made(record, record.states, place)
+    if isinstance(record, RulecError):
+        return record
+    return _made(record, [from_json(state) for state in record.states], place)
 
 
 def _made(record: _Header, states: Sequence[State], place: SourceLocation) -> Trace:
-    name = str(record.id) or f"line {place.line}"
-    return Trace(name, record.step_s, record.objects, tuple(states), record.present, place=place)
+    return Trace(
+        str(record.id) or f"line {place.line}",
+        record.step_s,
+        record.objects,
+        tuple(states),
+        record.present,
+        place=place,
+        ends=record.ends,
+        told=None if record.told is None else frozenset(record.told),
+    )
 
 
 class _StateReader(dict[bytes, State]):
@@ -141,13 +154,15 @@ class _StateReader(dict[bytes, State]):
 
     _MOST = 1 << 16
     _LONGEST = 1 << 12
-    _DECODE = msgspec.json.Decoder(dict[str, bool | float | str | dict[str, Any]]).decode
+    _DECODE = msgspec.json.Decoder(dict[str, bool | float | str | dict[str, Any] | None]).decode
 
     pays = True
     _met = 0
 
     def __missing__(self, text: bytes) -> State:
-        state = self._DECODE(text)
+        decoded = self._DECODE(text)
+        plain = b"null" not in text and b'"from"' not in text
+        state = cast("State", decoded) if plain else from_json(decoded)
         self._met += 1
         if self._met > self._MOST or len(text) > self._LONGEST:
             # There is no end to them: what is remembered is of no use.
@@ -163,8 +178,15 @@ def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
     encoder = msgspec.json.Encoder()
     count = 0
     for count, trace in enumerate(traces, 1):  # noqa: B007 - the count is the result
-        fields = ("id", "step_s", "objects", "states", *(["present"] if trace.present else []))
-        stream.write(encoder.encode({name: getattr(trace, name) for name in fields}))
+        fields: dict[str, object] = {"id": trace.id, "step_s": trace.step_s}
+        fields |= {"objects": trace.objects, "states": [to_json(state) for state in trace.states]}
+        if trace.present:
+            fields["present"] = trace.present
+        if trace.ends != "complete":
+            fields["ends"] = trace.ends
+        if trace.told is not None:
+            fields["told"] = sorted(trace.told)
+        stream.write(encoder.encode(fields))
         stream.write(b"\n")
     return count
 
@@ -179,7 +201,7 @@ class LiveState:
 
 
 class _StateRecord(msgspec.Struct, forbid_unknown_fields=True):
-    state: dict[str, bool | float | str | dict[str, Any]]
+    state: dict[str, bool | float | str | dict[str, Any] | None]
     objects: dict[str, str] = {}
 
 
@@ -209,4 +231,4 @@ def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
             if isinstance(record, RulecError):
                 yield record
             else:
-                yield LiveState(record.state, record.objects, place)
+                yield LiveState(from_json(record.state), record.objects, place)

@@ -1,0 +1,193 @@
+"""Machines whose outputs are outcomes, and what they come to where letters are not known.
+
+A word of sets of letters stands for every word that has one of each set. The machine then steps on
+sets of states (the subset construction, made as it is met). Of a set only the states that are least
+and greatest in what they can still come to need be kept: what lies between them stays between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
+from rulec.value_display import short_repr
+
+KEPT, PENDING, VIOLATED = range(3)
+"""Outcomes, best first: pending is neither kept if the word ends here, nor lost."""
+
+Outcome: TypeAlias = Literal[0, 1, 2]
+
+MOST_COMPARED = 1 << 10
+"""States of larger machines are not compared; sets of them are kept whole."""
+
+
+@dataclass(frozen=True, eq=False)
+class OutcomeMachine:
+    """A complete deterministic machine from letter classes to outcomes.
+
+    ``reads`` and ``letters`` are as a ``MealyMonitor``'s; ``outputs[state][class]`` is the outcome
+    of a word that ends with such a letter. A run begins in any of ``starts``: several where what
+    was before the word is not known.
+    """
+
+    __repr__ = short_repr
+
+    reads: tuple[Read | NumberRead, ...]
+    letters: tuple[int, ...]
+    successors: Sequence[Sequence[int]]
+    outputs: Sequence[Sequence[int]]
+    starts: frozenset[int]
+
+    @property
+    def n_classes(self) -> int:
+        """The number of letter classes."""
+        return len(self.outputs[0])
+
+    @cached_property
+    def lost(self) -> frozenset[int]:
+        """The states from which every word is violated."""
+        successors, outputs = np.array(self.successors), np.array(self.outputs)
+        lost = (outputs == VIOLATED).all(axis=1)
+        while not np.array_equal(lost, still := lost & lost[successors].all(axis=1)):
+            lost = still
+        return frozenset(np.flatnonzero(lost).tolist())
+
+    @cached_property
+    def _order(self) -> NDArray[np.bool_]:
+        """``[a, b]``: no word comes to more from ``a`` than from ``b``."""
+        size = len(self.successors)
+        if size > MOST_COMPARED:
+            return np.eye(size, dtype=bool)
+        successors, outputs = np.array(self.successors), np.array(self.outputs)
+        order = np.ones((size, size), dtype=bool)
+        for symbol in range(self.n_classes):
+            order &= outputs[:, None, symbol] <= outputs[None, :, symbol]
+        while True:
+            before = order.sum()
+            for symbol in range(self.n_classes):
+                target = successors[:, symbol]
+                order &= order[target[:, None], target[None, :]]
+            if order.sum() == before:
+                return order
+
+    def extremes(self, states: Iterable[int]) -> frozenset[int]:
+        """The least and the greatest of these states."""
+        members = frozenset(states)
+        if len(members) < 3:
+            return members
+        places = np.array(sorted(members))
+        below = self._order[np.ix_(places, places)]
+        # Of equivalent states, which a product may have, the first stands for all.
+        strictly = below & ~(below.T & (np.arange(len(places))[:, None] >= np.arange(len(places))))
+        np.fill_diagonal(strictly, val=False)
+        least, greatest = ~strictly.any(axis=0), ~strictly.any(axis=1)
+        return frozenset(places[least | greatest].tolist())
+
+
+def of_complete_words(machine: MealyMonitor) -> OutcomeMachine:
+    """The machine as it judges words that are over: kept or violated."""
+    outputs = [[KEPT if kept else VIOLATED for kept in row] for row in machine.outputs]
+    return OutcomeMachine(
+        machine.reads, machine.letters, machine.successors, outputs, frozenset({0})
+    )
+
+
+def of_prefixes(
+    machine: MealyMonitor, finite: MealyMonitor, starts: Iterable[tuple[int, int]] = ((0, 0),)
+) -> OutcomeMachine:
+    """The machine that judges words that go on unseen, of one rule's two readings.
+
+    Violated: no continuation is kept by ``machine``. Kept: ``finite``, which judges words as they
+    are, keeps the word. Pending: neither. ``starts`` are pairs of states of the two.
+    """
+    pairs = dict.fromkeys(zip(machine.letters, finite.letters, strict=True))
+    classes = {pair: place for place, pair in enumerate(x for x in pairs if IMPOSSIBLE not in x)}
+    places = {pair: place for place, pair in enumerate(dict.fromkeys(starts))}
+    successors, outputs = [], []
+    for own, other in (waiting := list(places)):
+        row, outcomes = [], []
+        for symbol, finite_symbol in classes:
+            target = machine.successors[own][symbol], finite.successors[other][finite_symbol]
+            if target not in places:
+                places[target] = len(places)
+                waiting.append(target)
+            row.append(places[target])
+            lost = target[0] == machine.rejecting_sink and not machine.outputs[own][symbol]
+            kept = finite.outputs[other][finite_symbol]
+            outcomes.append(VIOLATED if lost else KEPT if kept else PENDING)
+        successors.append(row)
+        outputs.append(outcomes)
+    letters = tuple(
+        [
+            classes.get(pair, IMPOSSIBLE)
+            for pair in zip(machine.letters, finite.letters, strict=True)
+        ]
+    )
+    first = frozenset(places[pair] for pair in starts)
+    return OutcomeMachine(machine.reads, letters, successors, outputs, first)
+
+
+@dataclass(frozen=True, slots=True)
+class OutcomeRange:
+    """The best and the worst outcome of words, and the set of states that they lead to."""
+
+    states: int
+    best: int
+    worst: int
+
+
+class SetMonitor:
+    """Runs of an outcome machine on sets of letter classes, which are given as bit sets."""
+
+    def __init__(self, machine: OutcomeMachine) -> None:
+        self.machine = machine
+        self._numbers: dict[frozenset[int], int] = {}
+        self._sets: list[frozenset[int]] = []
+        self._steps: dict[tuple[int, int], OutcomeRange] = {}
+        self.start = self.number(*machine.starts)
+
+    def states(self, number: int) -> frozenset[int]:
+        """The members of a set of states."""
+        return self._sets[number]
+
+    def step(self, number: int, classes: int) -> OutcomeRange:
+        """Take a step from a set of states on any of these classes, one at least."""
+        key = number, classes
+        known = self._steps.get(key)
+        if known is None:
+            symbols = [n for n in range(classes.bit_length()) if classes >> n & 1]
+            machine = self.machine
+            pairs = [(state, symbol) for state in self._sets[number] for symbol in symbols]
+            outcomes = {machine.outputs[state][symbol] for state, symbol in pairs}
+            targets = {machine.successors[state][symbol] for state, symbol in pairs}
+            known = OutcomeRange(self.number(*targets), min(outcomes), max(outcomes))
+            self._steps[key] = known
+        return known
+
+    def run(self, word: Sequence[int]) -> tuple[int, int, int | None]:
+        """The best and the worst outcome of a non-empty word of sets of classes.
+
+        Third is the index of the letter with which every completion was lost, if any.
+        """
+        here, lost = self.start, self.machine.lost
+        step = OutcomeRange(here, KEPT, KEPT)
+        for index, classes in enumerate(word):
+            step = self.step(here, classes)
+            here = step.states
+            if step.best == VIOLATED and lost.issuperset(self._sets[here]):
+                return VIOLATED, VIOLATED, index
+        return step.best, step.worst, None
+
+    def number(self, *states: int) -> int:
+        """The number of a set of states, reduced to its extremes."""
+        members = self.machine.extremes(states)
+        number = self._numbers.setdefault(members, len(self._sets))
+        if number == len(self._sets):
+            self._sets.append(members)
+        return number

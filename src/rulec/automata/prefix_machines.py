@@ -1,0 +1,103 @@
+"""Machines of rules for words of which neither the past nor the rest has been seen.
+
+A recording begins and stops because the recorder did. What an operator of the past looks for before
+the first letter is unknown: it may have been anything. So a rule with such operators is compiled as
+``not begun weak until (begun and formula)``, where ``begun`` is true from the first letter on; a
+run may start in whatever state the letters before it lead to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from rulec.automata.alphabet import propositions_of
+from rulec.automata.axiom_instances import axiom_groups, axiom_instances
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.compiler import CPU_LIMIT_S, answers_to
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, Read
+from rulec.automata.outcome_machine import OutcomeMachine, of_prefixes
+from rulec.automata.spot_worker import Done, Failed, Job
+from rulec.logic import formula as ltl
+from rulec.logic.bounds import PAST, in_steps, operations_of
+from rulec.logic.semantics import Semantics
+from rulec.rulebook.rulebook_model import Axiom
+
+_BEGUN = ltl.Atom("word has begun")
+"""No name of a rulebook has a space in it."""
+
+_KNOWN: dict[tuple[object, ...], OutcomeMachine | None] = {}
+_MOST_KNOWN = 1 << 10
+
+
+def prefix_machines(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
+    """The machine of each rule for prefixes, by the rule's name; None where it gets too large.
+
+    They are compiled on first use. Raises RulecError R0403 if Spot is not installed.
+    """
+    keys = {rule.name: _key(rule, rulebook) for rule in rulebook.rules}
+    missing = [rule for rule in rulebook.rules if keys[rule.name] not in _KNOWN]
+    if missing and len(_KNOWN) + len(missing) > _MOST_KNOWN:
+        _KNOWN.clear()
+        missing = list(rulebook.rules)
+    jobs = [job for rule in missing for job in _jobs(rule, rulebook)]
+    answers = iter(answers_to(jobs)[0] if jobs else ())
+    for rule in missing:
+        own, finite = [_table(next(answers)) for _ in range(2)]
+        _KNOWN[keys[rule.name]] = None if own is None or finite is None else _machine(own, finite)
+    return {name: _KNOWN[key] for name, key in keys.items()}
+
+
+def _key(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[object, ...]:
+    axioms = tuple([(axiom.variables, axiom.formula) for axiom in rulebook.axioms])
+    return rule.formula, rule.machine.reads, rule.step_s, rule.variables, rulebook.semantics, axioms
+
+
+def _jobs(rule: CompiledRule, rulebook: CompiledRulebook) -> Iterator[Job]:
+    """What continuations decide, and what the word alone does."""
+    formula = rule.formula if rule.step_s is None else in_steps(rule.formula, rule.step_s)
+    reads = rule.machine.reads
+    facts = [Axiom(axiom.variables, axiom.formula) for axiom in rulebook.axioms]
+    instances = axiom_instances(rule.variables, facts, rulebook.vocabulary)
+    if any(operation.operator in PAST for operation in operations_of(formula)):
+        before = ltl.Unary(ltl.UnaryOperator.NOT, _BEGUN)
+        begun = ltl.Binary(ltl.BinaryOperator.AND, _BEGUN, formula)
+        formula = ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, before, begun)
+        reads = (*reads, Read(_BEGUN.name, ()))
+    groups = axiom_groups(propositions_of(formula), instances, rulebook.vocabulary)
+    finite: Semantics = "finite"
+    for semantics in (rulebook.semantics, finite):
+        yield Job(
+            rule.name,
+            formula,
+            reads,
+            remarks=(),
+            semantics=semantics,
+            groups=groups,
+            cpu_s=CPU_LIMIT_S,
+        )
+
+
+def _table(answer: Done | Failed | None) -> MealyMonitor | None:
+    return answer.machine if isinstance(answer, Done) else None
+
+
+def _machine(own: MealyMonitor, finite: MealyMonitor) -> OutcomeMachine:
+    if own.reads[-1:] != (Read(_BEGUN.name, ()),):
+        return of_prefixes(own, finite)
+    half = len(own.letters) // 2
+    before = dict.fromkeys(zip(own.letters[:half], finite.letters[:half], strict=True))
+    starts = {(0, 0): None}
+    for state, other in (waiting := [(0, 0)]):
+        for symbol, finite_symbol in before:
+            if symbol == IMPOSSIBLE:
+                continue
+            pair = own.successors[state][symbol], finite.successors[other][finite_symbol]
+            if pair not in starts:
+                starts[pair] = None
+                waiting.append(pair)
+    own, finite = (
+        replace(machine, reads=machine.reads[:-1], letters=machine.letters[half:])
+        for machine in (own, finite)
+    )
+    return of_prefixes(own, finite, starts)

@@ -1,0 +1,389 @@
+"""The joint digits of a rule's reads in a state of which not all values are known.
+
+Unknown values that have nothing to do with each other are looked at apart: two have if one read,
+one counted object or one axiom speaks of both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import product
+from math import prod
+from typing import TypeAlias
+
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.thresholds import exact
+from rulec.logic import formula as ltl
+from rulec.logic.kleene import Unknown, holds, number_of, weighted_sum
+from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.linear_arrangement import LinearPlane, sample_points
+from rulec.trace import Value
+from rulec.vocabulary import Enumeration, Quantity, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from rulec.vocabulary.vocabulary_model import choices
+
+Subject: TypeAlias = tuple[str, tuple[str, ...]]
+"""A declaration's name and the objects that it is asked of."""
+
+Digits: TypeAlias = tuple[int, ...]
+"""A digit for each read."""
+
+MOST_COMPLETIONS = 1 << 12
+"""Unknown values with more joint completions are taken to be independent."""
+
+
+@dataclass(frozen=True, slots=True)
+class CompletedView:
+    """A state in which some values are supposed."""
+
+    view: StateView
+    supposed: Mapping[Subject, Value | Fraction]
+
+    @property
+    def objects(self) -> Mapping[str, str]:
+        """The objects that are there, with their types."""
+        return self.view.objects
+
+    @property
+    def vocabulary(self) -> Vocabulary:
+        """The declarations."""
+        return self.view.vocabulary
+
+    def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
+        """The value of a signal or an enumeration."""
+        supposed = self.supposed.get((name, items))
+        if supposed is None or isinstance(supposed, Fraction):
+            return self.view.value(name, items)
+        return supposed
+
+    def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
+        """The value of a quantity: exact."""
+        supposed = self.supposed.get((name, items))
+        if supposed is None:
+            return self.view.number(name, items)
+        assert not isinstance(supposed, str)
+        return exact(supposed)
+
+
+@dataclass(frozen=True, slots=True)
+class PossibleDigits:
+    """What the reads' digits may be together; ``exact`` unless there was too much to look at."""
+
+    digits: frozenset[Digits]
+    exact: bool = True
+
+
+@dataclass(slots=True)
+class _Link:
+    """Something that speaks of unknown subjects: a read, a counted object, or an axiom.
+
+    ``read`` is the number of the read, None for an axiom. ``counted`` is the object that may count.
+    """
+
+    subjects: frozenset[Subject]
+    read: int | None
+    environment: Mapping[str, str]
+    formula: ltl.Formula | None = None
+    counted: bool = False
+
+
+@dataclass(slots=True)
+class _Cluster:
+    subjects: set[Subject] = field(default_factory=set)
+    links: list[_Link] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class _Possible:
+    """Digits of single reads, and how many more objects count for reads that count."""
+
+    digits: tuple[tuple[int, int], ...]
+    more: tuple[tuple[int, int], ...]
+
+
+def joint_digits(
+    reads: Sequence[Read | NumberRead],
+    binding: Mapping[str, str],
+    view: StateView,
+    axioms: Sequence[CompiledAxiom],
+) -> PossibleDigits:
+    """The joint digits of ``reads``, asked of the objects of a binding.
+
+    There are none if the state contradicts an axiom.
+    """
+    fixed: dict[int, int] = {}
+    counted: dict[int, int] = {}
+    links = list(_links_of_reads(reads, binding, view, counted))
+    touched = {link.read for link in links}
+    for number, read in enumerate(reads):
+        if number not in touched and number not in counted:
+            fixed[number] = _digit(read, binding, view)
+    found = {_Possible((), ())}
+    is_exact = True
+    for cluster in _clusters(links, axioms, view):
+        possible = _completed(cluster, reads, view)
+        if possible is None:
+            is_exact = False
+            possible = _independent(cluster, reads)
+        found = {_joined(before, after) for before in found for after in possible}
+    digits = set()
+    for possible_digits in found:
+        by_read = {**fixed, **dict(possible_digits.digits)}
+        more = dict(possible_digits.more)
+        for number, count in counted.items():
+            read = reads[number]
+            assert isinstance(read, NumberRead)
+            by_read[number] = read.digit(read.terms[0][0] * (count + more.get(number, 0)))
+        digits.add(tuple([by_read[number] for number in range(len(reads))]))
+    return PossibleDigits(frozenset(digits), is_exact)
+
+
+def _links_of_reads(
+    reads: Sequence[Read | NumberRead],
+    binding: Mapping[str, str],
+    view: StateView,
+    counted: dict[int, int],
+) -> Iterator[_Link]:
+    """Links of reads with unknown subjects; ``counted`` gets what counts for sure."""
+    for number, read in enumerate(reads):
+        match read:
+            case NumberRead(terms=((_, ltl.Count() as count),)):
+                counted[number] = 0
+                for item in _candidates(count, view):
+                    inner = {**binding, count.variable: item}
+                    value = holds(count.body, inner, view)
+                    if isinstance(value, Unknown):
+                        about = unknown_subjects(count.body, inner, view)
+                        yield _Link(about, number, inner, count.body, counted=True)
+                    else:
+                        counted[number] += value
+            case _:
+                if about := unknown_in_read(read, binding, view):
+                    yield _Link(about, number, binding)
+
+
+def unknown_in_read(
+    read: Read | NumberRead, binding: Mapping[str, str], view: StateView
+) -> frozenset[Subject]:
+    """The unknown subjects of a read."""
+    return frozenset(x for x in subjects_of_read(read, binding, view) if _is_unknown(x, view))
+
+
+def subjects_of_read(
+    read: Read | NumberRead, binding: Mapping[str, str], view: StateView
+) -> Iterator[Subject]:
+    """What a read depends on, with repetitions."""
+    if isinstance(read, Read):
+        yield read.name, tuple([binding[variable] for variable in read.variables])
+    else:
+        for _, term in read.terms:
+            yield from subjects_in(term, binding, view)
+
+
+def unknown_subjects(
+    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: StateView
+) -> frozenset[Subject]:
+    """The unknown subjects of which a formula or a term speaks."""
+    return frozenset(x for x in subjects_in(what, environment, view) if _is_unknown(x, view))
+
+
+def _is_unknown(subject: Subject, view: StateView) -> bool:
+    given = view.given(*subject)
+    return given is UNKNOWN or isinstance(given, Interval)
+
+
+def subjects_in(
+    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: StateView
+) -> Iterator[Subject]:
+    """What a formula or a term speaks of, for these objects and those that may count."""
+    match what:
+        case ltl.Atom(name, arguments) | ltl.QuantityTerm(name, arguments):
+            yield name, tuple([environment[variable] for variable in arguments])
+        case ltl.Count(variable, _, body):
+            for item in _candidates(what, view):
+                yield from subjects_in(body, {**environment, variable: item}, view)
+        case ltl.Comparison(terms):
+            for _, term in terms:
+                yield from subjects_in(term, environment, view)
+        case ltl.Unary(_, operand):
+            yield from subjects_in(operand, environment, view)
+        case ltl.Binary(_, left, right):
+            yield from subjects_in(left, environment, view)
+            yield from subjects_in(right, environment, view)
+
+
+def _candidates(count: ltl.Count, view: StateView) -> Iterator[str]:
+    return (
+        name for name, own in view.objects.items() if view.vocabulary.is_subtype(own, count.type)
+    )
+
+
+def _clusters(
+    links: Sequence[_Link], axioms: Sequence[CompiledAxiom], view: StateView
+) -> Iterator[_Cluster]:
+    """The links in groups that share no subjects, with the axioms that bind these."""
+    waiting = [*links, *_links_of_axioms(axioms, view)]
+    clusters: list[_Cluster] = []
+    for link in waiting:
+        joined = _Cluster(set(link.subjects), [link])
+        for cluster in [x for x in clusters if x.subjects & link.subjects]:
+            clusters.remove(cluster)
+            joined.subjects |= cluster.subjects
+            joined.links = [*cluster.links, *joined.links]
+        clusters.append(joined)
+    # Axioms about what no read depends on decide nothing.
+    return (cluster for cluster in clusters if any(x.read is not None for x in cluster.links))
+
+
+def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: StateView) -> Iterator[_Link]:
+    for axiom in axioms:
+        names = [variable.name for variable in axiom.variables]
+        types = [variable.type for variable in axiom.variables]
+        for chosen in choices(types, view.objects, view.vocabulary):
+            environment = dict(zip(names, chosen, strict=True))
+            truth = holds(axiom.formula, environment, view)
+            if truth is not True:
+                about = unknown_subjects(axiom.formula, environment, view)
+                yield _Link(about, None, environment, axiom.formula)
+
+
+def _completed(
+    cluster: _Cluster, reads: Sequence[Read | NumberRead], view: StateView
+) -> set[_Possible] | None:
+    """What a cluster's completions come to; None if there are too many."""
+    values: dict[Subject, Sequence[Value]] = {}
+    bounds: dict[Subject, tuple[Fraction, Fraction] | None] = {}
+    for subject in sorted(cluster.subjects):
+        declaration = view.vocabulary.declarations[subject[0]]
+        given = view.given(*subject)
+        match declaration:
+            case Enumeration():
+                values[subject] = declaration.values
+            case Quantity():
+                bounds[subject] = None
+                if isinstance(given, Interval):
+                    bounds[subject] = exact(given.low), exact(given.high)
+            case _:
+                values[subject] = (False, True)
+    n_discrete = prod(len(each) for each in values.values())
+    if n_discrete > MOST_COMPLETIONS:
+        return None
+    planes = [plane for link in cluster.links for plane in _planes(link, reads, view)]
+    points = sample_points(bounds, planes)
+    if points is None or n_discrete * len(points) > MOST_COMPLETIONS:
+        return None
+    possible = set()
+    for chosen in product(*values.values()):
+        for point in points:
+            supposed: dict[Subject, Value | Fraction] = dict(zip(values, chosen, strict=True))
+            supposed.update(point)
+            completed = CompletedView(view, supposed)
+            result = _result(cluster.links, reads, completed)
+            if result is not None:
+                possible.add(result)
+    return possible
+
+
+def _result(
+    links: Sequence[_Link], reads: Sequence[Read | NumberRead], view: CompletedView
+) -> _Possible | None:
+    """What a completion comes to; None if it contradicts an axiom."""
+    digits: dict[int, int] = {}
+    more: dict[int, int] = {}
+    for link in links:
+        if link.formula is None:
+            assert link.read is not None
+            digits[link.read] = _digit(reads[link.read], link.environment, view)
+            continue
+        truth = holds(link.formula, link.environment, view)
+        if link.read is None:
+            if truth is False:
+                return None
+        else:
+            more[link.read] = more.get(link.read, 0) + (truth is True)
+    return _Possible(tuple(sorted(digits.items())), tuple(sorted(more.items())))
+
+
+def _joined(first: _Possible, second: _Possible) -> _Possible:
+    more = dict(first.more)
+    for number, count in second.more:
+        more[number] = more.get(number, 0) + count
+    digits = tuple(sorted((*first.digits, *second.digits)))
+    return _Possible(digits, tuple(sorted(more.items())))
+
+
+def _independent(cluster: _Cluster, reads: Sequence[Read | NumberRead]) -> set[_Possible]:
+    """More than a cluster can come to: all of its links by themselves, and no axioms."""
+    found = {_Possible((), ())}
+    for link in cluster.links:
+        if link.read is None:
+            continue
+        if link.counted:
+            alone = [_Possible((), ((link.read, n),)) for n in (0, 1)]
+        else:
+            alone = [_Possible(((link.read, n),), ()) for n in range(reads[link.read].size)]
+        found = {_joined(before, after) for before in found for after in alone}
+    return found
+
+
+def _digit(
+    read: Read | NumberRead, binding: Mapping[str, str], view: StateView | CompletedView
+) -> int:
+    if isinstance(read, Read):
+        value = view.value(read.name, tuple([binding[variable] for variable in read.variables]))
+        assert not isinstance(value, Unknown), "it has been supposed, or is known"
+        return read.digit(value)
+    total = weighted_sum(read.terms, binding, view)
+    assert not isinstance(total, Unknown), "it has been supposed, or is known"
+    return read.digit(total)
+
+
+def _planes(
+    link: _Link, reads: Sequence[Read | NumberRead], view: StateView
+) -> Iterator[LinearPlane]:
+    if link.formula is None:
+        assert link.read is not None
+        read = reads[link.read]
+        if isinstance(read, NumberRead):
+            for threshold in read.thresholds:
+                yield from _planes_of_sum(read.terms, threshold.limit, link.environment, view)
+    else:
+        yield from _planes_in(link.formula, link.environment, view)
+
+
+def _planes_in(
+    formula: ltl.Formula, environment: Mapping[str, str], view: StateView
+) -> Iterator[LinearPlane]:
+    for atom in ltl.atoms_of(formula):
+        if isinstance(atom, ltl.Comparison):
+            yield from _planes_of_sum(atom.terms, atom.limit, environment, view)
+
+
+def _planes_of_sum(
+    terms: Sequence[tuple[Fraction, ltl.Term]],
+    limit: Fraction,
+    environment: Mapping[str, str],
+    view: StateView,
+) -> Iterator[LinearPlane]:
+    coefficients: dict[Subject, Fraction] = {}
+    limits = [limit]
+    for factor, term in terms:
+        match term:
+            case ltl.QuantityTerm(name, arguments):
+                subject = name, tuple([environment[variable] for variable in arguments])
+                if _is_unknown(subject, view):
+                    coefficients[subject] = coefficients.get(subject, Fraction(0)) + factor
+                else:
+                    number = number_of(term, environment, view)
+                    assert not isinstance(number, Unknown), "it is known"
+                    limits = [each - factor * number for each in limits]
+            case ltl.Count(variable, _, body):
+                items = list(_candidates(term, view))
+                limits = [each - factor * n for each in limits for n in range(len(items) + 1)]
+                for item in items:
+                    yield from _planes_in(body, {**environment, variable: item}, view)
+    if coefficients:
+        yield from (LinearPlane(coefficients, each) for each in limits)

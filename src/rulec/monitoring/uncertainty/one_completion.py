@@ -1,0 +1,50 @@
+"""One completion of a trace, for showing what any of them would show."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from rulec.trace import Trace, Value
+from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+
+
+def completed(trace: Trace, vocabulary: Vocabulary) -> Trace:
+    """The trace with defaults for what is unknown, or the least that a value can be."""
+    declarations = vocabulary.declarations
+    states = tuple(
+        {name: _known(value, declarations[name]) for name, value in state.items()}
+        for state in trace.states
+    )
+    return replace(trace, states=states, ends="complete", told=None)
+
+
+def with_all_defaults(vocabulary: Vocabulary) -> Vocabulary:
+    """The vocabulary in which each name has a default."""
+    declarations = {
+        name: replace(item, default=any_value(item))  # type: ignore[arg-type]
+        for name, item in vocabulary.declarations.items()
+    }
+    return Vocabulary(vocabulary.name, vocabulary.types, declarations)
+
+
+def _known(value: Any, declaration: Declaration) -> Any:
+    if isinstance(value, Mapping):
+        return {name: _known(inner, declaration) for name, inner in value.items()}
+    if isinstance(value, Interval):
+        return value.low
+    return any_value(declaration) if value is UNKNOWN else value
+
+
+def any_value(declaration: Declaration) -> Value:
+    """The default, or else the least value."""
+    if declaration.default is not None:
+        return declaration.default
+    match declaration:
+        case Enumeration():
+            return declaration.values[0]
+        case Signal():
+            return False
+    return 0.0

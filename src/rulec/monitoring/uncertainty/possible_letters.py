@@ -1,0 +1,292 @@
+"""The letters that a rule's machine may read in each state, where values are not all known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
+from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.automata.thresholds import exact, scale
+from rulec.diagnostics import RulecError
+from rulec.logic import formula as ltl
+from rulec.logic.free_names import names_in
+from rulec.logic.kleene import Unknown, weighted_sum
+from rulec.monitoring.axiom_violations import StatePlace, impossible_state
+from rulec.monitoring.letter_reader import missing_value, present_in
+from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.completions import joint_digits, unknown_in_read
+from rulec.trace import Trace
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+
+Cube: TypeAlias = tuple[int, ...]
+"""For each read the bit set of its digits, each of which goes with each of the others'."""
+
+Letters: TypeAlias = tuple[Cube, ...]
+"""The letters that a state may have: those of all the cubes."""
+
+
+@dataclass(frozen=True, slots=True)
+class PossibleWord:
+    """The letters that a rule may read of its objects, state by state.
+
+    ``unknown`` are, for each read, the names of values of which some are unknown. ``exact`` is
+    false if there are letters that are not possible, because there was too much to look at.
+    """
+
+    states: tuple[Letters, ...]
+    unknown: tuple[frozenset[str], ...]
+    exact: bool = True
+
+
+def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
+    """The names that a source which tells these cannot tell, and that are not presumed."""
+    if told is None:
+        return frozenset()
+    names = vocabulary.declarations.items()
+    return frozenset(name for name, item in names if name not in told and not item.presumed)
+
+
+def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
+    """The vocabulary in which untold names are unknown where no state says them."""
+    unknown: Any = UNKNOWN
+    declarations = {
+        name: replace(item, default=unknown) if name in untold else item
+        for name, item in vocabulary.declarations.items()
+    }
+    return Vocabulary(vocabulary.name, vocabulary.types, declarations)
+
+
+class PossibleLetters:
+    """A reader of the possible letters of a checked trace.
+
+    ``states`` stand for the trace's own, in which more may be supposed. ``vocabulary`` has the
+    defaults of what they do not say.
+    """
+
+    def __init__(
+        self,
+        trace: Trace,
+        rulebook: CompiledRulebook,
+        vocabulary: Vocabulary,
+        where: Callable[[int], str] = "state {}".format,
+    ) -> None:
+        self._trace = trace
+        self._rulebook = rulebook
+        self._vocabulary = vocabulary
+        self._where = where
+        self._views: dict[int, StateView] = {}
+        self._given: dict[tuple[str, tuple[str, ...]], list[PartialValue | None]] = {}
+        self._columns: dict[tuple[object, ...], tuple[list[int], bool]] = {}
+        self._joint: dict[str, bool] = {}
+
+    def view(self, number: int) -> StateView:
+        """A state with the objects that are present."""
+        if number not in self._views:
+            trace = self._trace
+            present = present_in(number, trace.objects, trace.present)
+            self._views[number] = StateView(trace.states[number], present, self._vocabulary)
+        return self._views[number]
+
+    def word(
+        self, rule: CompiledRule, objects: Mapping[str, str], first: int, last: int
+    ) -> PossibleWord:
+        """The letters of states ``first`` to ``last`` (inclusive).
+
+        Raises RulecError R0504 if a value without default is missing, R0508 if a state cannot be.
+        """
+        reads = rule.machine.reads
+        columns, unknown = [], []
+        for read in reads:
+            masks, some = self._masks(read, objects, (first, last), rule.name)
+            columns.append(masks)
+            unknown.append(
+                self._unknown_names(read, objects, (first, last)) if some else frozenset()
+            )
+        states: list[Letters] = [(cube,) for cube in zip(*columns, strict=True)]
+        states = states or [((),)] * (last - first + 1)
+        is_exact = True
+        if any(unknown) and self._is_joint(rule):
+            for index, (cube,) in enumerate(states):
+                if all(mask & (mask - 1) == 0 for mask in cube):
+                    continue
+                joint = joint_digits(
+                    reads, objects, self.view(first + index), self._rulebook.axioms
+                )
+                is_exact &= joint.exact
+                states[index] = tuple(
+                    [tuple([1 << digit for digit in digits]) for digits in sorted(joint.digits)]
+                )
+        return PossibleWord(tuple(states), tuple(unknown), is_exact)
+
+    def impossible(self, rule: CompiledRule, objects: Mapping[str, str], number: int) -> RulecError:
+        """The error (R0508) about a state that contradicts a fact."""
+        types = {objects[variable.name]: variable.type for variable in rule.variables}
+        place = StatePlace(number, self._where(number), self._trace.place)
+        return impossible_state(rule, types, self._rulebook.axioms, self.view(number), place)
+
+    def values(self, name: str, items: tuple[str, ...]) -> list[PartialValue | None]:
+        """What every state says of a name, None where nothing, defaults included."""
+        if (name, items) not in self._given:
+            default: Any = self._vocabulary.declarations[name].default
+            given: Any = [state.get(name) for state in self._trace.states]
+            for item in items:
+                given = [None if inner is None else inner.get(item) for inner in given]
+            self._given[name, items] = [default if value is None else value for value in given]
+        return self._given[name, items]
+
+    def _masks(
+        self, read: Read | NumberRead, objects: Mapping[str, str], span: tuple[int, int], rule: str
+    ) -> tuple[list[int], bool]:
+        """The digits of a read in each state, and whether any is unknown."""
+        about = read if isinstance(read, Read) else scale(read)
+        items = tuple([objects[variable] for variable in about.variables])
+        kind = (read.name, read.values) if isinstance(read, Read) else read
+        key = (kind, items, span)
+        if key not in self._columns:
+            first, last = span
+            if isinstance(read, Read):
+                values = self.values(read.name, items)[first : last + 1]
+                known = {value: self._mask(read, value) for value in set(values)}
+                masks = [known[value] for value in values]
+                missing = (read.name, items)
+            elif (quantity := scale(read).quantity) is not None:
+                arguments = tuple([objects[variable] for variable in quantity.arguments])
+                values = self.values(quantity.name, arguments)[first : last + 1]
+                masks = [self._mask(read, value) for value in values]
+                missing = (quantity.name, arguments)
+            else:
+                masks = [self._sum(read, objects, n, rule) for n in range(first, last + 1)]
+                missing = ("", ())
+            if 0 in masks:
+                where = self._where(first + masks.index(0))
+                raise missing_value(missing, where, rule, self._trace.place)
+            self._columns[key] = masks, any(mask & (mask - 1) for mask in masks)
+        return self._columns[key]
+
+    def _mask(self, read: Read | NumberRead, value: PartialValue | Fraction | None) -> int:
+        if value is None:
+            return 0
+        if value is UNKNOWN:
+            return (1 << read.size) - 1
+        if isinstance(value, Interval):
+            assert isinstance(read, NumberRead)
+            return _digits_between(read, exact(value.low), exact(value.high))
+        if isinstance(value, Fraction):
+            assert isinstance(read, NumberRead)
+            return 1 << read.digit(value)
+        return 1 << (read if isinstance(read, Read) else scale(read)).digit(value)
+
+    def _sum(self, read: NumberRead, objects: Mapping[str, str], number: int, rule: str) -> int:
+        """The digits of a sum or a count; all of them if what is counted is unknown."""
+        view = self.view(number)
+        total = weighted_sum(read.terms, objects, view)
+        if not isinstance(total, Unknown):
+            return 1 << read.digit(total)
+        low = high = Fraction(0)
+        for factor, term in read.terms:
+            match term:
+                case ltl.QuantityTerm(name, arguments):
+                    items = tuple([objects[variable] for variable in arguments])
+                    given = view.given(name, items)
+                    if given is None:
+                        raise missing_value(
+                            (name, items), self._where(number), rule, self._trace.place
+                        )
+                    if given is UNKNOWN:
+                        return (1 << read.size) - 1
+                    ends = (
+                        (given.low, given.high) if isinstance(given, Interval) else (given, given)
+                    )
+                    numbers = [factor * exact(end) for end in ends if not isinstance(end, str)]
+                    low, high = low + min(numbers), high + max(numbers)
+                case ltl.Count():
+                    if view.given(total.name, total.objects) is None:
+                        subject = total.name, total.objects
+                        raise missing_value(subject, self._where(number), rule, self._trace.place)
+                    return (1 << read.size) - 1
+        return _digits_between(read, low, high)
+
+    def _unknown_names(
+        self, read: Read | NumberRead, objects: Mapping[str, str], span: tuple[int, int]
+    ) -> frozenset[str]:
+        names = (read.name,) if isinstance(read, Read) else scale(read).names
+        if len(names) == 1:
+            return frozenset(names)
+        numbers = range(span[0], span[1] + 1)
+        subjects = [unknown_in_read(read, objects, self.view(number)) for number in numbers]
+        return frozenset(name for each in subjects for name, _ in each)
+
+    def _is_joint(self, rule: CompiledRule) -> bool:
+        """Whether one read may bear on what another one, or a value that is not read, can be."""
+        if rule.name not in self._joint:
+            terms = [
+                term
+                for read in rule.machine.reads
+                if isinstance(read, NumberRead)
+                for _, term in read.terms
+            ]
+            about_names = {
+                name for axiom in self._rulebook.axioms for name in names_in(axiom.formula)
+            }
+            self._joint[rule.name] = (
+                any(isinstance(term, ltl.Count) for term in terms)
+                or len(set(terms)) < len(terms)
+                or not about_names.isdisjoint(names_in(rule.formula))
+            )
+        return self._joint[rule.name]
+
+
+def _digits_between(read: NumberRead, low: Fraction, high: Fraction) -> int:
+    first, last = read.digit(low), read.digit(high)
+    return ((1 << (last - first + 1)) - 1) << first
+
+
+class LetterClasses:
+    """The classes of possible letters of a machine, as bit sets."""
+
+    def __init__(self, machine: OutcomeMachine) -> None:
+        self._reads = machine.reads
+        self._table = np.array(machine.letters).reshape([r.size for r in machine.reads][::-1])
+        self._known: dict[Letters, int] = {}
+        self._groups: dict[tuple[Letters, tuple[int, ...]], Mapping[Cube, int]] = {}
+
+    def of(self, letters: Letters) -> int:
+        """The classes of letters; 0 if facts exclude them all."""
+        known = self._known.get(letters)
+        if known is None:
+            known = 0
+            for cube in letters:
+                known |= self._of_cube(cube)
+            self._known[letters] = known
+        return known
+
+    def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
+        """The classes of letters by the digits, as bits, of ``fixed`` reads."""
+        key = letters, fixed
+        if key not in self._groups:
+            groups: dict[Cube, int] = {}
+            for cube in letters:
+                for part in product(*[_bits(cube[place]) for place in fixed]):
+                    chosen = dict(zip(fixed, part, strict=True))
+                    narrowed = tuple([chosen.get(n, mask) for n, mask in enumerate(cube)])
+                    groups[part] = groups.get(part, 0) | self._of_cube(narrowed)
+            self._groups[key] = {part: classes for part, classes in groups.items() if classes}
+        return self._groups[key]
+
+    def _of_cube(self, cube: Cube) -> int:
+        digits = [[n for n in range(mask.bit_length()) if mask >> n & 1] for mask in cube]
+        # The first read's digit counts ones, so it is the last axis.
+        classes = np.unique(self._table[np.ix_(*digits[::-1])]) if digits else self._table.ravel()
+        return sum(1 << symbol for symbol in classes.tolist() if symbol != IMPOSSIBLE)
+
+
+def _bits(mask: int) -> list[int]:
+    return [1 << n for n in range(mask.bit_length()) if mask >> n & 1]

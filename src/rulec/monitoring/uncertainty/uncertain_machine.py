@@ -1,0 +1,315 @@
+"""A rule's machine on words of possible letters, and why an outcome is not settled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from math import prod
+from typing import TypeAlias
+
+import numpy as np
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
+from rulec.automata.outcome_machine import (
+    KEPT,
+    PENDING,
+    VIOLATED,
+    OutcomeMachine,
+    SetMonitor,
+    of_complete_words,
+)
+from rulec.automata.thresholds import scale
+from rulec.logic.printing import number_in_words
+from rulec.monitoring.uncertainty.dependence import BEFORE, Dependence, PossibleAlternative
+from rulec.monitoring.uncertainty.possible_letters import LetterClasses, Letters, PossibleWord
+from rulec.monitoring.verdict import ConditionalOutcome, OutcomeName, Reason
+
+MOST_OUTCOMES = 1 << 4
+"""For so many combinations of values it is said how an open verdict comes out."""
+
+_MOST_REMEMBERED = 1 << 14
+_NAMES: Mapping[tuple[int, int], OutcomeName] = {
+    (KEPT, KEPT): "kept",
+    (VIOLATED, VIOLATED): "violated",
+}
+
+_Word: TypeAlias = Sequence[Letters]
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """The best and the worst outcome of all completions.
+
+    ``step`` is the first letter after which all are lost; the rest is an ``OpenVerdict``'s.
+    """
+
+    best: int
+    worst: int
+    step: int | None = None
+    because: tuple[Reason, ...] = ()
+    depends_on: tuple[str, ...] = ()
+    outcomes: tuple[ConditionalOutcome, ...] = ()
+    exact: bool = True
+
+
+class UncertainMachine:
+    """Answers of one rule's machine, remembered."""
+
+    def __init__(self, rule: CompiledRule, machine: OutcomeMachine) -> None:
+        self._reads = machine.reads
+        self._machine = machine
+        self._monitor = SetMonitor(machine)
+        self._classes = LetterClasses(machine)
+        self._answers: dict[object, Answer] = {}
+        self._untold: dict[frozenset[str], tuple[str, ...]] = {}
+        self._rule = rule
+
+    def impossible_at(self, word: PossibleWord) -> int | None:
+        """The index of a state that has no possible letter."""
+        classes = self._classes
+        return next((n for n, letters in enumerate(word.states) if not classes.of(letters)), None)
+
+    def answer(
+        self,
+        words: Sequence[PossibleWord],
+        constants: Sequence[Mapping[str, object]],
+        order: Sequence[str],
+    ) -> Answer:
+        """What the completions come to; ``words`` are by the values of what does not change.
+
+        ``order`` is that of names in the vocabulary.
+        """
+        alternatives = tuple(
+            [
+                PossibleAlternative(word.states, own)
+                for word, own in zip(words, constants, strict=True)
+            ]
+        )
+        unknown = tuple(
+            frozenset().union(*names)
+            for names in zip(*(word.unknown for word in words), strict=True)
+        )
+        key = tuple([(x.letters, tuple(x.constants.items())) for x in alternatives]), unknown
+        answer = self._answers.get(key)
+        if answer is None:
+            if len(self._answers) > _MOST_REMEMBERED:
+                self._answers.clear()
+            answer = self._answer(alternatives, unknown, order)
+            self._answers[key] = answer
+        return answer
+
+    def _answer(
+        self,
+        alternatives: Sequence[PossibleAlternative],
+        unknown: tuple[frozenset[str], ...],
+        order: Sequence[str],
+    ) -> Answer:
+        runs = [self._run(x.letters) for x in alternatives]
+        best, worst = min(x[0] for x in runs), max(x[1] for x in runs)
+        steps = [step for _, _, step in runs]
+        if best == worst and best != PENDING:
+            known = [step for step in steps if step is not None]
+            return Answer(best, worst, max(known) if len(known) == len(steps) else None)
+        pending: tuple[Reason, ...] = ("not over",) if PENDING in (best, worst) else ()
+        if best == worst:
+            return Answer(best, worst, because=pending)
+        varying = (
+            {name for own in alternatives for name in own.constants} if alternatives[1:] else set()
+        )
+        names = [name for name in order if any(name in own for own in (*unknown, varying))]
+        if len(self._machine.starts) > 1:
+            names.append(BEFORE)
+        dependence = Dependence(self._monitor, self._classes, alternatives, unknown)
+        found = dependence.smallest(names)
+        on = names if found is None else found
+        told: tuple[Reason, ...] = ("not told",) if any(on) else ()
+        before: tuple[Reason, ...] = ("began before",) if BEFORE in on else ()
+        depends_on = tuple([name for name in on if name])
+        outcomes = () if before else tuple(self._outcomes(depends_on, alternatives, unknown))
+        because = (*told, *before, *pending)
+        return Answer(
+            best,
+            worst,
+            because=because,
+            depends_on=depends_on,
+            outcomes=outcomes,
+            exact=found is not None,
+        )
+
+    def _run(self, word: _Word) -> tuple[int, int, int | None]:
+        return self._monitor.run([self._classes.of(letters) for letters in word])
+
+    def _outcomes(
+        self,
+        names: Sequence[str],
+        alternatives: Sequence[PossibleAlternative],
+        unknown: Sequence[frozenset[str]],
+    ) -> Iterator[ConditionalOutcome]:
+        """Outcomes for values that the names have whenever they are unknown."""
+        if any(name in own.constants for own in alternatives for name in names):
+            yield from self._outcomes_of_constants(names, alternatives)
+            return
+        options = [self._options(name, unknown) for name in names]
+        if not all(options) or prod(map(len, options)) > MOST_OUTCOMES:
+            return
+        for chosen in product(*options):
+            allowed: dict[int, int] = {}
+            for _, masks in chosen:
+                allowed |= masks
+            words = [self._narrowed(x.letters, allowed) for x in alternatives]
+            runs = [self._run(word) for word in words if word is not None]
+            if runs:
+                result = min(run[0] for run in runs), max(run[1] for run in runs)
+                when = {name: value for name, (value, _) in zip(names, chosen, strict=True)}
+                yield ConditionalOutcome(when, _NAMES.get(result, "open"))
+
+    def _outcomes_of_constants(
+        self,
+        names: Sequence[str],
+        alternatives: Sequence[PossibleAlternative],
+    ) -> Iterator[ConditionalOutcome]:
+        """Outcomes where the only name that decides is a value of the world that never changes."""
+        if len(names) > 1 or len(alternatives) > MOST_OUTCOMES:
+            return
+        for alternative in alternatives:
+            value = alternative.constants.get(names[0])
+            if not isinstance(value, bool | str):
+                return
+            best, worst, _ = self._run(alternative.letters)
+            yield ConditionalOutcome({names[0]: value}, _NAMES.get((best, worst), "open"))
+
+    def _options(
+        self, name: str, unknown: Sequence[frozenset[str]]
+    ) -> list[tuple[bool | str, dict[int, int]]]:
+        """Values of a name, each with the digits that it allows; none if there are too many."""
+        about = [n for n, names in enumerate(unknown) if name in names]
+        reads = [self._reads[n] for n in about]
+        if all(isinstance(read, Read) for read in reads):
+            texts = dict.fromkeys(
+                value for read in reads if isinstance(read, Read) for value in read.values
+            )
+            values: list[bool | str] = [*texts] if texts else [False, True]
+            if texts and any(isinstance(read, Read) and read.others for read in reads):
+                values.append("another")
+            return [
+                (
+                    value,
+                    {
+                        n: 1 << read.digit(value)
+                        for n, read in zip(about, reads, strict=True)
+                        if isinstance(read, Read)
+                    },
+                )
+                for value in values
+            ]
+        if len(reads) == 1 and isinstance(reads[0], NumberRead) and scale(reads[0]).quantity:
+            return [
+                (_side(reads[0], digit), {about[0]: 1 << digit}) for digit in range(reads[0].size)
+            ]
+        return []
+
+    def _narrowed(self, word: _Word, allowed: Mapping[int, int]) -> _Word | None:
+        """The word with no other digits than these of some reads, where they are not known."""
+        narrowed: list[Letters] = []
+        for letters in word:
+            cubes = []
+            for cube in letters:
+                masks = [
+                    mask & allowed[n] if n in allowed and _is_open(letters, n) else mask
+                    for n, mask in enumerate(cube)
+                ]
+                if all(masks):
+                    cubes.append(tuple(masks))
+            if not cubes or not self._classes.of(tuple(cubes)):
+                return None
+            narrowed.append(tuple(cubes))
+        return narrowed
+
+    def untold(self, untold: frozenset[str]) -> tuple[str, ...]:
+        """Names of these for want of which no word can be known to violate the rule.
+
+        Empty if some word can, whatever the untold names may be.
+        """
+        names = frozenset(name for read in self._reads for name in _names_of(read)) & untold
+        if not names:
+            return ()
+        if names not in self._untold:
+            lacking = () if self._can_fire(names) else self._smallest_lack(names)
+            self._untold[names] = lacking
+        return self._untold[names]
+
+    def _smallest_lack(self, names: frozenset[str]) -> tuple[str, ...]:
+        """Untold names that would all have to be told, in the order in which they are read."""
+        order = dict.fromkeys(
+            name for read in self._reads for name in _names_of(read) if name in names
+        )
+        lacking = list(order)
+        for name in order:
+            without = [other for other in lacking if other != name]
+            if without and not self._can_fire(frozenset(without)):
+                lacking = without
+        return tuple(lacking)
+
+    def _can_fire(self, untold: frozenset[str]) -> bool:
+        sizes = [read.size for read in self._reads]
+        dark = [n for n, read in enumerate(self._reads) if not untold.isdisjoint(_names_of(read))]
+        table = np.array(self._machine.letters).reshape(sizes[::-1])
+        last = len(sizes) - 1
+        axes = [last - n for n in range(len(sizes)) if n not in dark] + [last - n for n in dark]
+        rows = np.transpose(table, axes).reshape(-1, prod(sizes[n] for n in dark))
+        masks = {
+            sum(1 << symbol for symbol in set(row) - {IMPOSSIBLE})
+            for row in np.unique(rows, axis=0).tolist()
+        }
+        reached = {self._monitor.start}
+        for here in (waiting := [self._monitor.start]):
+            for classes in masks - {0}:
+                step = self._monitor.step(here, classes)
+                if step.best == VIOLATED:
+                    return True
+                if step.states not in reached:
+                    reached.add(step.states)
+                    waiting.append(step.states)
+        return False
+
+
+def _is_open(letters: Letters, read: int) -> bool:
+    union = 0
+    for cube in letters:
+        union |= cube[read]
+    return bool(union & (union - 1))
+
+
+def _names_of(read: Read | NumberRead) -> tuple[str, ...]:
+    return (read.name,) if isinstance(read, Read) else scale(read).names
+
+
+def _side(read: NumberRead, digit: int) -> str:
+    """The numbers that have a digit, in words."""
+    texts = []
+    if digit:
+        below = read.thresholds[digit - 1]
+        texts.append(f"{'>=' if below.inclusive else '>'} {number_in_words(below.limit)}")
+    if digit < len(read.thresholds):
+        above = read.thresholds[digit]
+        texts.append(f"{'<' if above.inclusive else '<='} {number_in_words(above.limit)}")
+    return " and ".join(texts)
+
+
+_PREPARED: dict[int, tuple[object, UncertainMachine]] = {}
+_MOST_PREPARED = 1 << 10
+
+
+def uncertain_machine(rule: CompiledRule, outcomes: OutcomeMachine | None) -> UncertainMachine:
+    """The rule's machine for uncertain words; ``outcomes`` is that for prefixes, if any."""
+    source: object = rule.machine if outcomes is None else outcomes
+    known = _PREPARED.get(id(source))
+    if known is None or known[0] is not source:
+        if len(_PREPARED) >= _MOST_PREPARED:
+            _PREPARED.clear()
+        machine = of_complete_words(rule.machine) if outcomes is None else outcomes
+        known = source, UncertainMachine(rule, machine)
+        _PREPARED[id(source)] = known
+    return known[1]

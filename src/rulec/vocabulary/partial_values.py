@@ -1,0 +1,45 @@
+"""Values that are not, or not exactly, known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final, Literal
+
+
+class UnknownValue(Enum):
+    """The type of ``UNKNOWN``."""
+
+    UNKNOWN = "?"
+
+    def __repr__(self) -> str:
+        return "UNKNOWN"
+
+    def __bool__(self) -> bool:
+        raise TypeError("what is unknown is neither true nor false")
+
+
+UNKNOWN: Final = UnknownValue.UNKNOWN
+"""A value that the source cannot tell: any that its declaration and what else is known allow."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A number known to lie between two others, bounds included.
+
+    Raises ValueError if the bounds are not finite and in order.
+    """
+
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        if not float("-inf") < self.low <= self.high < float("inf"):
+            raise ValueError(f"an interval from {self.low} to {self.high} has no numbers in it")
+
+
+UNKNOWN_TYPES = frozenset({UnknownValue, Interval})
+
+Unknown = Literal[UnknownValue.UNKNOWN]
+PartialValue = bool | float | str | Unknown | Interval
+"""What a state may say of a name: a value, an interval, or that it is unknown."""

@@ -1,0 +1,58 @@
+"""Verdicts under unknown values are those of all completions."""
+
+from fractions import Fraction
+
+from hypothesis import Phase, given, settings
+
+from rulec.diagnostics import RulecError
+from rulec.logic.free_names import names_in
+from rulec.monitoring.verify import verify
+from support.builders.rulebooks import compile_here
+from support.generators.blurred_traces import blurred, telling_numbers
+from support.generators.random_rulebooks import rulebook
+from support.generators.random_traces import traces
+from support.generators.seeds import seeds
+from support.oracles.completion_oracle import CompletionOracle
+from support.oracles.rulebook_oracle import Oracle, Said
+from support.oracles.state_oracle import Reading
+
+NUMBERS = telling_numbers()
+ORDER = settings(phases=[Phase.generate])
+
+
+@given(seeds)
+@ORDER
+def test_verdicts_are_those_of_all_completions(chance):
+    book = rulebook(chance, Fraction(1))
+    compiled = compile_here(book, Fraction(1))
+    oracle = Oracle(book)
+    formulas = [x.formula for x in (*book.rules, *book.axioms)]
+    names = {name for formula in formulas for name in names_in(formula)}
+    for trace in traces(chance, Fraction(1))[:3]:
+        partial = blurred(chance, trace, names)
+        completed = CompletionOracle(oracle, partial, NUMBERS)
+        if completed.refused or not completed.answers:
+            continue
+        try:
+            verdict = verify(partial, compiled)
+        except RulecError as error:
+            raise AssertionError((error, partial)) from error
+        violated = {(x.rule, tuple(x.binding.values())): x for x in verdict.violations}
+        doubtful = {(x.rule, tuple(x.binding.values())): x for x in verdict.open}
+        for rule in book.rules:
+            for objects, _, _ in Reading(book, partial).choices(rule):
+                key = rule.name, tuple(objects.values())
+                expected = completed.verdict(*key)
+                if isinstance(expected, Said):
+                    assert key in violated, (key, partial, rule)
+                    step = violated[key].step
+                    assert (-1 if step is None else step) == expected.step, (key, partial, rule)
+                elif expected == "open":
+                    assert key in doubtful, (key, partial, rule)
+                    found = doubtful[key]
+                    assert found.exact
+                    assert found.because == ("not told",)
+                    assert found.depends_on == completed.smallest(*key), (key, partial, rule)
+                else:
+                    assert key not in violated, (key, partial, rule)
+                    assert key not in doubtful, (key, partial, rule)

@@ -1,0 +1,118 @@
+"""Verdicts on traces with unknown values, by going through all of their completions."""
+
+from dataclasses import replace
+from itertools import combinations, product
+
+from rulec.vocabulary import Enumeration, Quantity
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from support.oracles.formula_oracle import is_kept
+from support.oracles.rulebook_oracle import Said
+from support.oracles.state_oracle import Reading
+
+
+def unknown_places(trace):
+    """State, name and objects of every value that is not known, with what it may be."""
+    for number, state in enumerate(trace.states):
+        for name, value in state.items():
+            yield from _within(number, name, (), value)
+
+
+def _within(number, name, objects, value):
+    if value is UNKNOWN or isinstance(value, Interval):
+        yield number, name, objects, value
+    elif isinstance(value, dict):
+        for one, inner in value.items():
+            yield from _within(number, name, (*objects, one), inner)
+
+
+def values_of(name, given, vocabulary, numbers):
+    declaration = vocabulary.declarations[name]
+    if isinstance(declaration, Enumeration):
+        return list(declaration.values)
+    if isinstance(declaration, Quantity):
+        if given is UNKNOWN:
+            return numbers
+        return [n for n in numbers if given.low <= n <= given.high] + [given.low, given.high]
+    return [False, True]
+
+
+def put(state, name, objects, value):
+    if not objects:
+        return {**state, name: value}
+    return {**state, name: put(state[name], objects[0], objects[1:], value)}
+
+
+def completions(trace, vocabulary, numbers):
+    """Pairs of chosen values, by place, and the trace that they make."""
+    places = list(unknown_places(trace))
+    options = [values_of(name, given, vocabulary, numbers) for _, name, _, given in places]
+    for chosen in product(*options):
+        states = list(trace.states)
+        for (number, name, objects, _), value in zip(places, chosen, strict=True):
+            states[number] = put(states[number], name, objects, value)
+        keys = [place[:3] for place in places]
+        yield dict(zip(keys, chosen, strict=True)), replace(trace, states=tuple(states))
+
+
+def keeps_facts(book, trace):
+    """Whether all facts hold of all who are there, in every state."""
+    reading = Reading(book, trace)
+    for fact in book.axioms:
+        for objects, first, last in reading.choices(fact):
+            for number in range(first, last + 1):
+                letter = reading.letter(fact.formula, objects, number)
+                if letter is not None and not is_kept(fact.formula, [letter], "finite"):
+                    return False
+    return True
+
+
+class CompletionOracle:
+    """What the completions of a trace come to, by rule and objects."""
+
+    def __init__(self, oracle, trace, numbers):
+        vocabulary = oracle.rulebook.vocabulary
+        every = [
+            (chosen, oracle.judged(whole))
+            for chosen, whole in completions(trace, vocabulary, numbers)
+            if keeps_facts(oracle.rulebook, whole)
+        ]
+        self.refused = [answer for _, answer in every if not isinstance(answer, tuple)]
+        self.answers = [(chosen, answer) for chosen, answer in every if isinstance(answer, tuple)]
+        self.names = [
+            name
+            for name in vocabulary.declarations
+            if any(name == place[1] for chosen, _ in every for place in chosen)
+        ]
+
+    def outcomes(self, rule, objects):
+        """Pairs of chosen values, and whether the rule is violated then, with the step."""
+        for chosen, answer in self.answers:
+            hits = [x for x in answer if x.rule == rule and x.objects == objects]
+            yield chosen, hits[0] if hits else None
+
+    def verdict(self, rule, objects):
+        """``kept``, a violation, or ``open``."""
+        outcomes = [said for _, said in self.outcomes(rule, objects)]
+        if not any(outcomes):
+            return "kept"
+        if not all(outcomes):
+            return "open"
+        steps = [said.step for said in outcomes]
+        step = -1 if -1 in steps else max(steps)
+        return Said(rule, objects, step, outcomes[0].strength)
+
+    def smallest(self, rule, objects):
+        """The smallest set of names that decides, the first of equally small ones."""
+        for size in range(len(self.names) + 1):
+            for names in combinations(self.names, size):
+                if self._decides(names, rule, objects):
+                    return names
+        return None
+
+    def _decides(self, names, rule, objects):
+        known = {}
+        for chosen, said in self.outcomes(rule, objects):
+            key = tuple(value for place, value in chosen.items() if place[1] in names)
+            if known.setdefault(key, bool(said)) != bool(said):
+                return False
+        return True
