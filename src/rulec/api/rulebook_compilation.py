@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -13,6 +14,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
+    from rulec.automata.outcome_machine import OutcomeMachine
     from rulec.rulebook.rulebook_model import Rulebook
 
     Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook
@@ -35,6 +37,13 @@ def machines(
     if isinstance(rules, CompiledRulebook):
         return rules
     return compile_rulebook(rules, search_path, warn, at=at, any_step=True)
+
+
+def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
+    """The machines for traces that are cut, which a compiled file does not have."""
+    from rulec.automata.prefix_machines import prefix_machines
+
+    return prefix_machines(rulebook)
 
 
 def compile_rulebook(
@@ -65,7 +74,7 @@ def compile_rulebook(
             )
         from rulec.automata.bundle.bundle_file import read_compiled
 
-        reference = read_compiled(Path(reference))
+        reference = replace(read_compiled(Path(reference)), prefixes=_prefixes)
     if isinstance(reference, CompiledRulebook):
         return reference if step is None else reference.at_step(step)
     from rulec.automata.compiler import lower

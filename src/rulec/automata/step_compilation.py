@@ -9,6 +9,7 @@ from math import ceil, floor
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import RulebookFormulas, build_all, lower
+from rulec.automata.prefix_machines import prefix_machines
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import Rounding, in_steps
 from rulec.rulebook.rulebook_model import Rule, Rulebook
@@ -85,7 +86,9 @@ class StepCompiler:
         missing = tuple([formula for formula, key in pairs if key not in machines])
         if missing or formulas.problems or self._header is None:
             built = build_all(self.rulebook, replace(formulas, rules=missing))
-            self._header = replace(built, source=self.rulebook, recompile=self)
+            self._header = replace(
+                built, source=self.rulebook, recompile=self, prefixes=prefix_machines
+            )
             machines.update({(rule.name, rule.step_s): rule for rule in built.rules})
         return replace(self._header, rules=tuple(machines[key] for key in keys))
 

@@ -2,6 +2,7 @@
 
 from rulec.automata import compiler
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRulebook
+from rulec.automata.prefix_machines import prefix_machines
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Unary, UnaryOperator
 from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
@@ -69,6 +70,7 @@ def compile_here(rulebook, step_s=None):
         axioms=tuple(
             CompiledAxiom(one.variables, one.formula, at(one.span)) for one in rulebook.axioms
         ),
+        prefixes=prefix_machines,
     )
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.mealy_monitor import MealyMonitor
@@ -15,6 +16,9 @@ from rulec.logic.printing import number_in_words
 from rulec.rulebook import rulebook_model as model
 from rulec.value_display import Rows, short_repr
 from rulec.vocabulary import Vocabulary
+
+if TYPE_CHECKING:
+    from rulec.automata.outcome_machine import OutcomeMachine
 
 NO_MULTIPLE = "R0407"
 
@@ -64,6 +68,10 @@ class Recompiler(Protocol):
         """The rulebook with bounds rounded down to multiples of a step, and rounded up."""
 
 
+PrefixCompiler: TypeAlias = "Callable[[CompiledRulebook], Mapping[str, OutcomeMachine | None]]"
+"""What compiles each rule for prefixes, by name; None where that gets too large."""
+
+
 @dataclass(frozen=True, slots=True)
 class CompiledRulebook(Rows):
     """Compiled rules of a rulebook, with the vocabulary of their traces.
@@ -71,6 +79,7 @@ class CompiledRulebook(Rows):
     ``rulec`` and ``spot`` are the versions that compiled it. ``source`` is the rulebook that it was
     compiled from, None if it was read from a compiled file. With ``recompile`` it fits itself to
     the step of the traces that it meets; None if it was read, or compiled for one step.
+    ``prefixes`` gives the machines for traces that are cut.
     """
 
     __repr__ = short_repr
@@ -93,6 +102,7 @@ class CompiledRulebook(Rows):
     traffic: model.Traffic = ""
     source: model.Rulebook | None = field(default=None, compare=False, repr=False)
     recompile: Recompiler | None = field(default=None, compare=False, repr=False)
+    prefixes: PrefixCompiler | None = field(default=None, compare=False, repr=False)
 
     def at_step(self, step_s: Fraction | float) -> CompiledRulebook:
         """These rules for traces whose states are ``step_s`` seconds apart.

@@ -16,7 +16,7 @@ from math import prod
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.outcome_machine import KEPT, VIOLATED
+from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.monitoring.bindings import Binding, bindings
@@ -63,16 +63,14 @@ class _UncertainRun:
         violations: list[Violation] = []
         doubtful: list[OpenVerdict] = []
         not_judged: list[RuleNotJudged] = []
-        prefixes = None
+        prefixes: Mapping[str, OutcomeMachine | None] | None = None
         if trace.ends == "cut":
-            # The compiler and its parser, 300 ms: only for traces that are cut.
-            from rulec.automata.prefix_machines import prefix_machines
-
-            prefixes = prefix_machines(self.rulebook)
+            compiler = self.rulebook.prefixes
+            prefixes = {} if compiler is None else compiler(self.rulebook)
         for rule in rules:
-            outcomes = None if prefixes is None else prefixes[rule.name]
+            outcomes = None if prefixes is None else prefixes.get(rule.name)
             if prefixes is not None and outcomes is None:
-                why = "what it says of a trace that is cut takes too large a machine"
+                why = "there is no machine for what it says of a trace that is cut"
                 not_judged.append(RuleNotJudged(rule.name, rule.strength, (), why))
                 continue
             machine = uncertain_machine(rule, outcomes)
