@@ -165,7 +165,7 @@ def _wrong(element: XmlElement) -> RulecError:
 
 def net_beside(path: Path, head: FcdHead) -> Path:
     """The net of floating-car data. Raises RulecError R0614 if it is not clear which that is."""
-    written = _beside(path, head.net) if head.net else None
+    written = named_beside(path, head.net) if head.net else None
     if written is not None:
         return written
     nets = [*path.parent.glob("*.net.xml"), *path.parent.glob("*.net.xml.gz")]
@@ -186,14 +186,15 @@ def net_beside(path: Path, head: FcdHead) -> Path:
 
 def demand_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
     """The files beside floating-car data that may describe the types of vehicles."""
-    written = [file for name in head.demand if (file := _beside(path, name)) is not None]
+    written = [file for name in head.demand if (file := named_beside(path, name)) is not None]
     if written:
         return tuple(written)
     only = [*path.parent.glob("*.rou.xml"), *path.parent.glob("*.rou.xml.gz")]
     return tuple(only) if len(only) == 1 else ()
 
 
-def _beside(path: Path, written: str) -> Path | None:
+def named_beside(path: Path, written: str) -> Path | None:
+    """The file beside floating-car data that a file names, if it is there."""
     # Only the name counts: what a file says shall not lead anywhere else
     candidate = path.parent / _name(written)
     return candidate if candidate.is_file() else None

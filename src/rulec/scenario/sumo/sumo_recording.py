@@ -25,6 +25,7 @@ from rulec.scenario.sumo.fcd import (
     read_fcd,
 )
 from rulec.scenario.sumo.lanelets import net_lanelets
+from rulec.scenario.sumo.light_states import light_states_beside, read_light_states
 from rulec.scenario.sumo.net import SumoNet, read_net
 from rulec.scenario.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
 from rulec.scenario.xml_element import short
@@ -68,6 +69,9 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     types = read_vehicle_types(demand_beside(path, data.head))
     unknown: set[str] = set()
     participants = tuple(_participants(data, types, step_s, unknown))
+    for file in light_states_beside(path, data.head):
+        shown = read_light_states(file).items()
+        net.programmes.update({name: [programme] for name, programme in shown})
     lanelets = net_lanelets(net, step_s)
     _check_near(path, participants, lanelets.values())
     return Recording(
