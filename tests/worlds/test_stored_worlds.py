@@ -12,7 +12,7 @@ from support.worlds.stored import SMALL, StoredWorld
 @cache
 def judged(name):
     world = StoredWorld(name)
-    found = answers(world.data, world.net, world.book)
+    found = answers(world.data, world.book, world.net)
     return scores(world.facts(), found, world.book)
 
 

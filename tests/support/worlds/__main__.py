@@ -7,7 +7,7 @@ import argparse
 import tempfile
 from pathlib import Path
 
-from support.worlds.judging import DISTURBANCES, judged_all, judged_stored
+from support.worlds.judging import DISTURBANCES, judged_all, judged_recordings, judged_stored
 from support.worlds.scoring import table
 from support.worlds.stored import SMALL, StoredWorld
 from support.worlds.sumo_environment import sumo_programs
@@ -21,6 +21,7 @@ def main():
     parser.add_argument("--as", dest="disturbance", choices=list(DISTURBANCES))
     parser.add_argument("--keep", type=Path, help="a folder for the files of the worlds")
     parser.add_argument("--stored", action="store_true", help="judge the stored worlds alone")
+    parser.add_argument("--recordings", type=Path, nargs="+", help="CommonRoad files, by labels")
     parser.add_argument("--store", action="store_true", help="make the stored worlds anew")
     words = parser.parse_args()
     kinds, seeds = words.kind or list(KINDS), range(1, words.seeds + 1)
@@ -30,7 +31,9 @@ def main():
             for name in SMALL:
                 StoredWorld(name).store(sumo_programs(), folder / name)
             return
-        if words.stored:
+        if words.recordings:
+            total = judged_recordings(words.recordings)
+        elif words.stored:
             total = judged_stored()
         else:
             total = judged_all(sumo_programs(), kinds, seeds, folder, words.disturbance)

@@ -3,6 +3,8 @@
 from concurrent.futures import ProcessPoolExecutor
 
 from support.worlds.disturbances import at_frames, mirrored, with_noise
+from support.worlds.raw_labels import LABELLED, labels
+from support.worlds.raw_recordings import RawRecording
 from support.worlds.scoring import Score, answers, scores, true_facts
 from support.worlds.simulate import simulate
 from support.worlds.stored import SMALL, StoredWorld
@@ -27,7 +29,7 @@ def judged(sumo, name, seed, folder, disturbance=None):
     facts = true_facts(WorldState(files, 0.1, kind.book))
     if disturbance:
         files = DISTURBANCES[disturbance](files, folder / disturbance)
-    found = answers(files.data, files.net, kind.book)
+    found = answers(files.data, kind.book, files.net)
     return scores(facts, found, kind.book, f"{name} {seed}")
 
 
@@ -47,11 +49,29 @@ def judged_all(sumo, kinds, seeds, folder, disturbance=None):
     return total
 
 
+def judged_recordings(files):
+    """File -> rule -> the score of `de` by labels from raw places, of the rules that have some."""
+    total = {}
+    for file in files:
+        recording = RawRecording(file)
+        if not recording.tracks:
+            continue
+        facts = list(labels(recording))
+        try:
+            found = answers(file, "de")
+        except RuntimeError as error:
+            total[file.stem] = {"refused": Score(missed=[str(error).splitlines()[0]])}
+            continue
+        by_rule = scores(facts, found, "de", file.stem)
+        total[file.stem] = {rule: by_rule[rule] for rule in LABELLED}
+    return total
+
+
 def judged_stored():
     """Stored world -> rule -> its score."""
     total = {}
     for name in SMALL:
         world = StoredWorld(name)
-        found = answers(world.data, world.net, world.book)
+        found = answers(world.data, world.book, world.net)
         total[name] = scores(world.facts(), found, world.book, name)
     return total

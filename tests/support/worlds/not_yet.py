@@ -14,3 +14,5 @@ STORED = {
     "motorway": {"near_side_passing", "speed_limit"},
 }
 SIMULATED = {}
+LABELS = {}
+"""Rule -> how many are accused falsely, and missed, in all of the recordings that are at hand."""

@@ -4,6 +4,7 @@ import numpy as np
 
 from support.worlds.facts import Fact, runs
 
+LABELLED = "speed_limit", "following_distance", "red_light", "near_side_passing"
 DRIVERS = frozenset({"car", "truck", "bus", "motorcycle", "taxi", "priorityVehicle"})
 REACTION_S, BRAKING_MPS2 = 1.0, 8.0
 _SPEED_MPS, _SPEED_S = 0.6, 1.0

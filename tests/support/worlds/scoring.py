@@ -59,14 +59,15 @@ def scored_rules(book):
     return tuple(sorted(TRUTHS.keys() & known))
 
 
-def answers(data, net, book):
+def answers(data, book, net=None):
     """Vehicle -> what `rulec verify --json` says of it; its drive may be in parts.
 
     Read from the command's output, which is what users rely on. Raises RuntimeError if it failed.
     """
     out, err = StringIO(), StringIO()
     with redirect_stdout(out), redirect_stderr(err):
-        status = main(["verify", str(data), "-r", book, "--net", str(net), "--json"])
+        roads = [] if net is None else ["--net", str(net)]
+        status = main(["verify", str(data), "-r", book, *roads, "--json"])
     if status not in (0, 1):
         raise RuntimeError(err.getvalue()[-2000:])
     found = defaultdict(Answer)
