@@ -9,6 +9,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.extraction.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import RoadExtents, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
@@ -46,6 +47,11 @@ class DriveContext:
     relevant: Flags
     in_sight: Flags
     touched: Flags
+
+    @cached_property
+    def tolerances(self) -> Tolerances:
+        """How well the source knows places and speeds."""
+        return tolerances_of(self.recording)
 
     @property
     def states(self) -> int:

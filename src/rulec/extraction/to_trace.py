@@ -20,8 +20,10 @@ from rulec.extraction.signals.participant_signals import (
     gap_beside_safe_distance,
     participant_signals,
 )
+from rulec.extraction.signals.settling import settled
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Floats
+from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.partition.cell_graph import PAPER_SURFACE
@@ -157,6 +159,7 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     signals = SignalColumns()
     for signals_of in _SIGNALS:
         signals |= signals_of(context)
+    signals = settled(signals, LEAST_S, context.recording.step_s)
     types = [body.object_types for body in context.tracks.participants]
     if writer.vocabulary is not None:
         signals = _projected(signals, types, writer.vocabulary, writer.names)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from rulec.value_display import short_repr
 
@@ -75,3 +77,34 @@ class Thresholds:
 
 
 USUAL = Thresholds()
+
+LEAST_S: Mapping[str, float] = MappingProxyType(
+    dict.fromkeys(
+        (
+            "lateral",
+            "position",
+            "precedes",
+            "safe_gap",
+            "stopped",
+            "oncoming",
+            "straddling",
+            "lane_position",
+            "on_solid_line",
+            "accelerating",
+            "braking_hard",
+            "can_stop_at_once",
+            "congested",
+            "CONGESTED",
+            "walking_pace_flow",
+            "dense_all_lanes",
+            "far_lane_queue",
+            "overtaking",
+            "being_overtaken",
+        ),
+        0.3,
+    )
+)
+"""Word -> how long (s) a value of it lasts at least; a shorter one is noise.
+
+Others have none: they are of one moment, or cannot waver.
+"""

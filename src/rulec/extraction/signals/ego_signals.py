@@ -30,6 +30,8 @@ def ego_signals(context: DriveContext) -> SignalColumns:
     speed = rounded(context.zero_if_standing(context.ego.speed[0] * KMH))
     gained = context.ego.acceleration[0]
     existing = context.existing_lanes
+    known = context.tolerances
+    straddling, unsure = _straddling(context)
     return SignalColumns(
         {
             "ego_type": np.full(count, _EGO_TYPES.get(participant.type, "ego_car")),
@@ -40,9 +42,15 @@ def ego_signals(context: DriveContext) -> SignalColumns:
             "can_stop_at_once": speed <= limits.stops_at_once_kmh,
             "lane": named_values(_from_kerb(context), _LANES),
             "lanes": named_values(np.clip(existing.sum(axis=1) - 1, 0, 2), _COUNTS),
-            "straddling": _straddling(context),
+            "straddling": straddling,
             "lane_position": named_values(_place_in_lane(context), _PLACES),
-        }
+        },
+        unknown={
+            "accelerating": abs(gained - limits.accelerating_mps2) < known.acceleration_mps2,
+            "braking_hard": abs(gained + limits.braking_hard_mps2) < known.acceleration_mps2,
+            "can_stop_at_once": abs(speed - limits.stops_at_once_kmh) < known.speed_mps * KMH,
+            "straddling": unsure,
+        },
     )
 
 
@@ -56,13 +64,17 @@ def _from_kerb(context: DriveContext) -> NDArray[intp]:
     return np.where(rank <= 0, 0, np.where(rank >= count - 1, 2, 1))
 
 
-def _straddling(context: DriveContext) -> Flags:
+def _straddling(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of ego in two lanes, and of states in which that cannot be told."""
     straight = context.road.lanes.straight
     reach = context.thresholds.touching_m
     low, high = context.ego_extents.w_min[0][:, None], context.ego_extents.w_max[0][:, None]
     inside = np.minimum(high, straight[1:]) - np.maximum(low, straight[:-1])
-    both: Flags = ((inside > reach) & context.existing_lanes).sum(axis=1) > 1
-    return both
+    both, surely, perhaps = (
+        ((inside > least) & context.existing_lanes).sum(axis=1) > 1
+        for least in (reach, reach + context.tolerances.place_m, reach - context.tolerances.place_m)
+    )
+    return both, perhaps & ~surely
 
 
 def _place_in_lane(context: DriveContext) -> NDArray[intp]:

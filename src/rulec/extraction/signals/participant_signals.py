@@ -23,6 +23,7 @@ def participant_signals(context: DriveContext) -> SignalColumns:
     bodies = context.tracks.participants
     speeds = context.zero_if_standing(context.extents.along * KMH)
     follows = _follows(station, lateral)
+    short = safe_distance(context) - gap
     return SignalColumns(
         about={
             "position": relations.position(context),
@@ -32,7 +33,7 @@ def participant_signals(context: DriveContext) -> SignalColumns:
             "time_headway": rounded(_headway(context, gap)),
             "lateral_gap": rounded(relations.lateral_gap(context)),
             "speed_difference": rounded(context.ego_extents.along * KMH - speeds),
-            "safe_gap": np.logical_or(~follows, gap >= safe_distance(context)),
+            "safe_gap": ~follows | (short <= 0),
             "precedes": _precedes(context, follows, gap),
             "oncoming": is_oncoming(context) | _waits_oncoming(context),
             "stopped": context.tracks.speed * KMH < context.thresholds.standing_kmh,
@@ -41,6 +42,7 @@ def participant_signals(context: DriveContext) -> SignalColumns:
             "in_the_road": context.tracks.on_lane,
         },
         only={"in_the_road": context.tracks.of_type("vulnerable_user")},
+        unknown={"safe_gap": follows & (np.abs(short) < context.tolerances.place_m)},
     )
 
 
@@ -56,8 +58,9 @@ def gap_beside_safe_distance(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def _headway(context: DriveContext, gap: Floats) -> Floats:
-    moves = context.ego_extents.along * KMH >= context.thresholds.standing_kmh
-    seconds = gap / np.where(moves, context.ego_extents.along, 1.0)
+    # The speed that the word `speed` says
+    moves = context.ego.speed * KMH >= context.thresholds.standing_kmh
+    seconds = gap / np.where(moves, context.ego.speed, 1.0)
     return np.where(moves, np.minimum(seconds, LONGEST_S), LONGEST_S)
 
 

@@ -77,10 +77,16 @@ class Tracks:
         return np.array([name in body.object_types for body in self.participants], dtype=bool)
 
 
+_STEERED = frozenset({"vehicle", "light_rider"})
+_LEAST_PART = 0.7
+"""Whose motion is less along its heading than at 45° has a heading that says nothing."""
+
+
 def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
     """The tracks of the participants of a recording that occupy something.
 
-    Velocities are central differences over ``smoothing_s``, one-sided where a track begins or ends.
+    Velocities are central differences over ``smoothing_s``, one-sided where a track begins or ends;
+    the speed of what steers is the part of it along its heading.
     """
     bodies = tuple(body for body in recording.participants if body.outlines)
     steps = [step for body in bodies if not body.standing for step in body.outlines]
@@ -106,6 +112,13 @@ def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
     vx = np.where(single, stated * np.cos(heading), vx)
     vy = np.where(single, stated * np.sin(heading), vy)
     speed = np.hypot(vx, vy)
+    # A vehicle moves along its heading: a simulated change of lanes in one step is no speed
+    along = np.abs(vx * np.cos(heading) + vy * np.sin(heading))
+    steers = np.array(
+        [bool(_STEERED.intersection(body.object_types)) for body in bodies], dtype=bool
+    )
+    steers &= np.nansum(along * speed, axis=1) >= _LEAST_PART * np.nansum(speed**2, axis=1)
+    speed = np.where(steers[:, None], along, speed)
     gained = (speed[rows, after] - speed[rows, before]) / seconds
     vulnerable = np.array(["vulnerable_user" in body.object_types for body in bodies], dtype=bool)
     users = present & vulnerable[:, None]

@@ -1,0 +1,46 @@
+"""Durations: a value that lasts for less than its word's least one is noise."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import pairwise
+from math import ceil
+
+import numpy as np
+
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+
+_HAIR = 1e-6
+
+
+def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float) -> SignalColumns:
+    """The signals without values that are shorter than their word's least duration (s).
+
+    Such a value between two equal ones becomes theirs; at the ends of a recording it stays.
+    """
+    own = {name: ceil(seconds / step_s - _HAIR) for name, seconds in least_s.items()}
+    world, about = (
+        {name: without_blips(column, own.get(name, 1)) for name, column in columns.items()}
+        for columns in (signals.world, signals.about)
+    )
+    return SignalColumns(world, about, signals.unknown, signals.only)
+
+
+def without_blips(column: SignalColumn, least: int) -> SignalColumn:
+    """A column, or rows of them, without values that last for fewer states than ``least``.
+
+    Only between equal neighbours, from the first on: flicker becomes what it began with.
+    """
+    if least <= 1 or not column.size:
+        return column
+    rows = column.reshape(-1, column.shape[-1])
+    changes = np.ones(rows.shape, dtype=bool)
+    changes[:, 1:] = rows[:, 1:] != rows[:, :-1]
+    short = np.flatnonzero((changes.sum(axis=1) > 2) & (rows.shape[1] > 2))
+    found = np.array(rows)
+    for row in short.tolist():
+        starts = [*np.flatnonzero(changes[row]).tolist(), rows.shape[1]]
+        for start, end in pairwise(starts[1:-1]):
+            if end - start < least and found[row, start - 1] == rows[row, end]:
+                found[row, start:end] = found[row, start - 1]
+    return found.reshape(column.shape)

@@ -1,0 +1,66 @@
+"""Values that last too short to be more than noise."""
+
+from itertools import groupby
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.extraction.signals.settling import settled, without_blips
+from rulec.extraction.signals.signal_columns import SignalColumns
+
+columns = st.lists(st.sampled_from("abc"), min_size=1, max_size=20)
+
+
+def after(text, least=3):
+    return "".join(without_blips(np.array(list(text)), least).tolist())
+
+
+def test_a_short_value_between_equal_ones_is_noise():
+    assert after("aaabaaa") == "aaaaaaa"
+    assert after("aaabbaaa") == "aaaaaaaa"
+    assert after("aaabbbaaa") == "aaabbbaaa"
+    # Between different ones it is a passage, and at an end nothing is known of the other side
+    assert after("aaabccc") == "aaabccc"
+    assert after("baaaa") == "baaaa"
+    assert after("aaaab") == "aaaab"
+
+
+def test_flicker_is_settled_by_what_it_began_with():
+    assert after("aaababaaa") == "aaaaaaaaa"
+    assert after("aaabababbb") == "aaaaaaabbb"
+
+
+def test_rows_are_settled_by_themselves():
+    rows = np.array([list("aabaa"), list("bbbbb"), list("abbba")])
+    found = without_blips(rows, 2)
+    assert ["".join(row) for row in found.tolist()] == ["aaaaa", "bbbbb", "abbba"]
+
+
+@given(columns, st.integers(1, 4))
+def test_what_lasts_stays_and_nothing_new_is_said(column, least):
+    found = without_blips(np.array(column), least).tolist()
+    assert len(found) == len(column)
+    at = 0
+    for value, run in groupby(column):
+        length = len(list(run))
+        if length >= least:
+            assert found[at : at + length] == [value] * length
+        at += length
+    assert set(found) <= set(column)
+
+
+@given(columns, st.integers(1, 4))
+def test_settling_again_changes_nothing(column, least):
+    once = without_blips(np.array(column), least)
+    assert without_blips(once, least).tolist() == once.tolist()
+
+
+def test_durations_are_in_seconds_and_by_word():
+    flags = np.array([False, False, True, True, False, False])
+    signals = SignalColumns({"brief": flags, "moment": flags})
+    found = settled(signals, {"brief": 0.3}, 0.1)
+    assert not found.world["brief"].any()
+    assert found.world["moment"].tolist() == flags.tolist()
+    # Two steps of 0.2 s are long enough
+    assert settled(signals, {"brief": 0.3}, 0.2).world["brief"].tolist() == flags.tolist()

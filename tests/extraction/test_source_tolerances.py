@@ -1,0 +1,80 @@
+"""How well a source knows places and speeds, and what is unknown therefore."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.source_tolerances import NGSIM, OTHERS, SIMULATED, tolerances_of
+from support.builders.drive_contexts import context_of, steady
+from support.builders.recordings import recording, vehicle
+from support.generators.random_recordings import lanes
+
+
+def of_source(name, *bodies, form="CommonRoad scenario", count=2):
+    return replace(recording(lanes(count), bodies), name=name, form=form)
+
+
+@pytest.mark.parametrize(
+    ("name", "form", "tolerances"),
+    [
+        ("USA_US101-4_1_T-1", "CommonRoad scenario", NGSIM),
+        ("USA_Lanker-1_3_T-1", "CommonRoad scenario", NGSIM),
+        ("ESP_Toledo-11_5_T-1", "CommonRoad scenario", OTHERS),
+        ("fcd", "SUMO data", SIMULATED),
+    ],
+)
+def test_a_source_is_known_by_its_form_and_where_it_was_made(name, form, tolerances):
+    assert tolerances_of(of_source(name, form=form)) == tolerances
+
+
+@pytest.mark.parametrize(
+    ("name", "gap_m", "known"),
+    [
+        ("USA_US101", 20.2, False),
+        ("USA_US101", 19.6, True),
+        ("ZAM", 20.2, True),
+        ("ZAM", 20.04, False),
+    ],
+)
+def test_a_gap_as_near_to_the_safe_one_as_places_are_known(name, gap_m, known):
+    # At 20 m/s behind one as fast the safe gap is 20 m
+    ego, other = steady(7, 0, 0, 20), steady(8, 4 + gap_m, 0, 20)
+    found = participant_signals(context_of(of_source(name, ego, other)))
+    assert found.unknown["safe_gap"][0, 0] == (not known)
+
+
+def test_a_speed_near_a_threshold():
+    slow, slower = steady(7, 0, 0, speed=5.6), steady(7, 0, 0, speed=5.0)  # 20.2 and 18 km/h
+    for name, ego, known in (
+        ("USA_US101", slow, False),
+        ("ZAM", slow, False),
+        ("USA_US101", slower, True),
+    ):
+        found = ego_signals(context_of(of_source(name, ego)))
+        assert found.unknown["can_stop_at_once"].all() == (not known)
+    assert (
+        not ego_signals(context_of(of_source("x", slow, form="SUMO data")))
+        .unknown["can_stop_at_once"]
+        .any()
+    )
+
+
+def test_a_simulated_change_of_lanes_in_one_step_is_no_speed():
+    # 45 km/h, and 4 m sideways in the last step: by places alone 58 km/h
+    places = {k: (12.5 * 0.5 * k, 0.0) for k in range(7)} | {7: (12.5 * 3.5, 4.0)}
+    found = ego_signals(context_of(of_source("x", vehicle(7, places), form="SUMO data")))
+    assert found.world["speed"] == pytest.approx(np.full(8, 45.0))
+
+
+def test_time_headway_and_speed_are_of_the_same_speed():
+    # Ego leads 0.3 rad across the road: 10 m/s, 9.55 m/s of them along it
+    ahead = {k: (10 * np.cos(0.3) * k, 10 * np.sin(0.3) * k - 8) for k in range(4)}
+    ego = vehicle(7, {k: (x / 2, y / 2) for k, (x, y) in ahead.items()}, heading=0.3)
+    context = context_of(of_source("x", ego, steady(8, 30, 0, 0)))
+    about = participant_signals(context).about
+    speed = ego_signals(context).world["speed"]
+    assert speed == pytest.approx(np.full(4, 36.0), abs=0.01)
+    assert about["time_headway"][0, 0] == pytest.approx(about["gap"][0, 0] / 10, abs=0.01)
