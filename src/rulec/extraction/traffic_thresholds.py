@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from rulec.scenario.recorded.lane_coordinates import TOUCHING_M
 from rulec.value_display import short_repr
 
 
@@ -26,7 +27,7 @@ class Thresholds:
     braking_hard_mps2: float = 4.0
     stops_at_once_kmh: float = 20.0
     """So slow a vehicle can stop at once."""
-    touching_m: float = 0.3
+    touching_m: float = TOUCHING_M
     """Who reaches into a lane by less is not in it: positions are no better than that."""
     changed_m: float = 0.3
     """A lane has been changed when the middle of the vehicle is so far beyond the mark."""

@@ -48,6 +48,17 @@ def test_a_ring_is_followed_once():
     assert route(recording(ring), "1", frozenset()) == ("1", "2")
 
 
+def test_a_ring_is_cut_half_way_round():
+    # A square of four sides of 40 m each: two ahead, two behind, or three if that is the way to go
+    corners = [(0, 0), (40, 0), (40, 40), (0, 40), (0, 0)]
+    ring = [
+        lanelet(k, corners[k - 1 : k + 1], successors=(k % 4 + 1,), predecessors=((k - 2) % 4 + 1,))
+        for k in range(1, 5)
+    ]
+    assert route(recording(ring), "1", frozenset()) == ("4", "1", "2", "3")
+    assert route(recording(ring), "1", frozenset({"4"})) == ("1", "2", "3", "4")
+
+
 def test_no_further_than_300_m():
     chain = [
         straight(n, 100 * n, 100 * n + 100, successors=(n + 1,), predecessors=(n - 1,))

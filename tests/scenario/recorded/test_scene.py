@@ -93,7 +93,7 @@ def test_who_is_there_at_the_end_goes_on():
 
 
 @pytest.mark.parametrize(
-    ("y", "kept"), [(0, True), (4, True), (6.9, True), (7.1, False), (-8, False), (-300, False)]
+    ("y", "kept"), [(0, True), (4, True), (6.6, True), (6.8, False), (-8, False), (-300, False)]
 )
 def test_only_who_touches_the_road_is_kept(y, kept):
     scenario = scene(drive(7, 40, 10, y=y))

@@ -25,6 +25,9 @@ from rulec.scenario.scenario_model import MissingLane
 NARROWEST_LANE_M = 1.0
 """Where a lane is narrower it has not begun yet, or has ended."""
 
+TOUCHING_M = 0.3
+"""Who reaches into a lane by less is not in it: positions are no better than that."""
+
 _REACH_FACTOR, _REACH_MORE_M = 2.0, 3.0
 _NARROWEST_M = 0.1
 _EDGE_EVERY_M = 0.5
@@ -252,6 +255,22 @@ def outline_bounds(
     feet[np.isnan(around)] = np.nan
     coordinates = np.column_stack((feet, lanes.straightened(feet)[:, 1]))
     return np.minimum.reduceat(coordinates, starts), np.maximum.reduceat(coordinates, starts)
+
+
+def kept_off_touched(low: _Values, high: _Values, straight: _Values) -> tuple[_Values, _Values]:
+    """Extents across the lanes, ending at the marks of lanes that they merely touch.
+
+    A narrow body, such as a pedestrian's, is in a lane with most of it.
+    """
+    enough = np.minimum(TOUCHING_M, (high - low) / 2)
+    first, last = pieces_at(straight, low), pieces_at(straight, high)
+    left_of_first, right_of_last = straight[first + 1], straight[last]
+    into_first, into_last = left_of_first - low, high - right_of_last
+    touches_right = (into_first > 0) & (into_first <= enough)
+    touches_left = (into_last > 0) & (into_last <= enough)
+    kept = np.where(touches_right, left_of_first, low), np.where(touches_left, right_of_last, high)
+    apart = kept[0] < kept[1]
+    return np.where(apart, kept[0], low), np.where(apart, kept[1], high)
 
 
 def crossings_along(

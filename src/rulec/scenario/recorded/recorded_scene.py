@@ -17,9 +17,9 @@ import numpy as np
 from rulec.scenario.geometry import Box
 from rulec.scenario.motion import swept
 from rulec.scenario.recorded.ego_start import choice_error, ego_size, ego_start, reference_lanelet
-from rulec.scenario.recorded.lane_coordinates import crossings_along, lanes_along
-from rulec.scenario.recorded.recording import Lanelet, Recording
-from rulec.scenario.recorded.reference_line import reference_line
+from rulec.scenario.recorded.lane_coordinates import borders_along, crossings_along, lanes_along
+from rulec.scenario.recorded.recording import Lanelet, Recording, TrackState
+from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
 from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
 from rulec.scenario.recorded.traffic_obstacles import TrafficView, traffic_obstacles
 from rulec.scenario.scenario_model import (
@@ -39,6 +39,7 @@ FEWEST = 3
 """So many vehicles it takes for traffic to be congested."""
 
 _FOR_S = 1.0
+_MORE_M = 5.0
 
 LIGHT_FOR_S = 10.0
 """A light counts if all of ego's show one colour for so long from time 0 on."""
@@ -67,7 +68,7 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     own = reference_lanelet(recording, choice, start.state, file)
     way = route(recording, own, lanelets_at(recording, start.targets))
     line = reference_line(np.concatenate([recording.lanelets[n].centre for n in way]))
-    ((ego_s, ego_d),) = line.coordinates(np.array([[start.state.x, start.state.y]])).tolist()
+    ego_s, ego_d = _place_on(own, start.state, [recording.lanelets[n] for n in way], line)
     if not 0 <= ego_s <= line.length:
         message = f"ego is not beside lanelet {own}, nor the road before and after it"
         raise choice_error(
@@ -117,6 +118,20 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
             remarks=recording.remarks,
         ),
     )
+
+
+def _place_on(
+    own: str, state: TrackState, way: Sequence[Lanelet], line: ReferenceLine
+) -> tuple[float, float]:
+    """The coordinates of a place on a lanelet of the way, which may come by the place again."""
+    borders = borders_along(way, line)
+    number = next(k for k, lanelet in enumerate(way) if lanelet.id == own)
+    middle, reach = (borders[number + 1] + borders[number]) / 2, np.diff(borders)[number] / 2
+    place = np.array([[state.x, state.y]])
+    ((s, d),) = line.coordinates_near(
+        place, np.array([middle]), np.array([reach + _MORE_M])
+    ).tolist()
+    return s, d
 
 
 def map_signals(

@@ -97,10 +97,16 @@ def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[st
     """The lanelets along ego's road, each followed by a successor.
 
     Where the road branches: towards a target if one can be reached, else as straight as possible.
+    A closed road is cut half-way round.
     """
     lanelets = recording.lanelets
-    ahead = _straight_on(lanelets, _way_to(lanelets, start, targets))
+    way = _way_to(lanelets, start, targets)
+    ahead = _straight_on(lanelets, way)
     behind = _straight_on(lanelets, [start], backwards=True, taken=ahead)
+    if start in lanelets[ahead[-1]].successors:
+        own = [lanelet_length(lanelets[number]) for number in ahead]
+        while len(ahead) > len(way) and sum(own[len(ahead) - 1 :]) < sum(own[: len(ahead) - 1]):
+            behind.append(ahead.pop())
     return (*behind[:0:-1], *ahead)
 
 

@@ -11,9 +11,10 @@ import numpy as np
 
 from rulec.scenario import scenario_model as model
 from rulec.scenario.geometry import Box
-from rulec.scenario.recorded.lane_coordinates import Lanes, outline_bounds
+from rulec.scenario.recorded.lane_coordinates import Lanes, kept_off_touched, outline_bounds
 from rulec.scenario.recorded.recording import Participant, Points, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine
+from rulec.scenario.recorded.route import REACH_M
 
 GOES_ON_S = 600.0
 """The time (s) for which those present at the end of a recording go on after it."""
@@ -44,13 +45,16 @@ class TrafficView:
         steps = (
             max(participant.outlines)
             for participant in self.recording.participants
-            if not participant.standing
+            if participant.outlines and not participant.standing
         )
         return self.time(max(steps, default=0))
 
     def boxes(self, outlines: Sequence[Points]) -> list[Box | None]:
         """The bounds of outlines in the scenario; None far from the road."""
-        low, high = outline_bounds(outlines, self.line, self.lanes)
+        # A closed road comes by a place again, too far away to be seen
+        near = np.full(len(outlines), self.ego_s), np.full(len(outlines), REACH_M + _FAR_M)
+        low, high = outline_bounds(outlines, self.line, self.lanes, near)
+        low[:, 2], high[:, 2] = kept_off_touched(low[:, 2], high[:, 2], self.lanes.straight)
         low, high = low[:, ::2] - (self.ego_s, 0.0), high[:, ::2] - (self.ego_s, 0.0)
         wide = Box(
             self.road.s_min - _FAR_M,
@@ -72,7 +76,7 @@ def traffic_obstacles(
 ) -> Iterator[model.Obstacle]:
     """The obstacles on the road from time 0 on, in the file's order."""
     predictions = {prediction: Fraction(1)} if isinstance(prediction, str) else prediction
-    others = [participant for participant in view.recording.participants if participant.id != ego]
+    others = [body for body in view.recording.participants if body.id != ego and body.outlines]
     for participant, steps, own in _laid_out(view, others):
         motions = [
             model.Alternative(weight, motion)
