@@ -21,7 +21,12 @@ from rulec.scenario.recorded.lane_coordinates import (
     lanes_along,
 )
 from rulec.scenario.recorded.recording import Lanelet, Points, Recording
-from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at, reference_line
+from rulec.scenario.recorded.reference_line import (
+    ReferenceLine,
+    pieces_at,
+    reference_line,
+    smoothed,
+)
 from rulec.scenario.recorded.route import directions_beside, is_lane, lanes_beside, roads_beyond
 
 _BESIDE_M = 20.0
@@ -86,7 +91,7 @@ def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -
     pieces = (*((number,) for number in behind), *driven, *((number,) for number in ahead))
     entries = tuple(piece[0] for piece in pieces)
     lanelets = tuple(recording.lanelets[number] for number in entries)
-    line = reference_line(np.concatenate([_middle(recording, piece) for piece in pieces]))
+    line = reference_line(smoothed(np.concatenate([_middle(recording, piece) for piece in pieces])))
     borders = borders_along(lanelets, line)
     first = len(behind)
     middle = float(borders[first] + borders[first + len(driven)]) / 2

@@ -25,6 +25,9 @@ BEYOND_M = 2000.0
 
 _CLOSEST_M = 0.05
 _PIECE_M = 5.0
+_SMOOTH_M = 5.0
+_STEP_M = 0.5
+_TURN_RAD = np.radians(5.0)
 _AT_ONCE = 1 << 18
 _HAIR = 1e-9
 _Values = NDArray[float64]
@@ -135,6 +138,47 @@ def reference_line(corners: Points) -> ReferenceLine:
         first=first,
         change=last - first,
     )
+
+
+def smoothed(corners: Points) -> Points:
+    """A line without the small kinks to and fro that middles have where lanelets meet.
+
+    Some lanes beside it, one who drives straight on would jump along the line there. In each place
+    is the mean of 10 m around it; by how much that flattens curves is found in the same way, and
+    added again (twicing: Tukey, "Exploratory data analysis", 1977). The ends stay.
+    """
+    kept = densified(without_repeats(corners, _CLOSEST_M), _STEP_M)
+    arc = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(kept, axis=0).T))))
+    count = max(2, round(float(arc[-1]) / _STEP_M) + 1)
+    at = np.linspace(0.0, arc[-1], count)
+    points = np.stack([np.interp(at, arc, column) for column in kept.T], axis=1)
+    means = _means(points)
+    line: Points = 2 * means - _means(means)
+    return line[_bends(line)]
+
+
+def _means(points: Points) -> Points:
+    """The means of the points around each, fewer at the ends."""
+    sums = np.concatenate((np.zeros((1, 2)), np.cumsum(points, axis=0)))
+    own = np.arange(len(points))
+    reach = np.minimum(np.minimum(own, own[::-1]), round(_SMOOTH_M / _STEP_M))
+    means: Points = (sums[own + reach + 1] - sums[own - reach]) / (2 * reach + 1)[:, None]
+    return means
+
+
+def _bends(points: Points) -> NDArray[intp]:
+    """The numbers of points that are enough: every 5 m, and more where a line bends."""
+    steps = np.diff(points, axis=0)
+    turned = np.concatenate(([0.0], np.abs(turn(*_pairs(np.arctan2(steps[:, 1], steps[:, 0]))))))
+    share = np.hypot(*steps.T) / _PIECE_M + turned / _TURN_RAD
+    reached = np.concatenate(([0.0], np.cumsum(share)))
+    wanted = np.linspace(0.0, reached[-1], int(np.ceil(reached[-1])) + 1)
+    numbers: NDArray[intp] = np.unique(np.searchsorted(reached, wanted).clip(0, len(points) - 1))
+    return numbers
+
+
+def _pairs(values: _Values) -> tuple[_Values, _Values]:
+    return values[:-1], values[1:]
 
 
 def without_repeats(points: Points, closest_m: float) -> Points:
