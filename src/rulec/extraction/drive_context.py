@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rulec.extraction.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import RoadExtents, lanes_touched
+from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.recording import Recording, Side
@@ -33,7 +34,7 @@ class DriveContext:
     The rows are the participants that are ever relevant or in sight; ``ego`` and ``ego_extents``
     have one. ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's
     lanes, so near that ego could reach it within ``catching_up_s``? ``touched``: the lanes that it
-    reaches into, a third axis.
+    reaches into, a third axis. ``surroundings`` are the recording's.
     """
 
     recording: Recording
@@ -47,6 +48,7 @@ class DriveContext:
     relevant: Flags
     in_sight: Flags
     touched: Flags
+    surroundings: Surroundings
 
     @cached_property
     def tolerances(self) -> Tolerances:
@@ -112,6 +114,7 @@ def drive_context(
     *,
     tracks: Tracks,
     extents: RoadExtents,
+    surroundings: Surroundings,
     ego: int,
     columns: slice,
     elsewhere: Flags | None = None,
@@ -138,6 +141,7 @@ def drive_context(
         relevant=near["relevant"][rows],
         in_sight=near["in_sight"][rows],
         touched=lanes_touched(others, road, thresholds),
+        surroundings=surroundings,
     )
 
 

@@ -21,6 +21,7 @@ from rulec.extraction.tracks.road_extents import (
     expected_places,
     road_extents,
 )
+from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Floats, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.scenario.recorded.recording import Recording, Side
@@ -63,6 +64,7 @@ class Drives:
         self._graph = LaneletGraph(recording)
         self._matching = MapMatching(recording, self._tracks, self._graph)
         self._numbers = {name: number for number, name in enumerate(recording.lanelets)}
+        self._surroundings = Surroundings(recording, self._tracks)
         self._roads: dict[tuple[str, ...], tuple[DrivenRoad, RoadExtents | None] | str] = {}
 
     def egos(self) -> tuple[str, ...]:
@@ -120,6 +122,7 @@ class Drives:
             self._thresholds,
             tracks=tracks,
             extents=extents,
+            surroundings=self._surroundings,
             ego=row,
             columns=columns,
             elsewhere=elsewhere,

@@ -10,12 +10,19 @@ from typing import Any
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.crossing_signals import crossing_signals
+from rulec.extraction.signals.clearance_signals import clearance_signals
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
-from rulec.extraction.signals.junction_signals import junction_signals
+from rulec.extraction.signals.intention_signals import intention_signals
 from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
-from rulec.extraction.signals.map_signals import map_signals
+from rulec.extraction.signals.map.crossing_signals import crossing_signals
+from rulec.extraction.signals.map.junction_signals import junction_signals
+from rulec.extraction.signals.map.map_signals import map_signals
+from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map.road_signals import road_signals
+from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
+from rulec.extraction.signals.map.zone_signals import zone_signals
+from rulec.extraction.signals.merge_signals import merge_signals
 from rulec.extraction.signals.participant_signals import (
     gap_beside_safe_distance,
     participant_signals,
@@ -75,8 +82,15 @@ _SIGNALS: tuple[Callable[[DriveContext], SignalColumns], ...] = (
     ego_signals,
     participant_signals,
     map_signals,
+    road_signals,
     junction_signals,
+    priority_signals,
     crossing_signals,
+    roundabout_signals,
+    zone_signals,
+    intention_signals,
+    merge_signals,
+    clearance_signals,
     flow_signals,
     lane_change_signals,
     lane_mark_signals,

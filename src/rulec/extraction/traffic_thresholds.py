@@ -69,12 +69,28 @@ class Thresholds:
     """Who walks is about to cross if it will be on the crossing so soon."""
     entering_s: float = 0.5
     """And it sets foot on it if it will be there so soon."""
+    side_road_m: float = 15.0
+    """Who crosses the road into which ego turns is so near behind the junction."""
     turned_deg: float = 45.0
     """Ego turns at a junction if its road does by more than this."""
     preparing_s: float = 10.0
     """Ego prepares to turn for so long."""
     light_reach_m: float = 50.0
     """A light farther ahead is not ego's yet."""
+    approach_m: float = 50.0
+    """Ego nears a junction, a narrowing or a level crossing from so far before it on."""
+    yielding_s: float = 1.0
+    """Who gets to a place at least so long after ego has left it is not in conflict with it."""
+    held_up_s: float = 3.0
+    """Who was held up by ego gets there at most so long after it."""
+    signalling_s: float = 5.0
+    """Who pulls out to overtake signals it for at most so long before."""
+    overtaking_s: float = 6.0
+    """Overtaking takes so long on a road where others come towards ego."""
+    access_s: float = 5.0
+    """Who turns off within so long crosses a line for access."""
+    together_s: float = 1.0
+    """Who reach a junction within so long reach it at the same time."""
 
 
 USUAL = Thresholds()

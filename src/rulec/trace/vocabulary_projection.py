@@ -23,6 +23,7 @@ RECORDED_UNITS = {
     "lateral_gap": "m",
     "distance_to_crossing": "m",
     "ego_length": "m",
+    "visibility": "m",
 }
 """The units of the quantities that recordings supply."""
 

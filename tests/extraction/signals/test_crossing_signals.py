@@ -5,7 +5,7 @@ The crossing reaches from x = 58 to 62, over a road of one lane from y = -2 to 2
 
 import pytest
 
-from rulec.extraction.signals.crossing_signals import crossing_signals
+from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, vehicle
 from support.generators.random_recordings import lanes

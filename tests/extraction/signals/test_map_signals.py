@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map_signals import (
+from rulec.extraction.signals.map.map_signals import (
     NO_CROSSING_M,
     NO_LIMIT_KMH,
     distance_to_crossing,

@@ -21,10 +21,11 @@ def lanelets(tmp_path, text=ROAD_NET, step_s=0.5):
 def lane(**attributes):
     """A net of one lane with these attributes."""
     edge = {name: attributes.pop(name) for name in ("type", "function") if name in attributes}
+    attributes = {"speed": 13.89} | attributes
     written = " ".join(f'{name}="{value}"' for name, value in attributes.items())
     of_edge = " ".join(f'{name}="{value}"' for name, value in edge.items())
     return (
-        f'<net><edge id="e" {of_edge}><lane id="e_0" index="0" speed="13.89" shape="0,0 9,0" '
+        f'<net><edge id="e" {of_edge}><lane id="e_0" index="0" shape="0,0 9,0" '
         f"{written}/></edge></net>"
     )
 
@@ -74,7 +75,9 @@ def test_a_walking_area_is_an_outline(tmp_path):
         ({"allow": "bicycle"}, {"bicycleLane"}),
         ({"allow": "bus taxi bicycle"}, {"busLane"}),
         ({"allow": "bus passenger"}, set()),
-        ({"allow": "tram"}, {"restricted_area"}),
+        ({"allow": "tram"}, {"restricted_area", "rail"}),
+        ({"type": "highway.residential"}, {"urban"}),
+        ({"speed": "27.78"}, {"rural"}),
         ({"disallow": "all"}, {"restricted_area"}),
         ({"type": "highway.motorway"}, {"highway"}),
         ({"function": "crossing", "allow": "pedestrian"}, {"crosswalk"}),
@@ -87,7 +90,7 @@ def test_what_lanes_are_for(tmp_path, attributes, types):
 
 @pytest.mark.parametrize(
     ("state", "light", "types"),
-    [("M", "", {"crosswalk"}), ("m", "", {"sidewalk"}), ("m", 'tl="x"', {"crosswalk"})],
+    [("M", "", {"crosswalk"}), ("m", "", {"sidewalk"}), ("m", 'tl="x"', {"crosswalk", "directed"})],
 )
 def test_a_crossing_gives_priority_or_has_a_light(tmp_path, state, light, types):
     """Where walkers have to wait for a gap there is a way across, and no crossing by law."""

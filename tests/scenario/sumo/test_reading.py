@@ -145,8 +145,9 @@ def test_a_person_may_be_called_like_a_vehicle(tmp_path):
         (0, set()),
         (1, {"right_indicator"}),
         (2 + 8, {"left_indicator", "brake_light"}),
-        (4, {"left_indicator", "right_indicator"}),
-        (16 + 2048, set()),
+        (4, {"hazard_lights"}),
+        (16 + 2048, {"blue_light"}),
+        (512, {"doors"}),
     ],
 )
 def test_lamps(tmp_path, signals, lit):

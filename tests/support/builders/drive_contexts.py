@@ -7,6 +7,7 @@ import numpy as np
 from rulec.extraction.drive_context import drive_context
 from rulec.extraction.tracks.driven_road import driven_road, junction_lanelets
 from rulec.extraction.tracks.road_extents import road_extents
+from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import vehicle
@@ -31,6 +32,7 @@ def context_of(found, route=("1",), side="right", ego=EGO, elsewhere=None, **thr
         limits,
         tracks=tracks,
         extents=road_extents(tracks, road),
+        surroundings=Surroundings(found, tracks),
         ego=row,
         columns=slice(int(columns[0]), int(columns[-1]) + 1),
         elsewhere=elsewhere,

@@ -12,7 +12,18 @@ from rulec.extraction.signals.signal_columns import SignalColumns, named_values
 from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.recording import Lanelet, LaneMark
 
+_INDICATORS = frozenset({"left_indicator", "right_indicator"})
 _INDICATIONS = ("no_indicator", "near_indicator", "far_indicator")
+_SOLID = frozenset({"solid", "double_solid"})
+_SINGLE = (
+    ("solid", "solid"),
+    ("solid", None),
+    (None, "solid"),
+    ("solid", "none"),
+    ("none", "solid"),
+)
+"""One line between two lanes is the mark of both, or of the one whose bound it is."""
+
 _Marks = tuple[LaneMark | None, LaneMark | None]
 
 
@@ -28,11 +39,11 @@ def lane_change_signals(context: DriveContext) -> SignalColumns:
 def _indicator(context: DriveContext) -> SignalColumns:
     """Ego's indicator, if the recording has its lamps; both at once are no indication."""
     (ego,) = context.ego.participants
-    if not ego.lamps:
+    if not ego.lamps or not ego.shows >= _INDICATORS:
         return SignalColumns()
     far = "left_indicator" if context.side == "right" else "right_indicator"
     steps = [ego.lamps.get(context.first_step + state) for state in range(context.states)]
-    lit = [(lamps or frozenset()) - {"brake_light"} for lamps in steps]
+    lit = [(lamps or frozenset()) & _INDICATORS for lamps in steps]
     codes = np.array([0 if len(lamps) != 1 else 2 if far in lamps else 1 for lamps in lit])
     return SignalColumns(
         {"indicator": named_values(codes, _INDICATIONS)},
@@ -65,9 +76,9 @@ def lane_mark_signals(context: DriveContext) -> SignalColumns:
     if not any(lanelet.left_mark or lanelet.right_mark for lanelet in known):
         return SignalColumns()
     pieces = context.road.piece(context.ego_extents.s[0]).tolist()
-    names = ("marked_lanes", "on_solid_line", "broken_on_own_side")
+    names = ("marked_lanes", "on_solid_line", "broken_on_own_side", "single_line")
     columns = np.zeros((len(names), context.states), dtype=bool)
-    unknown = np.zeros(context.states, dtype=bool)
+    unknown, not_told = np.zeros((2, context.states), dtype=bool)
     for state, piece in enumerate(pieces):
         lanelets = zip(context.road.rows[piece], context.existing_lanes[state], strict=True)
         row = [lanelet if exists else None for lanelet, exists in lanelets]
@@ -75,9 +86,15 @@ def lane_mark_signals(context: DriveContext) -> SignalColumns:
         unknown[state] = any(not any(marks) for marks in between)
         columns[0, state] = bool(between) and all(set(marks) != {"none"} for marks in between)
         crossed = _marks_under_ego(context, state, row)
-        columns[1, state] = any("solid" in marks for marks in crossed)
-        columns[2, state] = any(marks == ("broken", "solid") for marks in crossed)
-    return SignalColumns(dict(zip(names, columns, strict=True)), unknown={"marked_lanes": unknown})
+        solid = [marks for marks in crossed if _SOLID & set(marks)]
+        columns[1, state] = bool(solid)
+        columns[2, state] = any(marks[0] == "broken" for marks in solid)
+        columns[3, state] = len(solid) == 1 and solid[0] in _SINGLE
+        not_told[state] = not solid and any(not any(marks) for marks in crossed)
+    return SignalColumns(
+        dict(zip(names, columns, strict=True)),
+        unknown={"marked_lanes": unknown, **dict.fromkeys(names[1:], not_told)},
+    )
 
 
 def _between(right: Lanelet | None, left: Lanelet | None) -> _Marks:

@@ -114,7 +114,7 @@ def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -
         line=line,
         lanes=lanes,
         crossings=tuple(crossings_along(recording, line, lanes, 0.0, line.length)),
-        junctions=tuple(_runs(borders, [number in junctions for number in entries])),
+        junctions=tuple(runs_along(borders, [number in junctions for number in entries])),
         meets_itself=_meets_itself(lanelets, borders),
     )
 
@@ -170,7 +170,7 @@ def _row(recording: Recording, number: str, own: int, count: int) -> tuple[Lanel
     return tuple(recording.lanelets[row[k]] if k in row else None for k in range(count))
 
 
-def _runs(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, float]]:
+def runs_along(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, float]]:
     """The extents along the road of consecutive pieces that have a flag."""
     for flag, pieces in groupby(range(len(flags)), key=lambda piece: flags[piece]):
         if flag:

@@ -23,6 +23,11 @@ from rulec.scenario.commonroad.commonroad_participants import (
     commonroad_participants,
     planning_problem,
 )
+from rulec.scenario.commonroad.commonroad_surroundings import (
+    commonroad_junctions,
+    commonroad_weather,
+    drawn_stop_line,
+)
 from rulec.scenario.commonroad.required_elements import COMMONROAD, check_form
 from rulec.scenario.recorded import recording
 from rulec.scenario.recorded.adjacency import with_neighbours
@@ -33,7 +38,7 @@ _MARKS: Mapping[str, recording.LaneMark] = MappingProxyType(
     {
         "solid": "solid",
         "broad_solid": "solid",
-        "solid_solid": "solid",
+        "solid_solid": "double_solid",
         "dashed": "broken",
         "broad_dashed": "broken",
         "dashed_dashed": "broken",
@@ -117,8 +122,11 @@ def _recording(name: str, scenario: Any, problems: Any) -> recording.Recording:
         for light in scenario.lanelet_network.traffic_lights
         if light.active
     }
+    junctions = commonroad_junctions(scenario.lanelet_network)
     lanelets = {
-        str(lanelet.lanelet_id): _lanelet(lanelet, signs, lights)
+        str(lanelet.lanelet_id): _lanelet(
+            lanelet, signs, lights, junctions.get(lanelet.lanelet_id, "")
+        )
         for lanelet in scenario.lanelet_network.lanelets
     }
     step_s = float(scenario.dt)
@@ -134,6 +142,8 @@ def _recording(name: str, scenario: Any, problems: Any) -> recording.Recording:
             for _, problem in sorted(problems.planning_problem_dict.items())
         ),
         side=side_in(name),
+        country=_country(name),
+        weather=commonroad_weather(scenario.environment),
     )
 
 
@@ -145,7 +155,7 @@ def _light(cycle: Any) -> recording.Light:
 
 
 def _lanelet(
-    lanelet: Any, signs: Mapping[int, Any], lights: Mapping[int, recording.Light]
+    lanelet: Any, signs: Mapping[int, Any], lights: Mapping[int, recording.Light], junction: str
 ) -> recording.Lanelet:
     elements = [
         element
@@ -167,12 +177,15 @@ def _lanelet(
         predecessors=tuple(map(str, lanelet.predecessor or ())),
         left_of=_id(lanelet.adj_left) if lanelet.adj_left_same_direction else None,
         right_of=_id(lanelet.adj_right) if lanelet.adj_right_same_direction else None,
-        types=frozenset(kind.value for kind in lanelet.lanelet_type or ()),
+        types=frozenset(kind.value for kind in lanelet.lanelet_type or ())
+        | frozenset({"intersection"} if junction else ()),
         signs=frozenset(element.traffic_sign_element_id.name for element in elements),
         limit_mps=min(limits, default=None),
         lights=tuple(lights[i] for i in sorted(lanelet.traffic_lights or ()) if i in lights),
         left_mark=_MARKS.get(lanelet.line_marking_left_vertices.value),
         right_mark=_MARKS.get(lanelet.line_marking_right_vertices.value),
+        stop_line=drawn_stop_line(lanelet),
+        junction=junction,
     )
 
 
@@ -189,12 +202,16 @@ def _points(vertices: Any) -> recording.Points:
     return points
 
 
+def _country(name: str) -> str:
+    return name.removeprefix("C-").partition("_")[0].upper()
+
+
 def side_in(name: str) -> recording.Side | None:
     """The side of ``DEU_Ulm-1_1_T-1``; None for other names, and for made-up countries.
 
     CommonRoad's own ``ZAM`` is the made-up country Zamunda, not Zambia.
     """
-    country = name.removeprefix("C-").partition("_")[0].upper()
+    country = _country(name)
     if country in _LEFT_HAND.split():
         return "left"
     return "right" if country in _RIGHT_HAND.split() else None

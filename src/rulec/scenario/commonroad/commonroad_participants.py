@@ -50,9 +50,43 @@ def _participant(obstacle: Any, states: Iterable[Any], *, standing: bool) -> rec
         known[step] = _state(state, outline)
     if not standing and not hasattr(obstacle.prediction, "trajectory"):
         outlines.update(_predicted(obstacle))
+    lamps, shows = _lamps(obstacle)
     return recorded.Participant(
-        str(obstacle.obstacle_id), obstacle.obstacle_type.value, standing, known, outlines
+        str(obstacle.obstacle_id),
+        obstacle.obstacle_type.value,
+        standing,
+        known,
+        outlines,
+        lamps=lamps,
+        shows=shows,
     )
+
+
+_SIGNALS: Mapping[str, recorded.Lamp] = {
+    "indicator_left": "left_indicator",
+    "indicator_right": "right_indicator",
+    "hazard_warning_lights": "hazard_lights",
+    "braking_lights": "brake_light",
+    "flashing_blue_lights": "blue_light",
+    "horn": "horn",
+}
+
+
+def _lamps(obstacle: Any) -> tuple[dict[int, frozenset[recorded.Lamp]], frozenset[recorded.Lamp]]:
+    """The lamps that are lit by time step, and all that the signal states speak of."""
+    series = [getattr(obstacle, "initial_signal_state", None)]
+    states = [state for state in series + list(obstacle.signal_series or ()) if state is not None]
+    lamps = {
+        int(state.time_step): frozenset(
+            lamp for name, lamp in _SIGNALS.items() if getattr(state, name, None)
+        )
+        for state in states
+    }
+    shows = [
+        {lamp for name, lamp in _SIGNALS.items() if getattr(state, name, None) is not None}
+        for state in states
+    ]
+    return lamps, frozenset(shows[0].intersection(*shows[1:])) if shows else frozenset()
 
 
 def _predicted(obstacle: Any) -> Iterator[tuple[int, recorded.Points]]:

@@ -22,9 +22,17 @@ LONGEST_M = 20_000.0
 """Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
 
 Side = Literal["left", "right"]
-LaneMark = Literal["solid", "broken", "none"]
-Lamp = Literal["left_indicator", "right_indicator", "brake_light"]
-"""What a vehicle shows others."""
+LaneMark = Literal["solid", "double_solid", "broken", "none"]
+Lamp = Literal[
+    "left_indicator",
+    "right_indicator",
+    "hazard_lights",
+    "brake_light",
+    "blue_light",
+    "horn",
+    "doors",
+]
+"""What a vehicle shows others: its lamps, its horn, and open doors."""
 
 
 def id_order(identifier: str) -> tuple[int, str]:
@@ -80,8 +88,11 @@ class Lanelet:
     """A piece of a lane, with its bounds in the direction of travel.
 
     ``left_of`` and ``right_of`` are the lanelets beside it that lead the same way. ``signs`` are
-    the names of those that hold here; ``lights`` are those that have a programme. Marks are those
-    of its bounds, None where the file does not say.
+    the names of those that hold here; ``lights`` are those that have a programme,
+    ``lights_to`` that for each lanelet that follows, where it has its own. Marks are those
+    of its bounds, ``stop_line`` (two ends) the one that the map has drawn, None where the file does
+    not say. ``junction`` is the one that it lies in. Of the ways through that, ``foes`` are those
+    whose traffic is in the way of its own, ``first`` those of them that go first; None: not told.
     """
 
     __repr__ = short_repr
@@ -98,8 +109,13 @@ class Lanelet:
     signs: frozenset[str]
     limit_mps: float | None
     lights: tuple[Light, ...] = ()
+    lights_to: Mapping[str, Light] = field(default_factory=dict)
     left_mark: LaneMark | None = None
     right_mark: LaneMark | None = None
+    stop_line: Points | None = None
+    junction: str = ""
+    foes: frozenset[str] | None = None
+    first: frozenset[str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +134,8 @@ class Participant:
     """An obstacle of the file, with its outlines (corners of polygons) by time step.
 
     ``standing``: it is there all the time, in its only state. ``lamps``: by time step those that
-    are lit; steps that the file says nothing about are missing.
+    are lit; steps that the file says nothing about are missing. ``shows`` are those that the file
+    speaks of.
     """
 
     __repr__ = short_repr
@@ -129,6 +146,7 @@ class Participant:
     states: Mapping[int, TrackState]
     outlines: Mapping[int, Points]
     lamps: Mapping[int, frozenset[Lamp]] = field(default_factory=dict)
+    shows: frozenset[Lamp] = frozenset({"left_indicator", "right_indicator", "brake_light"})
 
     @property
     def object_types(self) -> tuple[str, ...]:
@@ -147,11 +165,22 @@ class PlanningProblem:
 
 
 @dataclass(frozen=True, slots=True)
+class Weather:
+    """The weather of a recording; None where the file does not say."""
+
+    wet: bool | None = None
+    icy: bool | None = None
+    visibility_m: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Recording:
     """A file: one time step takes ``step_s`` seconds.
 
     ``form`` is what such a file is called, ``side`` the one on which traffic keeps, None if the
-    file does not say. ``remarks``: what the file leaves open, and is taken to be.
+    file does not say, ``country`` its code (ISO 3166) or empty. ``complete`` names kinds of things,
+    signs for one, that the file would have if they were there. ``remarks``: what the file leaves
+    open, and is taken to be.
     """
 
     __repr__ = short_repr
@@ -164,3 +193,6 @@ class Recording:
     form: str = "CommonRoad scenario"
     side: Side | None = None
     remarks: tuple[str, ...] = ()
+    country: str = ""
+    complete: frozenset[str] = frozenset()
+    weather: Weather = Weather()

@@ -11,9 +11,15 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from rulec.scenario.recorded.recording import Lanelet, Points
+from rulec.scenario.recorded.recording import Lanelet, LaneMark, Points
 from rulec.scenario.recorded.reference_line import without_repeats
 from rulec.scenario.sumo.net import NetConnection, NetLane, SumoNet
+from rulec.scenario.sumo.right_of_way import (
+    LEVEL_CROSSINGS,
+    UNREGULATED,
+    rights_of_ways,
+    signs_of_lanes,
+)
 
 _WALKERS = {"pedestrian", "wheelchair"}
 _RIDERS = {"bicycle", "scooter"}
@@ -31,7 +37,6 @@ _KMH = 3.6
 _ROUNDED_KMH = 0.02
 """Nets have limits in m/s with two decimals, which is so far from a whole number of km/h."""
 
-_STOPS = {"s", "w"}
 _GIVES_WAY = "m"
 _ARMS = 3
 _CLOSEST_M = 0.01
@@ -50,7 +55,8 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
             before[end].append(start)
     limits = _limits(net, before)
     junctions = _junctions(net)
-    lights = net.lane_lights(step_s)
+    lights, ways = net.lane_lights(step_s), net.way_lights(step_s)
+    rights, signs = rights_of_ways(net), signs_of_lanes(net)
     links: dict[str, list[NetConnection]] = defaultdict(list)
     entries: dict[str, list[NetConnection]] = defaultdict(list)
     for connection in net.connections:
@@ -61,6 +67,8 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
         if lane.id not in there:
             continue
         left, right, centre = _lines(lane, shapes[lane.id])
+        own = rights.get(lane.id)
+        junction = junction_of(lane)
         towards_left = 1 if net.side == "right" else -1
         lanelets[lane.id] = Lanelet(
             id=lane.id,
@@ -71,12 +79,17 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
             predecessors=tuple(before[lane.id]),
             left_of=_neighbour(lane, towards_left, there),
             right_of=_neighbour(lane, -towards_left, there),
-            types=frozenset(_types(lane, junctions, entries[lane.id])),
-            signs=frozenset(
-                {"STOP"} if any(link.state in _STOPS for link in links[lane.id]) else ()
-            ),
+            types=frozenset(_types(lane, net, junctions, entries[lane.id])),
+            signs=signs.get(lane.id, frozenset()),
             limit_mps=limits.get(lane.id),
             lights=tuple(lights.get(lane.id, ())),
+            lights_to=ways.get(lane.id, {}),
+            left_mark=_mark(lane, towards_left, there),
+            right_mark=_mark(lane, -towards_left, there),
+            stop_line=np.stack((left[-1], right[-1])) if links[lane.id] else None,
+            junction=junction if junction in junctions else "",
+            foes=own.foes if own else None,
+            first=own.first if own else None,
         )
     return lanelets
 
@@ -161,6 +174,19 @@ def _unrounded(limit_mps: float) -> float:
     return round(kmh) / _KMH if abs(kmh - round(kmh)) <= _ROUNDED_KMH else limit_mps
 
 
+def _mark(lane: NetLane, step: int, there: set[str]) -> LaneMark | None:
+    """The line between two lanes of an edge: solid where it is forbidden to change across it."""
+    if lane.edge.function or _neighbour(lane, step, there) is None:
+        return None
+    # ``marks`` are to the left and right as SUMO has them, by rising and falling index
+    return "solid" if lane.marks[0 if step > 0 else 1] else "broken"
+
+
+def junction_of(lane: NetLane) -> str:
+    """The junction that a lane lies in, or empty."""
+    return lane.edge.id[1:].rpartition("_")[0] if lane.edge.function == "internal" else ""
+
+
 def _junctions(net: SumoNet) -> set[str]:
     arms: dict[str, set[str]] = defaultdict(set)
     for lane in net.lanes.values():
@@ -170,24 +196,53 @@ def _junctions(net: SumoNet) -> set[str]:
     return {node for node, others in arms.items() if len(others) >= _ARMS}
 
 
-def _types(lane: NetLane, junctions: set[str], entries: list[NetConnection]) -> Iterator[str]:
+def _types(
+    lane: NetLane, net: SumoNet, junctions: set[str], entries: list[NetConnection]
+) -> Iterator[str]:
     permitted = _permitted(lane)
+    yield from _place_types(lane, net)
     if lane.edge.function == "crossing":
         # Where walkers have to give way there is no crossing that gives them priority
         waits = entries and all(entry.state == _GIVES_WAY and not entry.light for entry in entries)
         yield "sidewalk" if waits else "crosswalk"
+        if entries and any(entry.light for entry in entries):
+            yield "directed"
     elif lane.edge.function == "walkingarea" or (permitted and permitted <= _WALKERS):
         yield "sidewalk"
     elif not permitted & (_ALL - _WALKERS - {"ship"}) or not permitted - _RAILS:
         yield "restricted_area"
+        if permitted and permitted <= _RAILS:
+            yield "rail"
     elif permitted <= _WALKERS | _RIDERS:
         yield "sidewalk" if permitted & _WALKERS else "bicycleLane"
     elif permitted & _BUSES and not permitted & {"passenger", "private", "truck"}:
         yield "busLane"
     if "motorway" in lane.edge.type:
         yield "highway"
-    if lane.edge.function == "internal" and lane.edge.id[1:].rpartition("_")[0] in junctions:
+    junction = junction_of(lane)
+    crosses_rails = junction in net.junctions and net.junctions[junction].type in LEVEL_CROSSINGS
+    if crosses_rails:
+        yield "level_crossing"
+    elif junction in junctions:
         yield "intersection"
+        if net.junctions and net.junctions[junction].type in UNREGULATED:
+            yield "unregulated"
+
+
+_URBAN = ("residential", "living_street", "pedestrian")
+_FAST_KMH = 80.0
+
+
+def _place_types(lane: NetLane, net: SumoNet) -> Iterator[str]:
+    """Types that say where a road is, as far as its own type and limit tell."""
+    if lane.edge.id in net.roundabouts:
+        yield "roundabout"
+    if any(word in lane.edge.type for word in _URBAN):
+        yield "urban"
+    elif lane.edge.function == "" and lane.speed * _KMH > _FAST_KMH:
+        yield "rural"
+    if lane.edge.parameters.get("tunnel", "no") not in ("no", ""):
+        yield "tunnel"
 
 
 def _permitted(lane: NetLane) -> frozenset[str]:

@@ -42,6 +42,7 @@ class NetEdge:
     type: str
     start: str
     end: str
+    parameters: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,6 +60,22 @@ class NetLane:
     speed: float
     allow: str | None
     disallow: str | None
+    marks: tuple[bool, bool] = (False, False)
+    """Is it forbidden to change lanes to the left, to the right?"""
+
+
+@dataclass(frozen=True, slots=True)
+class NetJunction:
+    """A junction: its type, and for each way through it a lane, whom it waits for, and its foes.
+
+    ``first`` and ``foes`` are bits, one for each way, the last one first.
+    """
+
+    id: str
+    type: str
+    ways: tuple[str, ...]
+    first: list[str] = field(default_factory=list)
+    foes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,6 +99,10 @@ class SignalProgramme:
 
     begin: float
     phases: tuple[tuple[float, str], ...]
+
+    def has_arrow(self, link: int) -> bool:
+        """True if a link may turn at red after a stop."""
+        return any(0 <= link < len(letters) and letters[link] == "s" for _, letters in self.phases)
 
     def light(self, link: int, step_s: float) -> Light | None:
         """The light of a link in time steps, if the programme has any."""
@@ -109,6 +130,8 @@ class SumoNet:
     edges: dict[str, NetEdge] = field(default_factory=dict)
     lanes: dict[str, NetLane] = field(default_factory=dict)
     connections: list[NetConnection] = field(default_factory=list)
+    junctions: dict[str, NetJunction] = field(default_factory=dict)
+    roundabouts: set[str] = field(default_factory=set)
     programmes: dict[str, list[SignalProgramme | None]] = field(default_factory=dict)
 
     def lane_lights(self, step_s: float) -> dict[str, list[Light]]:
@@ -127,6 +150,18 @@ class SumoNet:
                 known.append(light)
         return lights
 
+    def way_lights(self, step_s: float) -> dict[str, dict[str, Light]]:
+        """Lane -> the lane that follows -> the light for that way."""
+        lights: dict[str, dict[str, Light]] = {}
+        for connection in self.connections:
+            programmes = self.programmes.get(connection.light, [])
+            if len(programmes) == 1 and programmes[0] is not None:
+                light = programmes[0].light(connection.link, step_s)
+                if light is not None:
+                    onward = connection.via or connection.end
+                    lights.setdefault(connection.start, {})[onward] = light
+        return lights
+
     def unknown_lights(self) -> list[str]:
         """The lights whose programme is not known."""
         return [name for name, known in self.programmes.items() if len(known) > 1 or None in known]
@@ -136,6 +171,7 @@ def read_net(path: Path) -> SumoNet:
     """The net in a file. Raises RulecError R0610 if it is none, R0701 if it cannot be read."""
     net = SumoNet()
     edge: NetEdge | None = None
+    junction: NetJunction | None = None
     light: XmlElement | None = None
     phases: list[tuple[float, str]] = []
 
@@ -150,15 +186,15 @@ def read_net(path: Path) -> SumoNet:
             light = None
 
     def begin(element: XmlElement) -> None:
-        nonlocal edge, light
+        nonlocal edge, junction, light
         if element.name != "phase":
             finish_light()
         match element.name:
             case "net":
                 net.side = "left" if element.get("lefthand") in ("true", "1") else "right"
             case "edge":
-                named = map(element.get, ("function", "type", "from", "to"))
-                edge = NetEdge(element.text("id"), *named)
+                function, kind, start, end = map(element.get, ("function", "type", "from", "to"))
+                edge = NetEdge(element.text("id"), function, kind, start, end)
                 net.edges[edge.id] = edge
             case "lane":
                 if edge is None:
@@ -167,6 +203,18 @@ def read_net(path: Path) -> SumoNet:
                 if lane.id in net.lanes:
                     raise element.wrong(f"there are two lanes `{lane.id}`")
                 net.lanes[lane.id] = lane
+            case "param" if edge is not None:
+                edge.parameters[element.get("key")] = element.get("value")
+            case "junction":
+                edge = None
+                ways = tuple(element.get("intLanes").split())
+                junction = NetJunction(element.text("id"), element.get("type"), ways)
+                net.junctions[junction.id] = junction
+            case "request" if junction is not None:
+                junction.first.append(element.get("response"))
+                junction.foes.append(element.get("foes"))
+            case "roundabout":
+                net.roundabouts.update(element.get("edges").split())
             case "connection":
                 net.connections.append(_connection(element))
             case "tlLogic":
@@ -202,7 +250,16 @@ def _lane(element: XmlElement, edge: NetEdge) -> NetLane:
         speed=element.positive("speed"),
         allow=element.attributes.get("allow"),
         disallow=element.attributes.get("disallow"),
+        marks=(
+            _forbids(element.attributes.get("changeLeft")),
+            _forbids(element.attributes.get("changeRight")),
+        ),
     )
+
+
+def _forbids(changing: str | None) -> bool:
+    """True if what may change lanes there does not include passenger cars."""
+    return changing is not None and not {"all", "passenger"} & set(changing.split())
 
 
 def _connection(element: XmlElement) -> NetConnection:

@@ -30,6 +30,10 @@ from rulec.scenario.sumo.net import SumoNet, read_net
 from rulec.scenario.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
 from rulec.scenario.xml_element import short
 
+COMPLETE = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
+COMPLETE |= {"officer"}
+"""A net has every sign, light and track that its traffic obeys, and no officer at all."""
+
 NEAR_M = 1000.0
 """Nobody in the data is farther from the net than this."""
 
@@ -44,8 +48,10 @@ SPARSEST = 1000
 _LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
     (1, frozenset({"right_indicator"})),
     (2, frozenset({"left_indicator"})),
-    (4, frozenset({"left_indicator", "right_indicator"})),
+    (4, frozenset({"hazard_lights"})),
     (8, frozenset({"brake_light"})),
+    (512 | 1024, frozenset({"doors"})),
+    (2048 | 4096, frozenset({"blue_light"})),
 )
 """The bits of SUMO's ``signals`` that others can see and that rules are about."""
 
@@ -83,6 +89,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         form="SUMO data",
         side=net.side,
         remarks=tuple(_remarks(unknown, net)),
+        complete=COMPLETE,
     )
 
 
@@ -191,6 +198,7 @@ def fcd_participants(
             states=TrackStates(track),
             outlines=TrackOutlines(track),
             lamps={step: lit for step, lit in lamps.items() if first <= step <= last},
+            shows=_SHOWN if lamps else frozenset(),
         )
 
 
@@ -209,6 +217,9 @@ def _accelerations(
     stated = np.array(track_rows.accelerations, dtype=float)
     changes = np.diff(speeds, prepend=speeds[0]) / (np.diff(steps, prepend=steps[0] - 1) * step_s)
     return np.where(np.isnan(stated), changes, stated)
+
+
+_SHOWN = frozenset(lamp for _, lamps in _LAMPS for lamp in lamps)
 
 
 def _lit(bits: int) -> frozenset[Lamp]:

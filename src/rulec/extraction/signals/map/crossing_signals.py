@@ -12,7 +12,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
-from rulec.extraction.signals.map_signals import next_crossing
+from rulec.extraction.signals.map.junction_signals import turn_at
+from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.signal_columns import SignalColumns, named_values
 from rulec.extraction.tracks.tracks import Flags, Floats
 
@@ -21,31 +22,53 @@ _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossin
 
 def crossing_signals(context: DriveContext) -> SignalColumns:
     """The signals of pedestrians, and of vehicles that stop for them."""
-    uses = _crossing_uses(context)
-    used = ((uses > 0) & context.relevant).any(axis=0)
+    uses = _crossing_uses(context, next_crossing(context), context.tracks.on_crosswalk)
+    aside = _crossing_uses(context, _side_road(context), context.tracks.on_lane)
+    walkers = context.tracks.of_type("pedestrian")[:, None]
+    used = ((uses > 0) & context.relevant & walkers).any(axis=0)
     return SignalColumns(
         about={
             "crossing_use": named_values(uses, _USES),
             "stopped_for_pedestrian": _stopped(context) & used,
+            "crosses_side_road": aside > 0,
         },
         only={
             "crossing_use": context.tracks.of_type("pedestrian"),
             "stopped_for_pedestrian": context.tracks.of_type("vehicle"),
+            "crosses_side_road": context.tracks.of_type("pedestrian"),
         },
     )
 
 
-def _crossing_uses(context: DriveContext) -> NDArray[intp]:
-    """Indices into ``_USES`` for all participants; they are meaningful for pedestrians only."""
+def _side_road(context: DriveContext) -> tuple[Floats, Floats]:
+    """Begin and end of where pedestrians cross the road into which ego turns, or infinity."""
+    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    start, end = np.full((2, context.states), np.inf)
+    for low, high in reversed(context.road.junctions):
+        if turn_at(context, low, high) != "straight_on":
+            nears = (front > low - context.thresholds.approach_m) & (rear < high)
+            beyond = high + context.thresholds.side_road_m
+            start, end = np.where(nears, high, start), np.where(nears, beyond, end)
+    return start, end
+
+
+def _crossing_uses(
+    context: DriveContext, stretch: tuple[Floats, Floats], on_it: Flags
+) -> NDArray[intp]:
+    """Indices into ``_USES`` for all participants; they are meaningful for pedestrians only.
+
+    ``stretch`` has begin and end of the crossing by state, ``on_it`` flags of who is where one
+    crosses; where no crossing is drawn that is any place in the road.
+    """
+    start, end = stretch
     others, limits = context.extents, context.thresholds
     straight = context.road.lanes.straight
-    start, end = next_crossing(context)
     # Room for who does not walk exactly between the marks
     beside = (others.s_max > start - limits.kerb_m) & (others.s_min < end + limits.kerb_m)
     to_road = np.maximum(np.maximum(straight[0] - others.w_max, others.w_min - straight[-1]), 0.0)
     walks = context.tracks.speed * KMH >= limits.standing_kmh
     towards = _towards(context)
-    crossing = beside & context.tracks.on_crosswalk & context.tracks.on_lane
+    crossing = beside & on_it & context.tracks.on_lane
     on = crossing & (context.touched.any(axis=-1) | ~walks | (towards > 0))
     waits = beside & (to_road <= limits.kerb_m) & ~walks
     # Who walks along the pavement and drifts a little towards the road does not come to cross

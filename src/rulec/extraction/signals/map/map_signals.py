@@ -16,6 +16,8 @@ _SIGNS = {
     "YIELD": ("give_way_sign", True),
     "STOP": ("stop_sign", True),
     "NO_OVERTAKING_START": ("no_overtaking_sign", False),
+    "GREEN_ARROW": ("turn_on_red_sign", True),
+    "NO_TURN_ON_RED": ("no_turn_on_red_sign", True),
 }
 """Sign -> signal, and whether it is for the line at the lanelet's end."""
 
@@ -48,7 +50,8 @@ def map_signals(context: DriveContext) -> SignalColumns:
         world["road_class"] = np.array(classes)
         unknown["road_class"] = world["road_class"] == ""
     for sign, (name, at_line) in _SIGNS.items():
-        if any(sign in lanelet.signs for lanelet in context.recording.lanelets.values()):
+        drawn = any(sign in lanelet.signs for lanelet in context.recording.lanelets.values())
+        if drawn or sign in context.recording.complete:
             under = being_left if at_line else lanelets
             world[name] = np.array([sign in lanelet.signs for lanelet in under])
     return SignalColumns(world, unknown=unknown)
@@ -79,9 +82,12 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
 
 def _surface(context: DriveContext, on_crossing: Flags) -> SignalColumn:
     middle = context.ego_extents.s[0]
-    surfaces = np.full(context.states, "carriageway", dtype="<U11")
+    surfaces = np.full(context.states, "carriageway", dtype="<U14")
     for start, end in context.road.junctions:
         surfaces[(middle > start) & (middle < end)] = "junction"
-    surfaces[["busLane" in lanelet.types for lanelet in _lanelets_at(context, middle)]] = "bus_lane"
+    own = _lanelets_at(context, middle)
+    surfaces[["busLane" in lanelet.types for lanelet in own]] = "bus_lane"
+    surfaces[["shoulder" in lanelet.types for lanelet in own]] = "hard_shoulder"
+    surfaces[["level_crossing" in lanelet.types for lanelet in own]] = "level_crossing"
     surfaces[on_crossing] = "crossing"
     return surfaces

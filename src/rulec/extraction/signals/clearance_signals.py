@@ -1,0 +1,128 @@
+"""Signals of the room that ego has: oncoming traffic, obstacles, ways past others, access."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals import relations
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.tracks.tracks import Flags, Floats
+
+_BESIDE_M = 0.5
+"""A vehicle needs so much more room than it is wide."""
+
+_OBSTACLE_M = 30.0
+
+
+def clearance_signals(context: DriveContext) -> SignalColumns:
+    """The signals of what leaves ego room to go on, to overtake, and to pass."""
+    clear, unknown = _oncoming_clear(context)
+    access, open_end = _needs_access(context)
+    world: dict[str, SignalColumn] = {
+        "oncoming_clear": clear,
+        "obstructed": _obstructed(context),
+        "needs_access": access,
+        "other_lane_available": _far_lane_is_free(context),
+    }
+    return SignalColumns(
+        world,
+        {"room_on_near_side": _room_on_near_side(context)},
+        {"oncoming_clear": unknown, "needs_access": open_end},
+        {"room_on_near_side": context.tracks.of_type("road_user")},
+    )
+
+
+def _far_lane(context: DriveContext) -> tuple[relations.Codes, Flags]:
+    """The lane at ego's far side, and where there is one that goes ego's way."""
+    lane = context.ego_lane + (1 if context.side == "right" else -1)
+    count = context.existing_lanes.shape[1]
+    inside = (lane >= 0) & (lane < count)
+    lane = np.clip(lane, 0, count - 1)
+    return lane, inside & context.existing_lanes[np.arange(context.states), lane]
+
+
+def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
+    """Does what comes towards ego leave room to overtake, and where is that unknown?
+
+    It does where ego need not leave the lanes of its direction, and else if ego and the nearest one
+    that comes would not meet within ``overtaking_s``. Who is farther than ``near_m`` is not there:
+    at speeds at which that is too near nothing is known.
+    """
+    limits = context.thresholds
+    _, own_lanes = _far_lane(context)
+    pieces = context.road.piece(context.ego_extents.s[0]).tolist()
+    lanelets = [
+        context.road.lanelet(*pair) for pair in zip(pieces, context.ego_lane.tolist(), strict=True)
+    ]
+    directions = [context.surroundings.directions(lanelet)[0] for lanelet in lanelets]
+    alone = own_lanes | np.array([one_way is True for one_way in directions])
+    own = np.maximum(context.ego_extents.along[0], 0.0)
+    against = (context.extents.along * KMH < -limits.standing_kmh) & context.relevant
+    against &= (np.cos(context.extents.turned) < 0) & (
+        relations.station(context) == relations.BEHIND
+    )
+    against &= np.array(context.tracks.of_type("vehicle"), dtype=bool)[:, None]
+    closing: Floats = np.maximum(own - context.extents.along, 0.1)
+    meets = (against & (relations.gap(context) / closing < limits.overtaking_s)).any(axis=0)
+    far_enough = 2 * own * limits.overtaking_s <= limits.near_m
+    return alone | ~meets, ~alone & ~meets & ~far_enough
+
+
+def _obstructed(context: DriveContext) -> Flags:
+    """Flags of states in which what stands ahead in ego's lane leaves no room within it."""
+    straight, lane = context.road.lanes.straight, context.ego_lane
+    width = context.ego_extents.d_max[0] - context.ego_extents.d_min[0] + _BESIDE_M
+    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    others = context.extents
+    same = np.take_along_axis(context.touched, lane[None, :, None], axis=2)[..., 0]
+    room = np.maximum(others.w_min - straight[lane], straight[lane + 1] - others.w_max)
+    ahead = (relations.gap(context) <= _OBSTACLE_M) & (
+        relations.station(context) != relations.IN_FRONT_OF
+    )
+    blocks: Flags = (context.relevant & stands & same & ahead & (room < width)).any(axis=0)
+    return blocks
+
+
+def _room_on_near_side(context: DriveContext) -> Flags:
+    """Flags of participants that leave room for ego between them and the near edge of the road."""
+    straight, others = context.road.lanes.straight, context.extents
+    there = context.existing_lanes
+    first = straight[there.argmax(axis=1)]
+    last = straight[there.shape[1] - there[:, ::-1].argmax(axis=1)]
+    room = others.w_min - first if context.side == "right" else last - others.w_max
+    width = context.ego_extents.d_max[0] - context.ego_extents.d_min[0] + _BESIDE_M
+    enough: Flags = room >= width
+    return enough
+
+
+def _needs_access(context: DriveContext) -> tuple[Flags, Flags]:
+    """Does ego turn off within ``access_s``, and where is that unknown as its drive ends before?"""
+    steps = round(context.thresholds.access_s / context.recording.step_s)
+    turns = np.zeros(context.states, dtype=bool)
+    least = np.radians(context.thresholds.turned_deg)
+    own = context.surroundings.passages
+    (ego,) = context.ego.participants
+    row = next(k for k, body in enumerate(own.tracks.participants) if body.id == ego.id)
+    shift = context.first_step - own.tracks.first
+    for passage in own.of_row.get(row, ()):
+        if abs(own.way(passage).turned) > least:
+            turns[max(passage.first - shift - steps, 0) : max(passage.last - shift + 1, 0)] = True
+    ends = np.arange(context.states) + steps >= context.states
+    return turns, ends & ~turns
+
+
+def _far_lane_is_free(context: DriveContext) -> Flags:
+    """Flags of states in which nobody is in, or soon in, the place beside ego on the next lane."""
+    lane, there = _far_lane(context)
+    beside = np.take_along_axis(context.touched, lane[None, :, None], axis=2)[..., 0]
+    gap, station = relations.gap(context), relations.station(context)
+    closing = np.maximum(context.extents.along - context.ego_extents.along, 0.0)
+    near = gap <= closing * context.thresholds.passed_s + _OBSTACLE_M / 3
+    taken = (
+        beside
+        & context.going_along
+        & ((station == relations.BESIDE) | ((station == relations.IN_FRONT_OF) & near))
+    )
+    free: Flags = there & ~np.any(taken, axis=0)
+    return free

@@ -1,0 +1,1 @@
+"""Signals of places on the map: roads, junctions, crossings."""

@@ -1,0 +1,163 @@
+"""Signals of junctions and traffic lights: entering, turning, crossing stop lines."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.scenario.recorded.recording import Light
+
+STOP_SIGNS = frozenset({"STOP", "STOP_4_WAY"})
+_LINE_REACH_M = 40.0
+_COLOURS = {
+    "red": "red_light",
+    "redYellow": "red_light",
+    "yellow": "amber_light",
+    "green": "green_light",
+    "inactive": "no_light",
+}
+
+
+def junction_signals(context: DriveContext) -> SignalColumns:
+    """The signals of junctions on ego's road, their lights and signs."""
+    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    zone = np.zeros(context.states, dtype=bool)
+    enters = np.zeros(context.states, dtype=bool)
+    turn = np.full(context.states, "straight_on", dtype="<U11")
+    for start, end in context.road.junctions:
+        at_junction = (front >= start - context.thresholds.zone_m) & (rear < end)
+        zone |= at_junction
+        enters |= _passes(front, start)
+        turn[at_junction] = turn_at(context, start, end)
+    world: dict[str, SignalColumn] = {
+        "junction_zone": zone,
+        "enters_junction": enters,
+        "turn": turn,
+        "preparing_to_leave": _within_preparation(turn != "straight_on", context),
+    }
+    unknown: dict[str, Flags] = {}
+    lanelets = context.recording.lanelets.values()
+    complete = context.recording.complete
+    if "STOP" in complete or any(STOP_SIGNS & lanelet.signs for lanelet in lanelets):
+        world["crosses_stop_line"] = _crosses_stop_line(context, front)
+    if "light" in complete or any(lanelet.lights for lanelet in lanelets):
+        world["light"], world["crosses_light_line"], changed = _lights(context, front)
+        unknown["light"] = world["light"] == ""
+        unknown["crosses_light_line"] = changed
+    return SignalColumns(world, unknown=unknown)
+
+
+def _within_preparation(flags: Flags, context: DriveContext) -> Flags:
+    """Flags that hold now or within ``preparing_s``: intentions are read off what ego did."""
+    states = round(context.thresholds.preparing_s / context.recording.step_s)
+    ahead = np.append(np.cumsum(flags[::-1])[::-1], 0)
+    until = np.minimum(np.arange(context.states) + states + 1, context.states)
+    return ahead[:-1] > ahead[until]
+
+
+def _passes(front: Floats, line: float) -> Flags:
+    beyond = front > line
+    return np.append(False, beyond[1:] & ~beyond[:-1])
+
+
+def _crosses_stop_line(context: DriveContext, front: Floats) -> Flags:
+    """Flags of ego crossing the line of a lanelet with a stop sign."""
+    crosses = np.zeros(context.states, dtype=bool)
+    lanes = context.ego_lane.tolist()
+    for piece in range(len(context.road.rows)):
+        if any(row and STOP_SIGNS & row.signs for row in context.road.rows[piece]):
+            for state in range(1, context.states):
+                if STOP_SIGNS & context.road.lanelet(piece, lanes[state]).signs:
+                    _, line = stop_line(context, piece, lanes[state])
+                    crosses[state] |= front[state - 1] <= line < front[state]
+    return crosses
+
+
+def turn_at(context: DriveContext, start: float, end: float) -> str:
+    """Where ego's road goes at a junction from ``start`` to ``end``."""
+    line = context.road.line
+    turned = np.degrees(line.heading_at(end + 1.0) - line.heading_at(start - 1.0))
+    turned = (turned + 180.0) % 360.0 - 180.0
+    if abs(turned) <= context.thresholds.turned_deg:
+        return "straight_on"
+    if abs(turned) >= 180.0 - context.thresholds.turned_deg:
+        return "turn_round"
+    return "turn_near" if (turned < 0) == (context.side == "right") else "turn_far"
+
+
+def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags, Flags]:
+    """The light for ego, empty for several colours, and flags of ego crossing its line.
+
+    In the state in which ego crosses the line the light is still the one that it crosses. The last
+    flags are those of crossings of which it is not known whether the light changed before: the line
+    has no place on the map, and ego did not stand where it may be.
+    """
+    colours = np.full(context.states, "no_light", dtype="<U11")
+    crosses, changed = np.zeros((2, context.states), dtype=bool)
+    lanes = context.ego_lane.tolist()
+    for piece in range(len(context.road.rows) - 1, -1, -1):
+        if not any(row is not None and row.lights for row in context.road.rows[piece]):
+            continue
+        for lane in sorted(set(lanes)):
+            lights = _own_lights(context, piece, lane)
+            if not lights:
+                continue
+            first, last = stop_line(context, piece, lane)
+            passes = _passes(front, last)
+            ahead = (front <= last) & (front > first - context.thresholds.light_reach_m)
+            since = _first_crossed(context, front, first)
+            for state in np.flatnonzero((ahead | passes) & (context.ego_lane == lane)).tolist():
+                shown = {_colour(context, lights, state)}
+                if passes[state]:
+                    crosses[state] = True
+                    changed[state] = {_colour(context, lights, since[state])} != shown
+                colours[state] = shown.pop()
+    return colours, crosses, changed
+
+
+def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light, ...]:
+    """The lights for ego's way on, as far as the map tells them apart."""
+    lanelet = context.road.lanelet(piece, lane)
+    if lanelet.lights_to and piece + 1 < len(context.road.rows):
+        onward = context.road.lanelet(piece + 1, lane).id
+        if onward in lanelet.lights_to:
+            return (lanelet.lights_to[onward],)
+    return lanelet.lights
+
+
+def _colour(context: DriveContext, lights: tuple[Light, ...], state: int) -> str:
+    step = context.first_step + state
+    shown = {_COLOURS.get(light.colour_at(step), "") for light in lights}
+    return shown.pop() if len(shown) == 1 else ""
+
+
+def _first_crossed(context: DriveContext, front: Floats, line: float) -> list[int]:
+    """For each state the last one in which ego passed a place, or stood beyond it."""
+    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+    moved = _passes(front, line) | (stands & (front > line))
+    latest = np.maximum.accumulate(np.where(moved, np.arange(context.states), -1))
+    return [state if since < 0 else since for state, since in enumerate(latest.tolist())]
+
+
+def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, float]:
+    """The places along the road between which the line of a lanelet is, the same if it is drawn.
+
+    Where the map has no line it is somewhere between the lanelet's end and the first place in the
+    junction beyond where other ways cross or join ego's.
+    """
+    lanelet, road = context.road.lanelet(piece, lane), context.road
+    end = float(road.borders[piece + 1])
+    if lanelet.stop_line is not None:
+        place = float(road.line.coordinates(lanelet.stop_line.mean(axis=0)[None])[0, 0])
+        return (place, place) if abs(place - end) <= _LINE_REACH_M else (end, end)
+    begins, passages = 0.0, context.surroundings.passages
+    for further in range(piece + 1, len(road.rows)):
+        edge = passages.first_meeting(road.lanelet(further, lane).id)
+        begins = float(road.borders[further])
+        if edge is not None or begins - end > _LINE_REACH_M:
+            break
+    else:
+        edge = None
+    return end, end if edge is None else min(begins + edge, end + _LINE_REACH_M)

@@ -1,0 +1,253 @@
+"""Signals of who goes first at junctions: signs, and whose ways cross ego's when.
+
+Ego goes through a junction on a way; others do on theirs. Another one is in conflict with ego while
+both are on their way to where these cross or join, and ego gets there first although the other one
+would be there within ``yielding_s`` after ego, or does come within ``held_up_s`` although it would
+have been there so soon. Whom ego lets pass is in no conflict with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.tracks.junction_passages import Passage
+from rulec.extraction.tracks.junctions import Junction, approaches
+from rulec.extraction.tracks.tracks import Flags
+from rulec.scenario.recorded.reference_line import turn
+
+_ONCOMING = "conflict_oncoming"
+_SIDES = ("conflict_from_left", "conflict_from_right", _ONCOMING)
+_RING, _RAIL = "conflict_on_roundabout", "conflict_with_rail"
+_CONFLICTS = (*_SIDES, _RING, _RAIL)
+
+
+@dataclass(frozen=True, slots=True)
+class Encounter:
+    """Another one whose way crosses ego's, and from when to when the two are in conflict.
+
+    Columns of the drive; ``known`` is False if the recording ends before it is clear.
+    """
+
+    kinds: tuple[str, ...]
+    first: int
+    last: int
+    known: bool
+    other: Passage
+    together: bool
+
+
+def priority_signals(context: DriveContext) -> SignalColumns:
+    """The signals of right of way at junctions."""
+    passages = own_passages(context)
+    conflicts = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
+    unknown = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
+    together, other_inside = np.zeros((2, context.states), dtype=bool)
+    roads, not_told = _roads(context, passages)
+    for passage in passages:
+        for met in _encounters(context, passage):
+            span = slice(met.first, met.last + 1)
+            for kind in met.kinds:
+                (conflicts if met.known else unknown)[kind][span] = True
+            together[span] |= met.together
+            entered = met.other.first - _shift(context)
+            other_inside[max(met.first, entered) : met.last + 1] = True
+        for side in filter(None, _might_come(context, passage)):
+            unknown[side][_approach(context, passage)] = True
+        if not passage.sure:
+            for name in _CONFLICTS:
+                unknown[name][_approach(context, passage)] = True
+    told = {name: conflicts[name] for name in _CONFLICTS if name != _ONCOMING}
+    world: dict[str, SignalColumn] = {**roads, **told}
+    world |= {"arrived_together": together, "other_in_junction": other_inside}
+    either: Flags = np.any([unknown[name] & ~conflicts[name] for name in _SIDES], axis=0)
+    not_told |= {name: unknown[name] & ~conflicts[name] for name in told}
+    not_told |= {"arrived_together": either, "other_in_junction": either}
+    return SignalColumns(world, unknown=not_told)
+
+
+def own_passages(context: DriveContext) -> tuple[Passage, ...]:
+    """Ego's passages of junctions during the drive."""
+    (ego,) = context.ego.participants
+    row = next(
+        k
+        for k, body in enumerate(context.surroundings.passages.tracks.participants)
+        if body.id == ego.id
+    )
+    begins, ends = _shift(context), _shift(context) + context.states
+    passages = context.surroundings.passages.of_row.get(row, ())
+    return tuple(x for x in passages if x.last >= begins and x.first < ends)
+
+
+def _shift(context: DriveContext) -> int:
+    """The column of the drive's first state."""
+    return context.first_step - context.surroundings.passages.tracks.first
+
+
+def _approach(context: DriveContext, passage: Passage) -> slice:
+    """The states from which on ego nears the junction until it is through it."""
+    shift = _shift(context)
+    ways = context.surroundings.passages.travelled[passage.row]
+    near = ways[passage.first] - ways[shift : passage.first + 1] <= context.thresholds.approach_m
+    first = passage.first - shift - int(near.sum()) + 1 if len(near) else 0
+    return slice(max(first, 0), passage.last - shift + 1)
+
+
+def _roads(
+    context: DriveContext, passages: tuple[Passage, ...]
+) -> tuple[dict[str, SignalColumn], dict[str, Flags]]:
+    """What the map says of the junction that ego nears or is in."""
+    names = ("unregulated_junction", "own_road_ends", "other_road_ends", "on_priority_road")
+    columns = {name: np.zeros(context.states, dtype=bool) for name in names}
+    unknown = {"unregulated_junction": np.zeros(context.states, dtype=bool)}
+    for passage in passages:
+        junction, span = (
+            context.surroundings.passages.junctions[passage.junction],
+            _approach(context, passage),
+        )
+        unregulated, own, others = names[:3]
+        columns[unregulated][span] = junction.regulated is False
+        unknown[unregulated][span] = junction.regulated is None
+        columns[own][span], columns[others][span] = _ending_roads(junction, passage)
+        entries = approaches(context.recording, context.surroundings.passages.way(passage))
+        signs = {sign for entry in entries for sign in entry.signs}
+        columns["on_priority_road"][span] = bool(signs & {"PRIORITY", "RIGHT_OF_WAY"})
+    if not _tells_priority(context):
+        del columns["on_priority_road"]
+    return dict(columns), unknown
+
+
+def _tells_priority(context: DriveContext) -> bool:
+    lanelets = context.recording.lanelets.values()
+    return "PRIORITY" in context.recording.complete or any(
+        {"PRIORITY", "RIGHT_OF_WAY"} & lanelet.signs for lanelet in lanelets
+    )
+
+
+def _ending_roads(junction: Junction, passage: Passage) -> tuple[bool, bool]:
+    """Does ego's road end at the junction, and does the one that it meets there?
+
+    A road ends if no way goes straight on from it. It meets one that goes on if a way does across.
+    """
+    own = junction.ways[passage.way]
+    others = [
+        way
+        for way in junction.ways
+        if not way.on_rails
+        and np.pi / 4 < abs(turn(own.headings[0], way.headings[0])) < 3 * np.pi / 4
+    ]
+    on = [junction.goes_straight(way) for way in others]
+    straight = junction.goes_straight(own)
+    return not straight and any(on), straight and bool(on) and not any(on)
+
+
+def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
+    """Those who are in ego's way at a junction, or might be."""
+    passages, shift = context.surroundings.passages, _shift(context)
+    span = _approach(context, own)
+    latest = own.last + round(context.thresholds.held_up_s / context.recording.step_s)
+    for other in passages.through[own.junction]:
+        if other.row == own.row or other.last < span.start + shift or other.first > latest:
+            continue
+        met = passages.junctions[own.junction].meeting(own.way, other.way)
+        if met is None:
+            continue
+        enters, leaves = passages.occupied(own, met[0])
+        comes, _ = passages.occupied(other, met[1])
+        if enters is None or (comes is not None and comes < enters):
+            continue
+        verdict = _held_up(context, (enters, leaves), other, comes)
+        if verdict is None:
+            continue
+        begins, known = verdict
+        last = (leaves if leaves is not None else shift + context.states - 1) - shift
+        first = max(span.start, begins - shift)
+        if not (kinds := _kinds(context, own, other)):
+            continue
+        yield Encounter(
+            kinds=kinds,
+            first=first,
+            last=min(last, context.states - 1),
+            known=known and own.sure and other.sure,
+            other=other,
+            together=abs(other.first - own.first) * context.recording.step_s
+            <= context.thresholds.together_s,
+        )
+
+
+def _held_up(
+    context: DriveContext, ego: tuple[int, int | None], other: Passage, comes: int | None
+) -> tuple[int, bool] | None:
+    """From which column on another one is in conflict with ego, and whether that is sure.
+
+    None: it is not. ``ego`` are the columns in which ego enters and leaves where their ways meet,
+    ``comes`` the one in which the other one does.
+    """
+    limits, step_s = context.thresholds, context.recording.step_s
+    passages = context.surroundings.passages
+    enters, leaves = ego
+    until = passages.tracks.x.shape[1] - 1 if leaves is None else leaves
+    present = np.flatnonzero(passages.tracks.present[other.row])
+    first, last = max(int(present[0]), _shift(context)), min(enters, int(present[-1]))
+    if last < first:
+        return None
+    columns = np.arange(first, last + 1)
+    if comes is None:
+        return (first, False) if int(present[-1]) < until else None
+    if (comes - until) * step_s < limits.yielding_s:
+        return first, leaves is not None
+    if (comes - until) * step_s >= limits.held_up_s:
+        return None
+    way = passages.travelled[other.row, comes] - passages.travelled[other.row, columns]
+    speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
+    soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
+    return (int(columns[soon.argmax()]), leaves is not None) if soon[-1] else None
+
+
+def _kinds(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ...]:
+    passages = context.surroundings.passages
+    if "rail_vehicle" in passages.tracks.participants[other.row].object_types:
+        return (_RAIL,)
+    way = passages.way(other)
+    angle = float(np.degrees(turn(own.heading, passages.tracks.heading[other.row, other.first])))
+    if not (side := _side(angle)):
+        return ()
+    ring = bool(way.entries & context.surroundings.ring(context.side))
+    return (side, _RING) if ring else (side,)
+
+
+def _side(angle: float) -> str:
+    """The word for who comes in a direction (degrees to the left of ego's), empty for ego's own."""
+    if abs(angle) < 30.0:
+        return ""
+    return _SIDES[2] if abs(angle) > 135.0 else _SIDES[0] if angle < 0 else _SIDES[1]
+
+
+def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
+    """The sides from which somebody might still come whose track ends before the junction."""
+    passages, shift = context.surroundings.passages, _shift(context)
+    tracks, limits = passages.tracks, context.thresholds
+    area = passages.junctions[own.junction].area
+    through = {x.row for x in passages.through[own.junction]}
+    for row, body in enumerate(tracks.participants):
+        if body.standing or row in through or "pedestrian" in body.object_types:
+            continue
+        end = int(np.flatnonzero(tracks.present[row])[-1])
+        x, y = float(tracks.x[row, end]), float(tracks.y[row, end])
+        speed = float(tracks.speed[row, end])
+        place = shapely.Point(x, y)
+        away = float(shapely.distance(area, place))
+        arrives = end + away / max(speed, 0.1) / context.recording.step_s
+        latest = own.last + limits.yielding_s / context.recording.step_s
+        if end < own.first or arrives > latest or end < shift:
+            continue
+        near = shapely.shortest_line(place, area).coords[-1]
+        towards = float(np.arctan2(near[1] - y, near[0] - x))
+        heading = float(tracks.heading[row, end])
+        if abs(turn(towards, heading)) < np.pi / 3:
+            yield _side(float(np.degrees(turn(own.heading, heading))))

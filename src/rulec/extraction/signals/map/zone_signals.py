@@ -1,0 +1,132 @@
+"""Signals of what ego drives through: level crossings, pedestrian crossings, the room beyond."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals import relations
+from rulec.extraction.signals.map.map_signals import next_crossing
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.tracks.driven_road import runs_along
+from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.scenario.recorded.lane_coordinates import crossings_along
+
+_LIGHTS_AT_CROSSING_M = 30.0
+"""A light whose line is so near before a pedestrian crossing directs it, too."""
+
+_ROOM_M = 1.0
+Stretches = Sequence[tuple[float, float]]
+
+
+def zone_signals(context: DriveContext) -> SignalColumns:
+    """The signals of crossings and of the room behind what ego enters."""
+    rails = _rail_stretches(context)
+    world: dict[str, SignalColumn] = {}
+    unknown: dict[str, Flags] = {}
+    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    if "rail" in context.recording.complete or rails:
+        zone, enters = np.zeros((2, context.states), dtype=bool)
+        for start, end in rails:
+            zone |= (front >= start - context.thresholds.zone_m) & (rear < end)
+            enters |= np.append(False, (front[1:] > start) & (front[:-1] <= start))
+        # Those of a net have gates that close while a train comes
+        world |= {"level_crossing_zone": zone, "enters_level_crossing": enters, "guarded": zone}
+        world["tracks_at_kerb"] = _tracks_at_kerb(context)
+    world["crossing_kind"] = _crossing_kinds(context)
+    places = [*context.road.junctions, *context.road.crossings, *rails]
+    world["exit_clear"], unknown["exit_clear"] = _exit_clear(context, places)
+    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+    world["way_cleared"] = stands | _at_edge(context)
+    return SignalColumns(world, unknown=unknown)
+
+
+def _rail_stretches(context: DriveContext) -> Stretches:
+    rows = context.road.rows
+    flags = [any("level_crossing" in x.types for x in row if x is not None) for row in rows]
+    return list(runs_along(context.road.borders, flags))
+
+
+def _tracks_at_kerb(context: DriveContext) -> Flags:
+    """Flags of states in which the lane beside ego's road at the kerb is for rail vehicles."""
+    lanelets = context.recording.lanelets
+    near = "right_of" if context.side == "right" else "left_of"
+    flags = []
+    for row in context.road.rows:
+        there = [lanelet for lanelet in row if lanelet is not None]
+        outer = there[0] if context.side == "right" else there[-1]
+        beside = lanelets.get(getattr(outer, near) or "")
+        flags.append(beside is not None and "rail" in beside.types)
+    return np.array(flags)[context.road.piece(context.ego_extents.s[0])]
+
+
+def _crossing_kinds(context: DriveContext) -> SignalColumn:
+    """The kind of the crossing ahead: ``directed_crossing`` by a light of its own or ego's."""
+    road = context.road
+    walkers = {
+        name: lanelet
+        for name, lanelet in context.recording.lanelets.items()
+        if "crosswalk" in lanelet.types and (lanelet.lights or "directed" in lanelet.types)
+    }
+    only = replace(context.recording, lanelets=walkers)
+    directed = [
+        start for start, _ in crossings_along(only, road.line, road.lanes, 0.0, road.line.length)
+    ]
+    lines = [
+        end
+        for row, end in zip(road.rows, road.borders[1:].tolist(), strict=True)
+        if any(lanelet.lights for lanelet in row if lanelet is not None)
+    ]
+    kinds = {
+        start: "directed_crossing"
+        if any(abs(start - other) < 1.0 for other in directed)
+        or any(0 <= start - line <= _LIGHTS_AT_CROSSING_M for line in lines)
+        else "zebra"
+        for start, _ in road.crossings
+    }
+    start, _ = next_crossing(context)
+    return np.array([kinds.get(place, "zebra") for place in start.tolist()])
+
+
+def _at_edge(context: DriveContext) -> Flags:
+    straight, lane = context.road.lanes.straight, context.steady_lane
+    own, edge = context.ego_extents, context.thresholds.at_edge_m
+    right: Floats = own.w_min[0] - straight[lane]
+    left: Floats = straight[lane + 1] - own.w_max[0]
+    return (np.minimum(right, left) < edge) & (np.abs(right - left) > edge)
+
+
+def _exit_clear(context: DriveContext, places: Stretches) -> tuple[Flags, Flags]:
+    """Is there room for ego behind what it enters, and where is that unknown?
+
+    There is none if the one ahead leaves too little behind the place where it is at that time, and
+    ego has to stand on it. Where the recording ends before ego is through it is unknown.
+    """
+    clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
+    own = context.ego_extents
+    front, rear = own.s_max[0], own.s_min[0]
+    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+    lanes = np.arange(context.touched.shape[-1])
+    same = (context.touched & (lanes == context.ego_lane[None, :, None])).any(axis=-1)
+    follows = same & context.going_along & (relations.station(context) == relations.BEHIND)
+    for start, end in places:
+        nears = (front >= start - context.thresholds.approach_m) & (rear < end)
+        if not nears.any():
+            continue
+        room = np.where(
+            follows & (context.extents.s_max > end), context.extents.s_min - end, np.inf
+        )
+        inside = follows & (context.extents.s_max <= end) & (context.extents.s_max > start)
+        taken = np.where(inside, context.extents.s_max - context.extents.s_min + _ROOM_M, 0.0)
+        free = room.min(axis=0, initial=np.inf) - taken.sum(axis=0)
+        short = free < own.s_max[0] - own.s_min[0] + _ROOM_M
+        on = (front > start) & (rear < end)
+        waits_later = np.maximum.accumulate((on & stands)[::-1])[::-1]
+        through = bool((rear >= end).any())
+        clear &= ~(nears & short & waits_later)
+        if not through:
+            unknown |= nears & short & ~waits_later
+    return clear, unknown & clear

@@ -1,0 +1,208 @@
+"""Passages: who went through which junction, on which way, when.
+
+A participant's way is the one whose middle its places are nearest on average, of those that begin
+in its direction. Its place on it is the arc length of its middle, its body reaching half its length
+to either side; before the way begins it is the distance to it, negative.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import shapely
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.tracks.junctions import Interval, Junction, JunctionWay, junctions_of
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.recorded.reference_line import turn
+
+_FARTHEST_M = 2.5
+"""Who is farther from a way's middle on average is not on it."""
+
+_SURE_M = 0.4
+"""The way is known if no other one that parts from it fits nearly as well."""
+
+_LARGEST_TURN = np.pi / 3
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """A participant's passage of a junction, in columns ``first`` to ``last`` inclusive.
+
+    ``way`` is the number of the way; ``sure`` is False if it may be another one. ``heading`` is the
+    direction (rad) in which it came. ``whole``: it was recorded on its way in and out.
+    """
+
+    row: int
+    junction: int
+    way: int
+    sure: bool
+    first: int
+    last: int
+    heading: float
+    whole: bool
+
+
+@dataclass(frozen=True, eq=False)
+class JunctionPassages:
+    """All passages of a recording, by participant and by junction."""
+
+    tracks: Tracks
+    junctions: tuple[Junction, ...]
+    of_row: Mapping[int, tuple[Passage, ...]]
+    through: Mapping[int, tuple[Passage, ...]]
+
+    @cached_property
+    def lengths(self) -> Floats:
+        """The participants' lengths (m)."""
+        return np.array([_length(body.outlines, body.states) for body in self.tracks.participants])
+
+    @cached_property
+    def travelled(self) -> Floats:
+        """The way (m) that each participant has covered by step."""
+        steps = np.hypot(np.diff(self.tracks.x, axis=1), np.diff(self.tracks.y, axis=1))
+        first = np.zeros((len(steps), 1))
+        return np.concatenate((first, np.nancumsum(steps, axis=1)), axis=1)
+
+    @cached_property
+    def _areas(self) -> shapely.STRtree:
+        return shapely.STRtree([junction.area for junction in self.junctions])
+
+    def crosses_junction(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
+        """True if a straight line leads through a junction."""
+        line = shapely.LineString([start, end])
+        return len(self._areas.query(line, predicate="intersects")) > 0
+
+    @cached_property
+    def _first_meetings(self) -> dict[str, float]:
+        """Lanelet -> the first place (m) on it where others cross or join, if there is any."""
+        first: dict[str, float] = {}
+        for junction in self.junctions:
+            for own, way in enumerate(junction.ways):
+                others = range(len(junction.ways))
+                met = [x[0][0] for other in others if (x := junction.meeting(own, other))]
+                begins = 0.0
+                for lanelet in way.lanelets:
+                    length = float(np.hypot(*np.diff(lanelet.centre, axis=0).T).sum())
+                    inside = [place - begins for place in met if place - begins < length]
+                    if inside:
+                        place = max(min(inside), 0.0)
+                        first[lanelet.id] = min(first.get(lanelet.id, place), place)
+                    begins += length
+        return first
+
+    def first_meeting(self, lanelet: str) -> float | None:
+        """The first place (m) on a lanelet where other ways cross or join it, None without any."""
+        return self._first_meetings.get(lanelet)
+
+    def way(self, passage: Passage) -> JunctionWay:
+        """The way of a passage."""
+        return self.junctions[passage.junction].ways[passage.way]
+
+    def occupied(self, passage: Passage, interval: Interval) -> tuple[int | None, int | None]:
+        """The first columns in which its front is in an interval of its way, and its rear is past.
+
+        None where the recording ends before.
+        """
+        low, high = interval
+        middle = self._places(passage)
+        half = self.lengths[passage.row] / 2
+        enters, leaves = middle + half >= low, middle - half > high
+        return tuple(  # type: ignore[return-value]
+            passage.first + int(flags.argmax()) if flags.any() else None
+            for flags in (enters, leaves)
+        )
+
+    def _places(self, passage: Passage) -> Floats:
+        """Arc lengths (m) on the way from its first column to the end of its track."""
+        line = self.way(passage).line
+        last = passage.last
+        row = self.tracks.present[passage.row]
+        own = slice(passage.first, last + 1)
+        places = shapely.points(self.tracks.x[passage.row, own], self.tracks.y[passage.row, own])
+        inside = np.maximum.accumulate(shapely.line_locate_point(line, places))
+        end = last + 1 + int((~np.append(row[last + 1 :], False)).argmax())
+        beyond = self.travelled[passage.row, last + 1 : end] - self.travelled[passage.row, last]
+        return np.concatenate((inside, inside[-1] + beyond))
+
+
+def _length(outlines: object, states: object) -> float:
+    step = next(iter(outlines))  # type: ignore[call-overload]
+    outline = outlines[step]  # type: ignore[index]
+    state = states.get(step)  # type: ignore[attr-defined]
+    if state is None:
+        return float(np.ptp(outline, axis=0).max())
+    ahead = outline @ np.array([np.cos(state.heading), np.sin(state.heading)])
+    return float(np.ptp(ahead))
+
+
+def junction_passages(recording: Recording, tracks: Tracks) -> JunctionPassages:
+    """The passages of everybody who moves."""
+    junctions = junctions_of(recording)
+    of_row: dict[int, list[Passage]] = defaultdict(list)
+    through: dict[int, list[Passage]] = defaultdict(list)
+    moving = np.array([not body.standing for body in tracks.participants], dtype=bool)
+    rows, columns = np.nonzero(tracks.present & moving[:, None])
+    if junctions and len(rows):
+        points = shapely.points(tracks.x[rows, columns], tracks.y[rows, columns])
+        areas = [junction.area for junction in junctions]
+        at, where = shapely.STRtree(areas).query(points, predicate="intersects")
+        for number in np.unique(where).tolist():
+            inside = np.zeros(tracks.present.shape, dtype=bool)
+            chosen = at[where == number]
+            inside[rows[chosen], columns[chosen]] = True
+            for row in np.flatnonzero(inside.any(axis=1)).tolist():
+                for first, last in _runs(inside[row]):
+                    passage = _passage(junctions[number].ways, tracks, row, (first, last), number)
+                    if passage is not None:
+                        of_row[row].append(passage)
+                        through[number].append(passage)
+    ordered = {
+        row: tuple(sorted(found, key=lambda passage: passage.first))
+        for row, found in of_row.items()
+    }
+    by_junction = {number: tuple(found) for number, found in through.items()}
+    return JunctionPassages(tracks, junctions, ordered, by_junction)
+
+
+def _runs(flags: Flags) -> Iterator[tuple[int, int]]:
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
+    yield from ((int(start), int(end) - 1) for start, end in edges.reshape(-1, 2))
+
+
+def _passage(
+    ways: Sequence[JunctionWay], tracks: Tracks, row: int, columns: tuple[int, int], junction: int
+) -> Passage | None:
+    first, last = columns
+    own = slice(first, last + 1)
+    points = shapely.points(tracks.x[row, own], tracks.y[row, own])
+    begins, ends = float(tracks.heading[row, first]), float(tracks.heading[row, last])
+    on_rails = "rail_vehicle" in tracks.participants[row].object_types
+    away = np.full(len(ways), np.inf)
+    present = tracks.present[row]
+    whole = first > 0 and last + 1 < len(present) and bool(present[first - 1] and present[last + 1])
+    for number, way in enumerate(ways):
+        if way.on_rails == on_rails and abs(turn(way.headings[0], begins)) < _LARGEST_TURN:
+            fits = not whole or abs(turn(way.headings[1], ends)) < _LARGEST_TURN
+            away[number] = shapely.distance(way.line, points).mean() if fits else np.inf
+    best = int(np.argmin(away)) if len(away) else 0
+    if not len(away) or not away[best] <= _FARTHEST_M:
+        return None
+    close: NDArray[intp] = np.flatnonzero(away < away[best] + _SURE_M)
+    sure = whole or all(abs(ways[k].turned - ways[best].turned) < 0.5 for k in close.tolist())
+    return Passage(
+        row=row,
+        junction=junction,
+        way=best,
+        sure=sure,
+        first=first,
+        last=last,
+        heading=begins,
+        whole=whole,
+    )

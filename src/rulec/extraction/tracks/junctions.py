@@ -1,0 +1,210 @@
+"""The junctions of a map: the ways through them, and where ways cross or join."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+import shapely
+
+from rulec.extraction.tracks.driven_road import junction_lanelets
+from rulec.scenario.recorded.recording import Lanelet, Points, Recording
+from rulec.scenario.recorded.reference_line import turn
+from rulec.scenario.recorded.route import lanelet_area
+
+MOST_LANELETS = 8
+"""The most lanelets end to end on one way through a junction."""
+
+_SIDE_M = 0.4
+"""Bodies keep so far within their lanes: ways side by side are not in each other's way."""
+
+_SHORT_M = 30.0
+_TURNED = np.radians(45.0)
+_REGULATING = frozenset({"YIELD", "STOP", "STOP_4_WAY", "PRIORITY", "RIGHT_OF_WAY"})
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class JunctionWay:
+    """A way through a junction: lanelets end to end, from the one before it to the one after.
+
+    ``entries`` and ``exits`` are the lanelets before and after it.
+    """
+
+    lanelets: tuple[Lanelet, ...]
+    entries: frozenset[str]
+    exits: frozenset[str]
+
+    @cached_property
+    def line(self) -> shapely.LineString:
+        """Its middle."""
+        return shapely.LineString(np.concatenate([lanelet.centre for lanelet in self.lanelets]))
+
+    @cached_property
+    def area(self) -> shapely.Geometry:
+        """The area of its lanelets, without their edges."""
+        whole = shapely.union_all([lanelet_area(lanelet) for lanelet in self.lanelets])
+        return shapely.buffer(whole, -_SIDE_M)
+
+    @cached_property
+    def headings(self) -> tuple[float, float]:
+        """The directions (rad) in which it begins and ends."""
+        first, last = self.lanelets[0].centre, self.lanelets[-1].centre
+        return _heading(first[:2]), _heading(last[-2:])
+
+    @property
+    def turned(self) -> float:
+        """The angle (rad) by which it turns to the left."""
+        return float(turn(*self.headings))
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The ids of its lanelets."""
+        return frozenset(lanelet.id for lanelet in self.lanelets)
+
+    @property
+    def on_rails(self) -> bool:
+        """True if only rail vehicles use it."""
+        return all("rail" in lanelet.types for lanelet in self.lanelets)
+
+
+def _heading(points: Points) -> float:
+    (x0, y0), (x1, y1) = points
+    return float(np.arctan2(y1 - y0, x1 - x0))
+
+
+@dataclass(frozen=True, eq=False)
+class Junction:
+    """A junction with its ways; ``regulated``: do signs or lights say who goes first?
+
+    None where the map does not tell.
+    """
+
+    id: str
+    ways: tuple[JunctionWay, ...]
+    regulated: bool | None
+    _met: dict[tuple[int, int], tuple[Interval, Interval] | None] = field(default_factory=dict)
+
+    @cached_property
+    def area(self) -> shapely.Geometry:
+        """The area of all its lanelets."""
+        return shapely.union_all([lanelet_area(x) for way in self.ways for x in way.lanelets])
+
+    def meeting(self, way: int, other: int) -> tuple[Interval, Interval] | None:
+        """Where a way and another cross or join, along either (m), or None.
+
+        Ways from one lanelet, which part, do not cross.
+        """
+        if (way, other) not in self._met:
+            self._met[way, other] = _meeting(self.ways[way], self.ways[other])
+        return self._met[way, other]
+
+    def goes_straight(self, way: JunctionWay) -> bool:
+        """True if the road that the way comes from goes on beyond the junction."""
+        return any(
+            abs(turn(way.headings[0], other.headings[0])) < _TURNED and abs(other.turned) < _TURNED
+            for other in self.ways
+            if not other.on_rails
+        )
+
+
+def _meeting(way: JunctionWay, other: JunctionWay) -> tuple[Interval, Interval] | None:
+    if way.names & other.names or way.entries & other.entries:
+        return None
+    foes = way.lanelets[0].foes
+    if foes is not None and not foes & other.names:
+        return None
+    both = shapely.intersection(way.area, other.area)
+    if both.is_empty:
+        return None
+    points = shapely.points(shapely.get_coordinates(both))
+    first, second = (
+        (float(at.min()), float(at.max()))
+        for at in (shapely.line_locate_point(x.line, points) for x in (way, other))
+    )
+    return first, second
+
+
+def junctions_of(recording: Recording) -> tuple[Junction, ...]:
+    """The junctions of a recording's map, in the order of their first lanelets."""
+    members: dict[str, list[Lanelet]] = defaultdict(list)
+    for number, junction in _junction_ids(recording).items():
+        members[junction].append(recording.lanelets[number])
+    # A map with no such sign at all is rather one on which nobody has drawn any
+    told = bool(recording.complete & _REGULATING) or any(
+        lanelet.signs & _REGULATING for lanelet in recording.lanelets.values()
+    )
+    junctions = []
+    for name, lanelets in members.items():
+        ways = tuple(_ways({lanelet.id: lanelet for lanelet in lanelets}))
+        regulated = _regulated(recording, lanelets, ways) or (False if told else None)
+        junctions.append(Junction(name, ways, regulated))
+    return tuple(junctions)
+
+
+def _junction_ids(recording: Recording) -> dict[str, str]:
+    """Lanelet -> junction: the map's own, or lanelets that overlap."""
+    lanelets = recording.lanelets
+    inside = [number for number in lanelets if number in junction_lanelets(recording)]
+    rails = [
+        x.id
+        for x in lanelets.values()
+        if x.junction and x.id not in inside and {"rail", "level_crossing"} & x.types
+    ]
+    named = {number: lanelets[number].junction for number in (*inside, *rails)}
+    unnamed = [number for number, name in named.items() if not name]
+    if unnamed:
+        areas = [lanelet_area(lanelets[number]) for number in unnamed]
+        parts = shapely.get_parts(shapely.union_all(areas))
+        at, part = shapely.STRtree(parts).query(areas, predicate="intersects")
+        for index, piece in zip(at.tolist(), part.tolist(), strict=True):
+            named[unnamed[index]] = f"junction {piece + 1}"
+    return named
+
+
+def _ways(members: Mapping[str, Lanelet]) -> Iterator[JunctionWay]:
+    def onward(chain: tuple[Lanelet, ...]) -> Iterator[tuple[Lanelet, ...]]:
+        inside = [members[x] for x in chain[-1].successors if x in members]
+        inside = [x for x in inside if x not in chain]
+        if not inside or len(chain) == MOST_LANELETS:
+            yield chain
+        for lanelet in inside:
+            yield from onward((*chain, lanelet))
+
+    for lanelet in members.values():
+        entries = [x for x in lanelet.predecessors if x not in members]
+        if entries or not lanelet.predecessors:
+            for chain in onward((lanelet,)):
+                exits = [x for x in chain[-1].successors if x not in members]
+                if _is_no_corner(chain):
+                    yield JunctionWay(chain, frozenset(entries), frozenset(exits))
+
+
+def _is_no_corner(chain: tuple[Lanelet, ...]) -> bool:
+    """True if lanelets follow each other without a gap, as those of one way do."""
+    return all(np.hypot(*(b.centre[0] - a.centre[-1])) < 1.0 for a, b in pairwise(chain))
+
+
+def _regulated(
+    recording: Recording, lanelets: list[Lanelet], ways: tuple[JunctionWay, ...]
+) -> bool:
+    """True if signs or lights say who goes first, False if nothing says so."""
+    if any("unregulated" in lanelet.types for lanelet in lanelets):
+        return False
+    if any(lanelet.first is not None for lanelet in lanelets):
+        return True
+    entries = [entry for way in ways for entry in approaches(recording, way)]
+    return any(entry.signs & _REGULATING or entry.lights for entry in (*entries, *lanelets))
+
+
+def approaches(recording: Recording, way: JunctionWay) -> list[Lanelet]:
+    """The lanelets before a way, and those before them where they are short."""
+    known = recording.lanelets
+    near = [known[x] for x in way.entries if x in known]
+    short = [x for x in near if np.hypot(*np.diff(x.centre, axis=0).T).sum() < _SHORT_M]
+    return near + [known[x] for entry in short for x in entry.predecessors if x in known]

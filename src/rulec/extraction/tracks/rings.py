@@ -1,0 +1,107 @@
+"""Roundabouts of a map: rings of lanelets that nobody crosses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+import shapely
+
+from rulec.scenario.recorded.recording import Lanelet, Recording, Side
+from rulec.scenario.recorded.reference_line import turn
+from rulec.scenario.recorded.route import is_lane
+
+LONGEST_M = 300.0
+"""A ring is no longer round."""
+
+MOST_LANELETS = 24
+
+_FULL_TURN = 2 * np.pi
+_UNEVEN = 0.5
+
+
+def ring_lanelets(recording: Recording, side: Side) -> frozenset[str]:
+    """The lanelets of roundabouts: the map's own, or else rings of its lanelets.
+
+    A ring leads round once, away from ``side``, is joined and left, and nobody crosses it.
+    """
+    known = recording.lanelets
+    marked = frozenset(name for name, lanelet in known.items() if "roundabout" in lanelet.types)
+    if marked or "roundabout" in recording.complete:
+        return marked | _between(known, marked)
+    lanes = {name: lanelet for name, lanelet in known.items() if is_lane(lanelet)}
+    turned = {name: _turned(lanelet) for name, lanelet in lanes.items()}
+    towards = 1.0 if side == "right" else -1.0
+    bent = {name for name, angle in turned.items() if angle * towards > 0.1}
+    found: set[str] = set()
+    for start in bent:
+        if start not in found:
+            for ring in _rings(lanes, turned, start, towards):
+                if not _crossed(ring, lanes) and _is_joined(ring, lanes):
+                    found.update(ring)
+                    break
+    return frozenset(found)
+
+
+def _between(lanelets: Mapping[str, Lanelet], marked: frozenset[str]) -> frozenset[str]:
+    """The lanelets within junctions that lead from one lanelet of a ring to another."""
+    return frozenset(
+        name
+        for name, lanelet in lanelets.items()
+        if marked & set(lanelet.predecessors) and marked & set(lanelet.successors)
+    )
+
+
+def _turned(lanelet: Lanelet) -> float:
+    steps = np.diff(lanelet.centre, axis=0)
+    headings = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+    return float(headings[-1] - headings[0])
+
+
+def _rings(
+    lanes: Mapping[str, Lanelet], turned: Mapping[str, float], start: str, towards: float
+) -> Iterator[tuple[str, ...]]:
+    """The chains of lanelets from one back to itself that turn round once."""
+    chains: tuple[str, ...] = (start,)
+    waiting = [(chains, turned[start] * towards, _length(lanes[start]))]
+    while waiting:
+        chain, angle, length = waiting.pop()
+        for number in lanes[chain[-1]].successors:
+            if number not in lanes:
+                continue
+            corner = _corner(lanes[chain[-1]], lanes[number]) * towards
+            if number == start:
+                if abs(angle + corner - _FULL_TURN) < _UNEVEN:
+                    yield chain
+            elif number not in chain and len(chain) < MOST_LANELETS:
+                further = angle + corner + turned[number] * towards
+                longer = length + _length(lanes[number])
+                if angle - _UNEVEN <= further <= _FULL_TURN + _UNEVEN and longer <= LONGEST_M:
+                    waiting.append(((*chain, number), further, longer))
+
+
+def _corner(before: Lanelet, after: Lanelet) -> float:
+    first, second = before.centre[-1] - before.centre[-2], after.centre[1] - after.centre[0]
+    return float(turn(np.arctan2(first[1], first[0]), np.arctan2(second[1], second[0])))
+
+
+def _length(lanelet: Lanelet) -> float:
+    return float(np.hypot(*np.diff(lanelet.centre, axis=0).T).sum())
+
+
+def _crossed(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
+    """True if a lane that is not in the ring leads through it from side to side."""
+    line = shapely.LinearRing(np.concatenate([lanes[name].centre for name in ring]))
+    others = [shapely.LineString(x.centre) for name, x in lanes.items() if name not in ring]
+    met = shapely.intersection(line, others)
+    return bool((shapely.get_num_geometries(met[~shapely.is_empty(met)]) > 1).any())
+
+
+def _is_joined(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
+    outside = [
+        number
+        for name in ring
+        for number in (*lanes[name].predecessors, *lanes[name].successors)
+        if number not in ring
+    ]
+    return len(outside) >= 2

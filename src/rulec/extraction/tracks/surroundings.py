@@ -1,0 +1,120 @@
+"""What is computed once for a recording: its junctions and passages, and its carriageways."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import shapely
+
+from rulec.extraction.tracks.junction_passages import JunctionPassages, junction_passages
+from rulec.extraction.tracks.rings import ring_lanelets
+from rulec.extraction.tracks.tracks import Tracks
+from rulec.scenario.recorded.recording import Lanelet, Recording, Side
+from rulec.scenario.recorded.reference_line import turn
+from rulec.scenario.recorded.route import (
+    directions_beside,
+    is_lane,
+    lanelet_area,
+    lanes_beside,
+)
+
+SAME_CARRIAGEWAY_M = 1.5
+OTHER_CARRIAGEWAY_M = 30.0
+"""So far apart at most are the lanes of one carriageway, and the carriageways of one road."""
+
+_AGAINST = np.radians(135.0)
+
+Directions = tuple["bool | None", "bool | None"]
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """The junctions, passages and carriageways of a recording."""
+
+    recording: Recording
+    tracks: Tracks
+    _directions: dict[str, Directions] = field(default_factory=dict)
+    _rings: dict[Side, frozenset[str]] = field(default_factory=dict)
+
+    @cached_property
+    def passages(self) -> JunctionPassages:
+        """Who went through which junction when."""
+        return junction_passages(self.recording, self.tracks)
+
+    def ring(self, side: Side) -> frozenset[str]:
+        """The lanelets of roundabouts where traffic keeps to a side."""
+        if side not in self._rings:
+            self._rings[side] = ring_lanelets(self.recording, side)
+        return self._rings[side]
+
+    @cached_property
+    def _lanes(self) -> tuple[list[Lanelet], shapely.STRtree]:
+        lanes = [x for x in self.recording.lanelets.values() if is_lane(x)]
+        lanes = [x for x in lanes if "intersection" not in x.types]
+        return lanes, shapely.STRtree([lanelet_area(x) for x in lanes])
+
+    @cached_property
+    def _both_ways(self) -> bool:
+        """True if a lanelet of the map has another beside it that leads the other way."""
+        lanes, _ = self._lanes
+        return any(self._nearest_opposite(lane) <= OTHER_CARRIAGEWAY_M for lane in lanes)
+
+    def directions(self, lanelet: Lanelet) -> Directions:
+        """Is its carriageway one-way, and do a strip or barrier part it from the opposite one?
+
+        By the nearest lane beside its middle that leads the other way. Where a map has no such lane
+        anywhere it may have left them out.
+        """
+        if lanelet.id not in self._directions:
+            self._directions[lanelet.id] = self._computed(lanelet)
+        return self._directions[lanelet.id]
+
+    def _computed(self, lanelet: Lanelet) -> Directions:
+        nearest = self._nearest_opposite(lanelet)
+        if nearest <= SAME_CARRIAGEWAY_M:
+            return False, False
+        if nearest <= OTHER_CARRIAGEWAY_M:
+            return True, True
+        complete = "light" in self.recording.complete
+        return (
+            True if complete or self._both_ways else None,
+            False if complete else None,
+        )
+
+    def _nearest_opposite(self, lanelet: Lanelet) -> float:
+        """The distance (m) from its carriageway to a lane that leads the other way."""
+        lanes, tree = self._lanes
+        beside = [
+            name
+            for left in (True, False)
+            for name in lanes_beside(self.recording, lanelet.id, left=left)
+        ]
+        row = [lanelet, *(self.recording.lanelets[name] for name in beside)]
+        steps = np.hypot(*np.diff(lanelet.centre, axis=0).T)
+        longest = int(np.argmax(steps))
+        middle = shapely.Point(*((lanelet.centre[longest] + lanelet.centre[longest + 1]) / 2))
+        own = shapely.intersection(
+            shapely.union_all([lanelet_area(x) for x in row]),
+            shapely.buffer(middle, OTHER_CARRIAGEWAY_M),
+        )
+        places = np.array([middle])
+        heading = float(directions_beside(lanelet, places)[0])
+        nearest = np.inf
+        for index in tree.query(middle, predicate="dwithin", distance=OTHER_CARRIAGEWAY_M).tolist():
+            lane = lanes[index]
+            if lane.id != lanelet.id and lane.id not in beside:
+                turned = abs(turn(heading, float(directions_beside(lane, places)[0])))
+                if turned > _AGAINST and _is_beside(lane, middle, heading):
+                    nearest = min(nearest, float(shapely.distance(lanelet_area(lane), own)))
+        return nearest
+
+
+def _is_beside(lane: Lanelet, place: shapely.Point, heading: float) -> bool:
+    """True if the nearest place of a lane is across from a place, not before or behind it."""
+    line = shapely.LineString(lane.centre)
+    near = line.interpolate(line.project(place))
+    away = np.array([near.x - place.x, near.y - place.y])
+    along = abs(float(away @ np.array([np.cos(heading), np.sin(heading)])))
+    return along <= 1.0 + 0.2 * float(np.hypot(*away))
