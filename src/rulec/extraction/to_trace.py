@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -124,12 +124,21 @@ class DecidedBy:
         return Margin(f"{self.quantity}({item})", value, relation, limit, self.unit)
 
 
+class Place(NamedTuple):
+    """A place in the recording's coordinates (m), and the lanelet of ego's lane there."""
+
+    x: float
+    y: float
+    lanelet: str
+
+
 @dataclass(frozen=True, slots=True)
 class Drive:
     """A drive of ``ego`` as a trace from ``start_s`` (s of the recording) on.
 
     ``kinds`` are the Python types of the signals that the recording supplies, whether or not any
-    object is there to have them; ``decided_by`` has the numbers behind Boolean ones.
+    object is there to have them; ``decided_by`` has the numbers behind Boolean ones. ``places`` are
+    where ego's middle is in each state.
     """
 
     __repr__ = short_repr
@@ -139,6 +148,7 @@ class Drive:
     trace: Trace
     kinds: Mapping[str, type]
     decided_by: Mapping[str, DecidedBy] = field(default_factory=dict, compare=False)
+    places: tuple[Place, ...] = field(default=(), compare=False)
 
     @property
     def words(self) -> frozenset[str]:
@@ -206,7 +216,15 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
         rows = {presence.name: presence.row for presence in present}
         distances = gap_beside_safe_distance(context)
         decided_by["safe_gap"] = DecidedBy("gap", "m", rows, *distances)
-    return Drive(ego, start_s, trace, kinds, decided_by)
+    return Drive(ego, start_s, trace, kinds, decided_by, tuple(_places(context)))
+
+
+def _places(context: DriveContext) -> Iterator[Place]:
+    pieces = context.road.piece(context.ego_extents.s[0]).tolist()
+    lanes = context.ego_lane.tolist()
+    rows = zip(context.ego.x[0].tolist(), context.ego.y[0].tolist(), pieces, lanes, strict=True)
+    for x, y, piece, lane in rows:
+        yield Place(round(x, 2), round(y, 2), context.road.lanelet(piece, lane).id)
 
 
 def _projected(

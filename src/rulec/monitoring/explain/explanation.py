@@ -78,8 +78,10 @@ class Explanation:
     ``states`` are the numbers of the states that are shown, ``decisive`` is the one after which
     nothing could save the rule any more, or the last one. ``facts`` and ``parts`` have a value for
     each of ``states``; the first part is the formula itself, each stands before what it is made of.
-    ``repair`` is what states would have had to say for the rule to be kept, their places being
-    their numbers in the trace; None if nothing would have helped.
+    ``lasts`` are the first and the last state of the stretch in which what always, or never, has to
+    be is broken; of other rules the decisive state. ``repair`` is what states would have had to say
+    for the rule to be kept, their places being their numbers in the trace; None if nothing would
+    have helped.
     """
 
     __repr__ = short_repr
@@ -92,6 +94,7 @@ class Explanation:
     parts: tuple[Part, ...]
     repair: tuple[Repair, ...] | None
     vocabulary: Vocabulary
+    lasts: tuple[int, int]
 
     def margins(self) -> list[Margin]:
         """By how much: the comparisons of quantities that decide, in the decisive state."""
@@ -148,6 +151,7 @@ def explain(
     values = values_of_parts(formula, word, rulebook.semantics)
     instants = deciding_instants(formula, word, rulebook.semantics)
     deciding = {part for part, at in instants.items() if any(at)}
+    lasts = _broken_stretch(formula, values, decisive - binding.first)
     repair = nearest_satisfying(rule.machine, observed.word(rule.machine))
     return Explanation(
         rule=rule,
@@ -161,7 +165,39 @@ def explain(
         repair=repair
         and tuple([replace(change, place=binding.first + change.place) for change in repair]),
         vocabulary=rulebook.vocabulary,
+        lasts=(binding.first + lasts[0], binding.first + lasts[1]),
     )
+
+
+def _broken_stretch(
+    formula: ltl.Formula, values: Mapping[ltl.Formula, list[bool]], decisive: int
+) -> tuple[int, int]:
+    """The stretch around a state in which the body of an outermost always or never is broken."""
+    for part, wanted in _bodies(formula):
+        column = values[part]
+        broken = [n for n in range(decisive, -1, -1) if column[n] is not wanted]
+        if broken:
+            first = last = broken[0]
+            while first > 0 and column[first - 1] is not wanted:
+                first -= 1
+            while last + 1 < len(column) and column[last + 1] is not wanted:
+                last += 1
+            return first, max(last, decisive)
+    return decisive, decisive
+
+
+def _bodies(formula: ltl.Formula) -> Iterator[tuple[ltl.Formula, bool]]:
+    """What has to be true, or false, in all states, and which of both."""
+    match formula:
+        case ltl.Unary(ltl.UnaryOperator.ALWAYS, body, None):
+            yield body, True
+        case ltl.Unary(ltl.UnaryOperator.NEVER, body, None):
+            yield body, False
+        case ltl.Binary(ltl.BinaryOperator.AND, left, right):
+            yield from _bodies(left)
+            yield from _bodies(right)
+        case ltl.Binary(ltl.BinaryOperator.IMPLIES | ltl.BinaryOperator.OR, _, right):
+            yield from _bodies(right)
 
 
 def _with_margins(

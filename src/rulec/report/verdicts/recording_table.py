@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import zip_longest
 from textwrap import shorten
 from typing import Any
 
@@ -11,6 +12,7 @@ from msgspec.structs import replace
 
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
+from rulec.extraction.violation_evidence import ViolationEvidence, evidence_of
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged
 from rulec.report.json_document import JsonDocument, as_line, filled
@@ -143,6 +145,16 @@ class NotDriven(JsonDocument, frozen=True, kw_only=True):
     why_not: str
 
 
+def _evidence_data(evidence: ViolationEvidence) -> verdict_json.EvidenceData:
+    place = evidence.place
+    return filled(
+        verdict_json.EvidenceData,
+        evidence,
+        margins=[filled(verdict_json.MarginData, margin) for margin in evidence.margins],
+        place=None if place is None else filled(verdict_json.PlaceData, place),
+    )
+
+
 def as_json(
     result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
 ) -> str:
@@ -166,8 +178,15 @@ def as_json(
     by_rule = verdicts.by_default(drive.words)
     data = verdict_json.violations_data(answer, verdicts.rules, explained)
     violations = [
-        replace(written, time_s=drive.time_s(violation.step), by_default=by_rule[violation.rule])
-        for violation, written in zip(answer.violations, data, strict=True)
+        replace(
+            written,
+            time_s=drive.time_s(violation.step),
+            by_default=by_rule[violation.rule],
+            evidence=_evidence_data(
+                evidence_of(violation, drive, verdicts.rules, verdicts.request.assumed, explanation)
+            ),
+        )
+        for violation, written, explanation in zip_longest(answer.violations, data, explained)
     ]
     return as_line(
         filled(

@@ -71,6 +71,42 @@ class ErrorData(JsonPart, frozen=True, kw_only=True):
     line: int | None
 
 
+class MarginData(JsonPart, frozen=True, kw_only=True):
+    """A comparison that decides: ``value`` stands in ``relation`` to ``limit``, in ``unit``."""
+
+    text: str
+    value: float
+    relation: str
+    limit: float
+    unit: str
+
+
+class PlaceData(JsonPart, frozen=True, kw_only=True):
+    """Where ego's middle is (m, as recorded), and the lanelet of its lane there."""
+
+    x: float
+    y: float
+    lanelet: str
+
+
+class EvidenceData(JsonPart, frozen=True, kw_only=True):
+    """What a violation in recorded traffic rests on.
+
+    The names that the rule reads were ``measured``, ``assumed`` by the user, taken ``by_default``,
+    or ``unknown`` in some state without making a difference. ``from_s`` and ``to_s`` are times of
+    the recording; ``place`` is ego's at ``from_s``.
+    """
+
+    measured: Sequence[str]
+    assumed: Sequence[str]
+    by_default: Sequence[str]
+    unknown: Sequence[str]
+    from_s: float
+    to_s: float
+    margins: Sequence[MarginData]
+    place: PlaceData | None
+
+
 class ViolationData(JsonPart, frozen=True, kw_only=True):
     """A violated rule and binding; ``step`` null if only the end decides.
 
@@ -87,6 +123,7 @@ class ViolationData(JsonPart, frozen=True, kw_only=True):
     explanation: ExplanationData | UnsetType = UNSET
     time_s: float | UnsetType | None = UNSET
     by_default: Sequence[str] | UnsetType = UNSET
+    evidence: EvidenceData | UnsetType = UNSET
 
 
 class ConditionalData(JsonPart, frozen=True, kw_only=True):

@@ -1,0 +1,73 @@
+"""The evidence for a violation: what was measured, how long it lasts, by how much, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.extraction.to_trace import Drive, Place
+from rulec.logic.free_names import names_in
+from rulec.monitoring.explain.explanation import Explanation, explain
+from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.verdict import Violation
+from rulec.trace import Value
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES
+
+
+@dataclass(frozen=True, slots=True)
+class ViolationEvidence:
+    """What a violation rests on.
+
+    The names that its rule reads were ``measured`` in all states, ``assumed`` by the user, presumed
+    (or taken by default, if that was asked for), or ``unknown`` in some state without making a
+    difference. It lasts from ``from_s`` to ``to_s`` (s of the recording); ``margins`` say by how
+    much, ``place`` where ego is when it begins.
+    """
+
+    measured: tuple[str, ...]
+    assumed: tuple[str, ...]
+    by_default: tuple[str, ...]
+    unknown: tuple[str, ...]
+    from_s: float
+    to_s: float
+    margins: tuple[Margin, ...]
+    place: Place | None
+
+
+def evidence_of(
+    violation: Violation,
+    drive: Drive,
+    rules: CompiledRulebook,
+    assumed: Mapping[str, Value],
+    explanation: Explanation | None = None,
+) -> ViolationEvidence:
+    """The evidence for a violation by a drive; ``explanation`` is its own, if there is one."""
+    explained = explanation or explain(violation, drive.trace, rules, drive.decided_by)
+    read = dict.fromkeys(names_in(explained.rule.formula))
+    told = [name for name in read if name in drive.kinds and name not in assumed]
+    partial = {name for name in told if _is_partial(drive, name)}
+    declared = rules.vocabulary.declarations
+    untold = [name for name in read if name not in drive.kinds]
+    by_default = [name for name in untold if drive.trace.told is None or declared[name].presumed]
+    first, last = explained.lasts
+    unknown = [name for name in untold if name not in by_default]
+    return ViolationEvidence(
+        measured=tuple([name for name in told if name not in partial]),
+        assumed=tuple([name for name in read if name in assumed]),
+        by_default=tuple(by_default),
+        unknown=tuple([name for name in read if name in partial or name in unknown]),
+        from_s=drive.time_s(first),
+        to_s=drive.time_s(last),
+        margins=tuple(explained.margins()),
+        place=drive.places[first] if drive.places else None,
+    )
+
+
+def _is_partial(drive: Drive, name: str) -> bool:
+    for state in drive.trace.states:
+        value = state.get(name)
+        values = value.values() if isinstance(value, Mapping) else (value,)
+        if any(type(inner) in UNKNOWN_TYPES for inner in values):
+            return True
+    return False
