@@ -151,7 +151,7 @@ def _evidence_data(evidence: ViolationEvidence) -> verdict_json.EvidenceData:
         verdict_json.EvidenceData,
         evidence,
         margins=[filled(verdict_json.MarginData, margin) for margin in evidence.margins],
-        place=None if place is None else filled(verdict_json.PlaceData, place),
+        place=None if place is None else filled(verdict_json.DrivePlaceData, place),
     )
 
 

@@ -81,7 +81,7 @@ class MarginData(JsonPart, frozen=True, kw_only=True):
     unit: str
 
 
-class PlaceData(JsonPart, frozen=True, kw_only=True):
+class DrivePlaceData(JsonPart, frozen=True, kw_only=True):
     """Where ego's middle is (m, as recorded), and the lanelet of its lane there."""
 
     x: float
@@ -104,7 +104,7 @@ class EvidenceData(JsonPart, frozen=True, kw_only=True):
     from_s: float
     to_s: float
     margins: Sequence[MarginData]
-    place: PlaceData | None
+    place: DrivePlaceData | None
 
 
 class ViolationData(JsonPart, frozen=True, kw_only=True):
