@@ -216,7 +216,8 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
         rows = {presence.name: presence.row for presence in present}
         distances = gap_beside_safe_distance(context)
         decided_by["safe_gap"] = DecidedBy("gap", "m", rows, *distances)
-    return Drive(ego, start_s, trace, kinds, decided_by, tuple(_places(context)))
+    places = tuple(_places(context))
+    return Drive(ego, start_s, trace, kinds, decided_by=decided_by, places=places)
 
 
 def _places(context: DriveContext) -> Iterator[Place]:
