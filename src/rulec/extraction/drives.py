@@ -84,6 +84,10 @@ class Drives:
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
         """The drives of one vehicle: several if it leaves its road or the recording jumps."""
         row = next(k for k, body in enumerate(self._tracks.participants) if body.id == ego)
+        body = self._tracks.participants[row]
+        if 2 * len(body.states) < len(body.outlines):
+            yield NoDrive(ego, "it has no track: its places are sets that it may be in")
+            return
         stretches = [
             stretch
             for matched in self._matching.of(row)

@@ -68,7 +68,7 @@ def selected_drives(
 ) -> SelectedDrives:
     """The drives of a recording, in a vocabulary's words, for rules of a side of ``traffic``.
 
-    Raises RulecError R0612 for a vehicle that is not there.
+    Raises RulecError R0612 for a vehicle that is not there, or if nobody drives.
     """
     side = traffic or recording.side or "right"
     mirrored = recording.side not in (None, side) and not request.as_recorded
@@ -77,6 +77,12 @@ def selected_drives(
     writer = TraceWriter(vocabulary, names, request.assumed, request.defaults)
     drives = Drives(recording, side, request.thresholds, writer)
     known = drives.egos()
+    if not known and not request.egos:
+        raise NOT_IN_RECORDING.error(
+            SourceLocation(file),
+            f"nobody drives in it: {_who_is_there(recording)}",
+            help="give a recording of vehicles that move",
+        )
     for ego in request.egos:
         if ego not in known:
             raise NOT_IN_RECORDING.error(
@@ -86,6 +92,14 @@ def selected_drives(
             )
     egos = tuple(ego for ego in known if not request.egos or ego in request.egos)
     return SelectedDrives(recording, mirrored, egos, drives)
+
+
+def _who_is_there(recording: Recording) -> str:
+    standing = sum(body.standing for body in recording.participants)
+    others = len(recording.participants) - standing
+    if not standing + others:
+        return "it has a road, and nobody on it"
+    return f"{standing} of those in it stand for good, {others} go on foot or are unknown"
 
 
 def _examples(known: tuple[str, ...]) -> str:

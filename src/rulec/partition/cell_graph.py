@@ -52,6 +52,16 @@ class NavigationGraph:
     goals: tuple[int, ...]
 
     @property
+    def last_layer(self) -> int:
+        """The last layer that a path from the start reaches."""
+        reached = {self.start}
+        for number, edges in enumerate(self.successors):
+            reached = {after for cell in reached for after in edges[cell]}
+            if not reached:
+                return number
+        return len(self.layers) - 1
+
+    @property
     def step_s(self) -> float:
         """The planning interval in seconds."""
         return float(self.step)

@@ -34,6 +34,10 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
     library for CommonRoad, R0613 for a net where none is needed, R0614 and R0615 for a missing or
     wrong one, R0701 if a file cannot be opened.
     """
+    if is_protobuf(path):
+        why = "it is Protocol Buffers, which are not read yet"
+        way_out = "give CommonRoad's XML of it, as `commonroad-io` writes it"
+        raise RECORDING.refused(path, why, help_text=way_out)
     root = root_of(path, RECORDING)
     if root == "fcd-export":
         # NumPy and Shapely take a while, and few commands read recordings.
@@ -61,7 +65,12 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
 
 def is_recording(file: str) -> bool:
     """True if a file's name or first bytes show recorded traffic."""
-    return is_xml(Path(file))
+    return is_xml(Path(file)) or is_protobuf(Path(file))
+
+
+def is_protobuf(path: Path) -> bool:
+    """True if a file's name says that it is CommonRoad's other form, Protocol Buffers."""
+    return path.suffix.lower() == ".pb"
 
 
 def read_scene(path: Path, choice: Choice) -> Scenario:
@@ -115,7 +124,7 @@ def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = 
 
 def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
     """The scenario in a file. Raises RulecError like ``load_scenario``."""
-    if is_xml(path):
+    if is_recording(str(path)):
         return read_scene(path, choice or Choice())
     if choice not in (None, Choice()):
         raise OTHER_CHOICE.error(

@@ -5,10 +5,12 @@ from dataclasses import replace
 import pytest
 
 from rulec.diagnostics import RulecError
+from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.traffic_thresholds import USUAL
+from rulec.scenario.recorded.recording import TrackState
 from support.builders.drive_contexts import steady
-from support.builders.recordings import recording
+from support.builders.recordings import recording, rectangle, vehicle
 from support.generators.random_recordings import lanes
 
 RIGHT = replace(
@@ -64,3 +66,27 @@ def test_thresholds_and_assumptions_reach_the_drives():
     # The other vehicle is 16 m away
     assert drive.trace.objects == {}
     assert [state["built_up"] for state in drive.trace.states] == [True] * 4
+
+
+def test_where_nobody_drives_the_reason_is_said():
+    walker = steady(9, 0, -1, speed=1, kind="pedestrian")
+    stands = vehicle(8, {0: (20, 0)}, "parkedVehicle", standing=True)
+    with pytest.raises(RulecError) as raised:
+        selected_drives(recording(lanes(1), [walker, stands]), RequestedDrives(), "file")
+    (found,) = raised.value.diagnostics
+    assert found.message == (
+        "nobody drives in it: 1 of those in it stand for good, 1 go on foot or are unknown"
+    )
+    with pytest.raises(RulecError, match="it has a road, and nobody on it"):
+        selected_drives(recording(lanes(1)), RequestedDrives(), "file")
+
+
+def test_who_has_sets_for_places_has_no_track():
+    # A prediction says where it may be: an outline in each step, and a state in the first
+    predicted = replace(steady(7, 0, 0), states={0: TrackState(0, 0, 0, 5, 0)})
+    spread = {k: rectangle(20 * k, 0, 4 + 8 * k, 60) for k in range(4)}
+    found = recording(lanes(1), [replace(predicted, outlines=spread), steady(8, 20, 0)])
+    drives = selected_drives(found, RequestedDrives(), "file")
+    assert all(
+        isinstance(one, NoDrive) and one.why.startswith("it has no track") for one in drives.of("7")
+    )

@@ -78,6 +78,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         *_scene(maneuvers),
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
         f"maneuvers   {shown_count(maneuvers.traces)}",
+        *_shut_in(maneuvers),
         f"satisfying  {styled(shown_count(maneuvers.satisfying), 'bold')} by {by}",
         *_violated_before(maneuvers.violated_before or ()),
         *([visible(by_default)] if maneuvers.by_default else []),
@@ -122,6 +123,20 @@ def _scene(maneuvers: Maneuvers) -> Iterator[str]:
         yield visible(f"derived     {name} = {shown}: {because}")
     for remark in account.remarks:
         yield visible(f"note        {remark}")
+
+
+def _shut_in(maneuvers: Maneuvers) -> Iterator[str]:
+    """The reason where there is no maneuver at all."""
+    graph = maneuvers.graph
+    if maneuvers.traces:
+        return
+    until = graph.last_layer
+    if until == len(graph.layers) - 1:
+        yield "            no way leads to the goal by the end"
+        return
+    low, high = (f"{(until + more) * graph.step_s:g} s" for more in (0, 1))
+    yield f"            none leads on from between {low} and {high}: in steps of {graph.step_s:g} s"
+    yield "            others sweep all the room that ego has there; try a shorter --step"
 
 
 def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
