@@ -5,8 +5,8 @@ Above each item of the file stands a comment, `SUPPLIER: what it means`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from rulec.diagnostics import RulecError, Source
 from rulec.resources import rulebooks_folder
@@ -21,7 +21,9 @@ The words for rulebooks of countries, as [`road.rules`](../rulebooks/vocabulary/
 declares them, and who supplies them: the scene (ego's own motion, and what is measured of others),
 the map (the road, its marks and signs), or an interpretation (what others are about to do, and what
 traffic is like). Near is the kerb's side, far the other one. What a state does not mention has its
-default; `–` means that there is none, so that it has to be mentioned where a rule reads it.
+default; `–` means that there is none, so that it has to be mentioned where a rule reads it. What is
+*constant* stays the same for a whole trace; of what is *presumed* the default holds even where a
+source cannot tell it, and verdicts say so.
 `.ci/task regenerate` writes this page.
 """
 
@@ -49,7 +51,8 @@ def vocabulary_page(source: Source) -> str:
     if mistakes:
         raise RulecError(mistakes)
     types = [_type_row(item) for item in file.items if isinstance(item, tree.TypeItem)]
-    words = [word for item in file.items for word in _words(item)]
+    marks = _marks(file.items)
+    words = [word for item in file.items for word in _words(item, marks)]
     return "\n".join(
         [
             _HEAD,
@@ -75,7 +78,22 @@ def comment_above(item: tree.Item) -> str:
     return " ".join(lines)
 
 
-def _words(item: tree.Item) -> Iterator[Word]:
+def _marks(items: Sequence[tree.Item]) -> dict[str, str]:
+    """Name -> what lines of their own say of it."""
+    marks: dict[str, str] = {}
+    for item in items:
+        if isinstance(item, tree.ConstantItem | tree.PresumedItem):
+            mark = "constant" if isinstance(item, tree.ConstantItem) else "presumed"
+            marks |= {name.text: f"{marks.get(name.text, '')}, *{mark}*" for name in item.names}
+    return marks
+
+
+def _words(item: tree.Item, marks: Mapping[str, str]) -> Iterator[Word]:
+    for word in _bare_words(item):
+        yield replace(word, holds=word.holds + marks.get(word.name, ""))
+
+
+def _bare_words(item: tree.Item) -> Iterator[Word]:
     supplier, _, meaning = comment_above(item).partition(": ")
     match item:
         case tree.EnumerationItem(name, parameters, values, default):

@@ -104,7 +104,8 @@ class SharedVocabulary:
 def shared_vocabulary(first: Vocabulary, second: Vocabulary) -> SharedVocabulary:
     """The words of two vocabularies together.
 
-    Where defaults differ there is none, so that traces say the value. Raises UndecidedError.
+    Where defaults differ there is none, so that traces say the value; what one calls constant or
+    presumed and the other does not is neither. Raises UndecidedError.
     """
     types: dict[str, ObjectType] = dict(first.types)
     for name, kind in second.types.items():
@@ -114,10 +115,18 @@ def shared_vocabulary(first: Vocabulary, second: Vocabulary) -> SharedVocabulary
     unlike = set()
     for name, item in second.declarations.items():
         known = declarations.setdefault(name, item)
-        if replace(known, default=None) != replace(item, default=None):
+        if _kind(known) != _kind(item):
             unlike.add(name)
-        elif known.default != item.default:
-            declarations[name] = replace(known, default=None)
+        elif known != item:
+            declarations[name] = replace(
+                _kind(known) if known.default != item.default else known,
+                constant=known.constant and item.constant,
+                presumed=known.default == item.default and known.presumed and item.presumed,
+            )
     not_shared = frozenset(first.declarations.keys() ^ second.declarations.keys())
     vocabulary = Vocabulary(first.name, types, declarations)
     return SharedVocabulary(vocabulary, not_shared, frozenset(unlike))
+
+
+def _kind(item: Declaration) -> Declaration:
+    return replace(item, default=None, constant=False, presumed=False)

@@ -19,7 +19,8 @@ UNFITTING_VALUE = Code(
     "R0503",
     title="a state's value does not fit its declaration",
     why="A signal is true or false, an enumeration has one of its values as a text, a quantity is "
-    "a finite number; what is about objects is a map from each object to these.",
+    "a finite number; what is about objects is a map from each object to these. What the "
+    "vocabulary calls constant has one value in all states of a trace.",
     bad='{"objects": {"v1": "vehicle"}, "states": [{"position": {"v1": "behind"}}]}\n',
     good=_GOOD,
     kind="trace",

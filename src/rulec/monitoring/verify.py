@@ -11,6 +11,7 @@ from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import bindings
+from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
@@ -39,7 +40,7 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     validator = StateValidator(rulebook.vocabulary, trace.objects)
     is_partial = validator.check(trace.states, "state {}".format, trace.place)
     if is_partial or trace.ends == "cut" or trace.told is not None:
-        return uncertain_verdict(trace, rulebook)
+        return uncertain_verdict(with_constants(trace, rulebook.vocabulary), rulebook)
     reader = letter_reader_of(trace, rulebook)
     check_counting_axioms(rulebook, len(trace.states), reader.view, "state {}".format, trace.place)
     violations = []
@@ -62,7 +63,11 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
 def letter_reader_of(
     trace: Trace, rulebook: CompiledRulebook, where: Callable[[int], str] = "state {}".format
 ) -> LetterReader:
-    """Letter reader of a checked trace; ``where`` names states in messages."""
+    """Letter reader of a checked trace; ``where`` names states in messages.
+
+    Raises RulecError R0503 if a constant changes.
+    """
+    trace = with_constants(trace, rulebook.vocabulary, where)
     place, objects, present = trace.place, trace.objects, trace.present
     return LetterReader(
         trace.states, rulebook, where, place=place, objects=objects, present=present

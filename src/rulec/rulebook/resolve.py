@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.rulebook.elaborate import rule_messages
 from rulec.rulebook.elaborate.constant_checks import check_constants_and_macros
+from rulec.rulebook.names.constant_and_presumed import mark_constant_and_presumed
 from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.names.symbol_table import symbol_table
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
@@ -42,6 +43,7 @@ def resolve(
     """
     file, files = books[-1], (*vocabularies, *books)
     symbols = symbol_table(files, opaque=opaque)
+    mark_constant_and_presumed(symbols, files)
     unsure = opaque or not all(book.complete for book in books)
     laid = overlay(books, {**symbols.type_spans, **symbols.spans}, unsure=unsure)
     sides: list[Traffic] = ["", *(book.traffic.side for book in books if book.traffic)]
@@ -95,6 +97,7 @@ def resolve(
 def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagnostic, ...]]:
     """A vocabulary by itself, and what is wrong with it."""
     symbols = symbol_table([file])
+    mark_constant_and_presumed(symbols, [file])
     _, wrong_facts = axioms_of([file], symbols, ConstantsAndMacros(Overlay(), ""))
     mistakes = [*symbols.mistakes, *wrong_facts]
     if file.name is None or mistakes:

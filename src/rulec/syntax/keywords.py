@@ -9,7 +9,7 @@ HEADER_WORDS: Final = (
     *FILE_WORDS,
     *("title", "law", "use", "extends", "traffic", "semantics", "step", "priority"),
 )
-DECLARATION_WORDS: Final = ("type", "signal", "quantity", "fact")
+DECLARATION_WORDS: Final = ("type", "signal", "quantity", "fact", "constant", "presumed")
 PROVISION_WORDS: Final = (
     *("option", "param", "set", "define", "redefine"),
     *("drop", "soften", "silent"),

@@ -276,7 +276,23 @@ class FactItem(_SyntaxNode):
     formula: Formula
 
 
-Declaration = TypeItem | EnumerationItem | SignalItem | QuantityItem | FactItem
+@dataclass(frozen=True, slots=True)
+class ConstantItem(_SyntaxNode):
+    """``constant names``: their values stay the same as long as a trace goes on."""
+
+    names: tuple[Name, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PresumedItem(_SyntaxNode):
+    """``presumed names``: where no source tells them, their defaults hold."""
+
+    names: tuple[Name, ...]
+
+
+Declaration = (
+    TypeItem | EnumerationItem | SignalItem | QuantityItem | FactItem | ConstantItem | PresumedItem
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -90,6 +90,11 @@ class Vocabulary:
             for value in item.values
         }
 
+    @cached_property
+    def constants(self) -> tuple[str, ...]:
+        """The names whose values stay the same as long as a trace goes on."""
+        return tuple(name for name, item in self.declarations.items() if item.constant)
+
     def ancestors(self, type_name: str) -> Iterator[str]:
         """The type itself, its parent, and so on upward."""
         current: str | None = type_name

@@ -95,6 +95,10 @@ def print_declaration(item, style):
             return f"quantity {name.text}{print_parameters(parameters)} in {unit}{default}"
         case tree.FactItem(formula):
             return f"fact {print_whole(formula, style)}"
+        case tree.ConstantItem(names):
+            return f"constant {', '.join(name.text for name in names)}"
+        case tree.PresumedItem(names):
+            return f"presumed {', '.join(name.text for name in names)}"
 
 
 def print_provision(item, style):

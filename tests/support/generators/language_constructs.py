@@ -61,6 +61,14 @@ ITEMS = [
         ("fact", "fact p q", 'fact "p"', "fakt p", "fact (p and q", "fact p and"),
     ),
     Construct(
+        ("constant p, q", "constant\n  p, q", "constant p,\n  q"),
+        ("constant", "constant p q", 'constant "p"', "constnat p", "constant p,", "constant p = 5"),
+    ),
+    Construct(
+        ("presumed p, q", "presumed\n  p, q", "presumed p,\n  q"),
+        ("presumed", "presumed p q", "presumed not p", "presume p", "presumed p default false"),
+    ),
+    Construct(
         (
             "option zipper = on",
             "option\n  zipper = on",

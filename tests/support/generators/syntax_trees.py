@@ -82,6 +82,8 @@ declarations = st.one_of(
         st.none() | st.floats(allow_nan=False, allow_infinity=False),
     ),
     st.builds(tree.FactItem, formulas),
+    st.builds(tree.ConstantItem, _lists(names, 1)),
+    st.builds(tree.PresumedItem, _lists(names, 1)),
 )
 
 days = st.dates().map(lambda day: day.isoformat())

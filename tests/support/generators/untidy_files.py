@@ -102,6 +102,8 @@ declarations = st.one_of(
         maybe | st.sampled_from([0.0, -1.5, 2e30, 1e-7]),
     ),
     st.builds(tree.FactItem, formulas),
+    st.builds(tree.ConstantItem, _lists(some_names, 1, 9)),
+    st.builds(tree.PresumedItem, _lists(some_names, 1, 9)),
 )
 provisions = st.one_of(
     st.builds(tree.OptionItem, some_names, st.booleans()),

@@ -80,6 +80,10 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
     for declaration in vocabulary.declarations.values():
         for parameter in declaration.parameters:
             _require(parameter in types, f"`{declaration.name}` is about an unknown type")
+        _require(
+            not declaration.presumed or declaration.default is not None,
+            f"`{declaration.name}` is presumed, but has no default",
+        )
         if isinstance(declaration, Enumeration) and declaration.default is not None:
             known = declaration.default in declaration.values
             _require(known, f"the default of `{declaration.name}` is not one of its values")

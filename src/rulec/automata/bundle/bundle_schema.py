@@ -31,6 +31,8 @@ class EnumerationEntry(_Strict, tag="enumeration", tag_field="kind"):
     parameters: tuple[str, ...]
     values: tuple[str, ...]
     default: str | None
+    constant: bool = False
+    presumed: bool = False
 
 
 class SignalEntry(_Strict, tag="signal", tag_field="kind"):
@@ -39,6 +41,8 @@ class SignalEntry(_Strict, tag="signal", tag_field="kind"):
     name: str
     parameters: tuple[str, ...]
     default: bool | None
+    constant: bool = False
+    presumed: bool = False
 
 
 class QuantityEntry(_Strict, tag="quantity", tag_field="kind"):
@@ -48,6 +52,8 @@ class QuantityEntry(_Strict, tag="quantity", tag_field="kind"):
     parameters: tuple[str, ...]
     unit: str
     default: float | None
+    constant: bool = False
+    presumed: bool = False
 
 
 ENTRY_OF: dict[type[Declaration], type[EnumerationEntry | SignalEntry | QuantityEntry]] = {

@@ -18,6 +18,7 @@ from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
+from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import check_objects, check_state, has_partial_values
 from rulec.monitoring.state_view import StateView
@@ -25,6 +26,7 @@ from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
+from rulec.trace.trace_columns import Array, Layout
 from rulec.trace.trace_model import check_frame, check_presence
 
 FEWEST = 4
@@ -75,9 +77,11 @@ def verify_chunk(
     for place, item in enumerate(items):
         if isinstance(item, Trace) and item.ends == "complete" and item.told is None:
             try:
+                if rulebook.vocabulary.constants:
+                    item = with_constants(item, rulebook.vocabulary)
                 shapes.setdefault(trace_groups.shape_of(item), []).append((place, item))
-            except (TypeError, AttributeError, KeyError):
-                continue  # it is no trace, which ``verify`` will say
+            except (TypeError, AttributeError, LookupError, RulecError):
+                continue  # it is no trace, or a constant changes, which ``verify`` will say
     for alike in shapes.values():
         n_states = sum(len(trace.states or ()) for _, trace in alike)
         if len(alike) >= fewest or n_states >= _LONG:
@@ -222,6 +226,20 @@ def _verify_block(block: Block, rulebook: CompiledRulebook) -> list[Answer] | No
     ]
 
 
+def _changes(values: Array, layout: Layout) -> bool:
+    """Whether a column's value changes within a trace."""
+    first = values[: layout.n_traces]
+    return any(
+        bool(
+            (
+                values[layout.starts[step] : layout.starts[step + 1]]
+                != first[: layout.active(step)]
+            ).any()
+        )
+        for step in range(1, layout.n_steps)
+    )
+
+
 def _verify_block_group(
     group: BlockGroup, rulebook: CompiledRulebook, answers: list[Answer | None]
 ) -> None:
@@ -232,7 +250,14 @@ def _verify_block_group(
     rules = rules_for(Trace("", step_s, objects, ()), rulebook)
     if any(counts(axiom.formula) for axiom in rules.axioms):
         raise UnencodableError
-    verdicts = verify_columns(columnize_block(group, rules.vocabulary), rules)
+    columns = columnize_block(group, rules.vocabulary)
+    if any(
+        _changes(values, columns.layout)
+        for (name, _), values in columns.values.items()
+        if name in rules.vocabulary.constants
+    ):
+        raise UnencodableError
+    verdicts = verify_columns(columns, rules)
     traces = group.traces.tolist()
     for number, violations in violations_in(verdicts, len(traces)):
         trace = traces[number]

@@ -188,7 +188,7 @@ def _words_section(loaded: Loaded) -> Iterator[Block]:
     used = used_declarations(rulebook)
     described = _descriptions(loaded)
     rows = [
-        [code(name), _about(word), _kind(word), escaped(described.get(name, ""))]
+        [code(name), _about(word), _kind(word) + _marks(word), escaped(described.get(name, ""))]
         for name, word in rulebook.vocabulary.declarations.items()
         if name in used
     ]
@@ -218,6 +218,12 @@ def _descriptions(loaded: Loaded) -> Mapping[str, str]:
 def _about(item: Declaration) -> str:
     types = " and ".join(code(spoken(parameter)) for parameter in item.parameters)
     return f"every {types}" if types else "the world"
+
+
+def _marks(item: Declaration) -> str:
+    """What else is declared of it, behind its values."""
+    said = {"never changes": item.constant, "presumed": item.presumed}
+    return "".join(f"; {mark}" for mark, holds in said.items() if holds)
 
 
 def _kind(item: Declaration) -> str:

@@ -62,12 +62,20 @@ _WORDS = {
     tree.SignalItem: ("signal", "signals"),
     tree.QuantityItem: ("quantity", "quantities"),
     tree.FactItem: ("fact", "facts"),
+    tree.ConstantItem: ("constant", "constants"),
+    tree.PresumedItem: ("presumption", "presumptions"),
 }
 
 
 def _declares(file: tree.File | None) -> str:
     counts: Counter[type] = Counter()
     for item in () if file is None else file.items:
-        counts[type(item)] += len(item.signals) if isinstance(item, tree.SignalItem) else 1
+        match item:
+            case (
+                tree.SignalItem(signals=names) | tree.ConstantItem(names) | tree.PresumedItem(names)
+            ):
+                counts[type(item)] += len(names)
+            case _:
+                counts[type(item)] += 1
     parts = [f"{counts[kind]} {words[counts[kind] != 1]}" for kind, words in _WORDS.items()]
     return ", ".join(part for part in parts if not part.startswith("0 "))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Final
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named
@@ -83,6 +83,31 @@ PARAMETER_WITHOUT_TYPE = Code(
     "hard rule r (v: vehicle) { require not near(v) }\n",
 )
 
+NOTHING_TO_MARK = Code(
+    "R0216",
+    title="what is called constant or presumed is not declared",
+    why="A `constant` or `presumed` line names signals, quantities and enumerations, which have to "
+    "be declared in the rulebook or in a vocabulary that it uses. Of an enumeration it names "
+    "the whole and not a value; of what is about objects it has the name alone.",
+    bad="rulebook example\nkind is one of a_car, a_truck\nconstant kinds\n"
+    "hard rule r { require a_car }\n",
+    good="rulebook example\nkind is one of a_car, a_truck\nconstant kind\n"
+    "hard rule r { require a_car }\n",
+)
+
+NOT_TO_BE_PRESUMED = Code(
+    "R0325",
+    title="a name cannot be presumed",
+    why="Where no source tells a presumed name, its default holds, so it needs one. Every verdict "
+    "that rests on it names it: a rulebook and its vocabularies may presume a dozen, since "
+    "a verdict that rests on more says little of what was seen. What is not presumed is "
+    "unknown where nobody tells it.",
+    bad="rulebook example\nsignal waved_through\npresumed waved_through\n"
+    "hard rule r { require not waved_through }\n",
+    good="rulebook example\nsignal waved_through default false\npresumed waved_through\n"
+    "hard rule r { require not waved_through }\n",
+)
+
 
 _OTHER_DIMENSIONS: Final = {
     "velocity": "speed",
@@ -135,6 +160,62 @@ def twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
         help="give it another name, or leave it out",
         labels=(Label(first.place, "first declared here"),),
     )
+
+
+def marked_twice(
+    item: tree.ConstantItem | tree.PresumedItem, again: tree.Name, first: Span
+) -> Diagnostic:
+    return DECLARED_TWICE.at(
+        again.span,
+        f"`{again.text}` is called {_mark(item)} twice",
+        expected="said again here",
+        help="leave it out",
+        labels=(Label(first.place, "first said here"),),
+    )
+
+
+def nothing_to_mark(
+    item: tree.ConstantItem | tree.PresumedItem,
+    name: tree.Name,
+    declared: Collection[str],
+    enumeration: str = "",
+) -> Diagnostic:
+    """Mistake: a name is not declared; it may be a value of an enumeration."""
+    if enumeration:
+        message = f"`{name.text}` is a value, and only what has values can be {_mark(item)}"
+        way_out = f"write `{enumeration}`, whose value it is"
+    else:
+        message = f"nothing is called `{name.text}` that could be {_mark(item)}"
+        way_out = did_you_mean(name.text, list(declared))
+    return NOTHING_TO_MARK.at(
+        name.span,
+        message,
+        expected="expected a signal, a quantity or an enumeration",
+        help=way_out or f"declare it, such as `signal {name.text} default false`",
+    )
+
+
+def no_default(name: tree.Name, declared: Span) -> Diagnostic:
+    return NOT_TO_BE_PRESUMED.at(
+        name.span,
+        f"`{name.text}` has no default that could be presumed",
+        expected="expected a name that has a default",
+        help="give it a default where it is declared, or leave it out here",
+        labels=(Label(declared.place, "declared here"),),
+    )
+
+
+def too_many_presumed(name: tree.Name, number: int, most: int) -> Diagnostic:
+    return NOT_TO_BE_PRESUMED.at(
+        name.span,
+        f"`{name.text}` is the {number}th name that is presumed; there may be {most}",
+        expected="one more than can be presumed",
+        help="presume only what is rare and no source could tell; leave the others unknown",
+    )
+
+
+def _mark(item: tree.ConstantItem | tree.PresumedItem) -> str:
+    return "constant" if isinstance(item, tree.ConstantItem) else "presumed"
 
 
 def both_declare(names: Sequence[str], first: tree.UseLine, again: tree.UseLine) -> Diagnostic:

@@ -21,7 +21,7 @@ class SymbolTable:
 
     ``suspects`` are names that an unreadable item may have declared; with ``opaque`` any name may
     be missing for a reason that has been reported, with ``opaque_types`` any type. ``uncertain``
-    are types whose parents are not known for such a reason.
+    are types whose parents, and enumerations whose defaults, are not known for such a reason.
     """
 
     types: dict[str, ObjectType] = field(default_factory=dict)
@@ -227,6 +227,7 @@ def _declare_item(
             default = chosen.text if chosen is not None and chosen.text in texts else None
             if chosen is not None and default is None:
                 symbols.mistakes.append(say.no_such_value(name, chosen, texts))
+                symbols.uncertain.add(name.text)
             enumeration = Enumeration(name.text, types, texts, default)
             _add(symbols, name, enumeration)
             for value in values:

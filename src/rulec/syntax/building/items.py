@@ -60,8 +60,17 @@ def item(
             return _quantity(values, node)
         case "fact_item":
             return tree.FactItem(value_of(values, node), span=span)
+        case "constant_item":
+            return tree.ConstantItem(_listed(values, node), span=span)
+        case "presumed_item":
+            return tree.PresumedItem(_listed(values, node), span=span)
         case _:
             return _definition(values, node)
+
+
+def _listed(values: NodeValues, node: ParseNode) -> tuple[tree.Name, ...]:
+    (names,) = node.branches("names")
+    return values.names(names)
 
 
 def _quantity(values: NodeValues, node: ParseNode) -> tree.QuantityItem:

@@ -57,6 +57,7 @@ RESERVED_WORD = Code(
 
 _LINES = (
     *("title", "law", "use", "extends", "traffic", "semantics", "step", "priority"),
+    *("constant", "presumed"),
     *("drop", "soften", "silent", "rulebook", "vocabulary"),
 )
 _WHAT = {

@@ -1,0 +1,126 @@
+"""Constants of a trace: what one state says of them holds in all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, TypeAlias
+
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.monitoring.monitoring_messages import UNFITTING_VALUE
+from rulec.trace import State, Trace
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+
+_Subject: TypeAlias = tuple[str, ...]
+"""The objects that a value is about; none for the world."""
+
+_Said: TypeAlias = dict[_Subject, tuple[Any, int]]
+"""What is known of a name by subject, and the first state that says so."""
+
+
+def with_constants(
+    trace: Trace, vocabulary: Vocabulary, where: Callable[[int], str] = "state {}".format
+) -> Trace:
+    """The trace of valid states in which every state says what some state says of a constant.
+
+    That is its value if one is known, else the interval that is left, else that it is unknown.
+    What no state mentions has its default. Raises RulecError R0503 for two values.
+    """
+    states = trace.states
+    for name in vocabulary.constants:
+        first = states[0].get(name)
+        # Mostly every state says the same, or says nothing.
+        if any(state.get(name) != first for state in states):
+            depth = len(vocabulary.declarations[name].parameters)
+            said = _said(name, depth, states, where, trace.place)
+            states = tuple(_filled(states, name, said, trace.present))
+    return trace if states is trace.states else replace(trace, states=states)
+
+
+def _said(
+    name: str,
+    depth: int,
+    states: Sequence[State],
+    where: Callable[[int], str],
+    place: SourceLocation | None,
+) -> _Said:
+    said: _Said = {}
+    before: object = None
+    for number, state in enumerate(states):
+        given = state.get(name)
+        if given == before:
+            continue
+        before = given
+        for subject, value in values_in(given, depth):
+            known = said.get(subject)
+            merged = value if known is None else _agreed(known[0], value)
+            if merged is None and known is not None:
+                earlier = f"{where(known[1])} says {display(known[0])}"
+                raise changed(
+                    name, subject, f"{where(number)} says {display(value)}, {earlier}", place
+                )
+            if known is None or merged != known[0]:
+                said[subject] = merged, number
+    return said
+
+
+def values_in(given: Any, depth: int) -> Iterator[tuple[_Subject, Any]]:
+    """The values of a name in a state, with the objects that each is about."""
+    if depth and isinstance(given, Mapping):
+        for item, inner in given.items():
+            for items, value in values_in(inner, depth - 1):
+                yield (item, *items), value
+    elif not depth and given is not None:
+        yield (), given
+
+
+def changed(name: str, subject: _Subject, message: str, place: SourceLocation | None) -> RulecError:
+    """The error (R0503) that a constant has two values in one trace."""
+    about = f" of {', '.join(f'`{item}`' for item in subject)}" if subject else ""
+    return UNFITTING_VALUE.error(
+        place,
+        f"`{name}`{about} cannot change in a trace: {message}",
+        help=f"the vocabulary says `constant {name}`; say one value, or leave out the others",
+    )
+
+
+def display(value: object) -> str:
+    """A value as messages show it."""
+    if isinstance(value, Interval):
+        return f"{value.low:g} to {value.high:g}"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"`{value:g}`" if isinstance(value, float) else f"`{value}`"
+
+
+def _agreed(one: Any, other: Any) -> Any:
+    """What is known by two values together; None if they contradict each other."""
+    if one is UNKNOWN or other is UNKNOWN:
+        return other if one is UNKNOWN else one
+    bounds = [(x.low, x.high) if isinstance(x, Interval) else (x, x) for x in (one, other)]
+    if not any(isinstance(x, Interval) for x in (one, other)):
+        return one if one == other else None
+    low, high = max(x[0] for x in bounds), min(x[1] for x in bounds)
+    return None if low > high else low if low == high else Interval(low, high)
+
+
+def _filled(
+    states: Sequence[State], name: str, said: _Said, present: Mapping[str, tuple[int, int]]
+) -> Iterator[State]:
+    last = len(states) - 1
+    for number, state in enumerate(states):
+        filled: Any = state.get(name)
+        for subject, (value, _) in said.items():
+            stretches = (present.get(item, (0, last)) for item in subject)
+            if all(begins <= number <= ends for begins, ends in stretches):
+                filled = _put(filled, subject, value)
+        yield state if filled == state.get(name) else {**state, name: filled}
+
+
+def _put(given: Any, subject: _Subject, value: object) -> Any:
+    if not subject:
+        return value
+    first, *others = subject
+    known = given if isinstance(given, Mapping) else {}
+    return {**known, first: _put(known.get(first), tuple(others), value)}
