@@ -4,7 +4,7 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
 from rulec.extraction.to_trace import Drive
-from rulec.monitoring.verdict import NotJudged, Verdict, Violation
+from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleNotJudged, Verdict, Violation
 from rulec.trace import Trace
 
 
@@ -59,3 +59,24 @@ def test_drives_without_a_verdict_are_kept_with_the_reason():
     assert counted.not_judged == [nobody, NoDrive("5", "something is missing")]
     assert counted.judged == 0
     assert counted.words is None
+
+
+def test_many_violations_about_one_object_are_one_finding():
+    parked = Violation("near", "hard", {"v": "7"}, 0)
+    other = Violation("near", "hard", {"v": "8"}, 0)
+    drives = [DriveVerdict(drive(name), Verdict(name, (parked, other))) for name in ("1", "2")]
+    drives.append(DriveVerdict(drive("3"), Verdict("3", (parked, parked))))
+    assert tally(*drives).causes == {"near": {("7",): ["1", "2", "3"], ("8",): ["1", "2"]}}
+
+
+def test_a_rule_that_is_open_or_not_judged_does_not_count_as_judged():
+    doubtful = OpenVerdict("late", "hard", {}, ("not told",), ("built_up", "indicator"))
+    missing = RuleNotJudged("fast", "hard", ("light",))
+    own = drive("1")
+    counted = tally(
+        DriveVerdict(own, Verdict("1", (), (doubtful,), (missing,))), verdict(drive("2"))
+    )
+    assert counted.judged_in == {"gentle": 2, "fast": 1, "late": 1}
+    assert list(counted.open_rules["late"]) == ["built_up", "indicator"]
+    assert list(counted.untold["fast"]) == ["light"]
+    assert (counted.satisfied, counted.doubtful, counted.open_hard) == (["2"], ["1"], 1)

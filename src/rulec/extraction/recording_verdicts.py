@@ -125,8 +125,9 @@ class ViolationTally:
 
     ``first_s``: rule -> drive -> time of its first violation (s of the recording). ``open_rules``
     and ``untold``: rule -> the names for want of which it is open, or not judged, in some drive.
-    ``judged_in``: rule -> the number of drives in which it is neither. ``words`` are the names of
-    the signals that every drive supplies.
+    ``causes``: rule -> the objects that it is violated about -> the drives: many who pass one
+    standing car are one finding. ``judged_in``: rule -> the number of drives in which it is neither
+    open nor not judged. ``words`` are the names of the signals that every drive supplies.
     """
 
     satisfied: list[str] = field(default_factory=list)
@@ -136,6 +137,7 @@ class ViolationTally:
     first_s: dict[str, dict[str, float]] = field(default_factory=dict)
     open_rules: dict[str, dict[str, None]] = field(default_factory=dict)
     untold: dict[str, dict[str, None]] = field(default_factory=dict)
+    causes: dict[str, dict[tuple[str, ...], list[str]]] = field(default_factory=dict)
     judged_in: Counter[str] = field(default_factory=Counter)
     open_hard: int = 0
     words: frozenset[str] | None = None
@@ -161,6 +163,10 @@ class ViolationTally:
             times = self.first_s.setdefault(violation.rule, {})
             at = drive.time_s(violation.step)
             times[drive.trace.id] = min(at, times.get(drive.trace.id, at))
+            about = self.causes.setdefault(violation.rule, {})
+            members = about.setdefault(tuple(violation.binding.values()), [])
+            if drive.trace.id not in members:
+                members.append(drive.trace.id)
         for result in answer.open:
             names = self.open_rules.setdefault(result.rule, {})
             names.update(dict.fromkeys(result.depends_on))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import zip_longest
 from textwrap import shorten
 from typing import Any
@@ -23,6 +23,7 @@ MOST_DEFAULTS = 4
 """So many words that are taken by default are named for a rule; JSON has them all."""
 
 MOST_VEHICLES = 6
+MOST_CAUSES = 3
 LONGEST_RULE = 48
 
 
@@ -102,8 +103,19 @@ def _table(verdicts: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
     yield from ("", heads)
     for rule, line in zip(rules, lines, strict=True):
         yield line
+        yield from _findings(tally.causes[rule.name])
         if defaults[rule.name]:
             yield f"  by default: {first_of(defaults[rule.name], MOST_DEFAULTS)}"
+
+
+def _findings(causes: Mapping[tuple[str, ...], Sequence[str]]) -> Iterator[str]:
+    """Causes that several drives have in common, those of most drives first."""
+    shared = [(about, drives) for about, drives in causes.items() if about and len(drives) > 1]
+    shared.sort(key=lambda cause: -len(cause[1]))
+    for about, drives in shared[:MOST_CAUSES]:
+        yield f"  one finding: about {', '.join(about)}, {len(drives):,} drives"
+    if len(shared) > MOST_CAUSES:
+        yield f"  and {len(shared) - MOST_CAUSES:,} more findings of several drives"
 
 
 def summary(tally: ViolationTally) -> str:
