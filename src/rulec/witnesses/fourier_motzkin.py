@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
+from itertools import pairwise, product
 from math import floor
 
 from rulec.logic.formula import Term
@@ -34,7 +34,7 @@ def solve(
     whole: Set[Term] = frozenset(),
     near_bounds: Set[Term] = frozenset(),
 ) -> dict[Term, Fraction] | None:
-    """Solve a system by numbers with short decimals; None if there are none.
+    """Solve a system, by numbers with short decimals if it can be; None if it cannot be solved.
 
     The last of the ``unknowns`` is given its number first: the ``preferred`` one where it fits,
     else zero, which for those in ``near_bounds`` is no better than others, or one near a bound. The
@@ -114,3 +114,7 @@ def _candidates(
         for end in ends:
             for n in (0, 1, -1):
                 yield Fraction(floor(end * scale) + n, scale)
+    if not whole:
+        # What no short decimal is between has a middle.
+        yield from ends
+        yield from ((low + high) / 2 for low, high in pairwise(sorted(ends)))

@@ -255,7 +255,7 @@ def _completed(
 ) -> set[_Possible] | None:
     """What a cluster's completions come to; None if there are too many."""
     values: dict[Subject, Sequence[Value]] = {}
-    bounds: dict[Subject, tuple[Fraction, Fraction] | None] = {}
+    bounds: dict[ltl.Term, tuple[Fraction, Fraction] | None] = {}
     for subject in sorted(cluster.subjects):
         declaration = view.vocabulary.declarations[subject[0]]
         given = view.given(*subject)
@@ -263,9 +263,10 @@ def _completed(
             case Enumeration():
                 values[subject] = declaration.values
             case Quantity():
-                bounds[subject] = None
+                number = ltl.QuantityTerm(*subject)
+                bounds[number] = None
                 if isinstance(given, Interval):
-                    bounds[subject] = exact(given.low), exact(given.high)
+                    bounds[number] = exact(given.low), exact(given.high)
             case _:
                 values[subject] = (False, True)
     n_discrete = prod(len(each) for each in values.values())
@@ -279,7 +280,9 @@ def _completed(
     for chosen in product(*values.values()):
         for point in points:
             supposed: dict[Subject, Value | Fraction] = dict(zip(values, chosen, strict=True))
-            supposed.update(point)
+            for term, value in point.items():
+                assert isinstance(term, ltl.QuantityTerm)
+                supposed[term.name, term.arguments] = value
             completed = CompletedView(view, supposed)
             result = _result(cluster.links, reads, completed)
             if result is not None:
@@ -368,18 +371,19 @@ def _planes_of_sum(
     environment: Mapping[str, str],
     view: StateView,
 ) -> Iterator[LinearPlane]:
-    coefficients: dict[Subject, Fraction] = {}
+    coefficients: dict[ltl.Term, Fraction] = {}
     limits = [limit]
     for factor, term in terms:
         match term:
             case ltl.QuantityTerm(name, arguments):
                 subject = name, tuple([environment[variable] for variable in arguments])
                 if _is_unknown(subject, view):
-                    coefficients[subject] = coefficients.get(subject, Fraction(0)) + factor
+                    number = ltl.QuantityTerm(*subject)
+                    coefficients[number] = coefficients.get(number, Fraction(0)) + factor
                 else:
-                    number = number_of(term, environment, view)
-                    assert not isinstance(number, Unknown), "it is known"
-                    limits = [each - factor * number for each in limits]
+                    known = number_of(term, environment, view)
+                    assert not isinstance(known, Unknown), "it is known"
+                    limits = [each - factor * known for each in limits]
             case ltl.Count(variable, _, body):
                 items = list(_candidates(term, view))
                 limits = [each - factor * n for each in limits for n in range(len(items) + 1)]

@@ -214,10 +214,10 @@ def _constant_values(
         if len(terms) > 1:
             return []
         limits.add(limit)
-    points = sample_points(
-        {name: None}, [LinearPlane({name: Fraction(1)}, limit) for limit in limits]
-    )
-    return [] if points is None else [point[name] for point in points]
+    number = ltl.QuantityTerm(name)
+    planes = [LinearPlane({number: Fraction(1)}, limit) for limit in limits]
+    points = sample_points({number: None}, planes)
+    return [] if points is None else [point[number] for point in points]
 
 
 def _comparisons_with(
