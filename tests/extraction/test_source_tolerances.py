@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals.flow_signals import flow_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.source_tolerances import NGSIM, OTHERS, SIMULATED, tolerances_of
 from support.builders.drive_contexts import context_of, steady
@@ -78,3 +79,13 @@ def test_time_headway_and_speed_are_of_the_same_speed():
     speed = ego_signals(context).world["speed"]
     assert speed == pytest.approx(np.full(4, 36.0), abs=0.01)
     assert about["time_headway"][0, 0] == pytest.approx(about["gap"][0, 0] / 10, abs=0.01)
+
+
+def test_overtaking_that_hangs_on_a_tolerance_is_unknown():
+    # 96 m behind at 9.55 m/s more is 10.05 s; at 9 m/s more it is clearly longer
+    for mps, known in ((10.45, False), (11.0, True), (10.0, True)):
+        ego, other = steady(7, 0, 4, 20), steady(8, 100, 0, mps)
+        context = context_of(of_source("ZAM", ego, other), ("2",))
+        found = flow_signals(context)
+        assert found.unknown["overtaking"][0] == (not known)
+        assert found.world["overtaking"][0] == (mps == 10.0)

@@ -172,7 +172,8 @@ def _near(
     moves = fastest * KMH >= thresholds.standing_kmh
     oncoming = (np.cos(extents.turned) < _ONCOMING_COSINE) & moves[:, None]
     counts = (gap <= thresholds.near_m) & (on_lanes | (close & (vulnerable[:, None] | oncoming)))
-    reach = np.maximum(own.along - extents.along, 0.0) * thresholds.catching_up_s
+    # A little farther, since speeds are known to some tolerance
+    reach = np.maximum(own.along - extents.along + 1.0, 0.0) * thresholds.catching_up_s
     near = {
         "relevant": counts & ~np.isnan(own.s_min),
         "in_sight": on_lanes & (gap <= np.maximum(thresholds.near_m, reach)),

@@ -48,3 +48,8 @@ def test_what_the_map_says_stands():
 def test_pavements_are_no_neighbours():
     pavement = straight(2, 0, 100, y=4, types=frozenset({"sidewalk"}))
     assert neighbours(straight(1, 0, 100), pavement)[0] == set()
+
+
+def test_lanes_side_by_side_in_a_junction_lead_different_ways():
+    across = lanelet(3, [(50, -30), (50, 30)])
+    assert neighbours(straight(1, 0, 100), straight(2, 0, 100, y=4), across) == (set(), ())

@@ -24,7 +24,7 @@ def flow_signals(context: DriveContext) -> SignalColumns:
     enough = counts >= limits.fewest
     congested = enough & (speeds < limits.congested_kmh)
     queues, queue_speeds = _queues(context)
-    overtakes, overtaken, open_end = _overtaking(context)
+    overtakes, unsure, overtaken, open_end = _overtaking(context)
     decides = context.existing_lanes & (_seen(context) | queues)
     dense = np.all(queues | ~decides, axis=1) & np.any(decides, axis=1)
     return SignalColumns(
@@ -40,6 +40,7 @@ def flow_signals(context: DriveContext) -> SignalColumns:
         },
         unknown={
             "dense_all_lanes": ~np.any(decides, axis=1),
+            "overtaking": unsure & ~overtakes,
             "being_overtaken": ~dense & ~overtaken & open_end,
         },
     )
@@ -114,12 +115,12 @@ def _beside(context: DriveContext, lanes: Flags) -> Flags:
     return beside
 
 
-def _overtaking(context: DriveContext) -> tuple[Flags, Flags, Flags]:
-    """Flags of ego overtaking a slower vehicle, and of a faster one overtaking ego.
+def _overtaking(context: DriveContext) -> tuple[Flags, Flags, Flags, Flags]:
+    """Flags of ego overtaking a slower vehicle, perhaps so, and of a faster one overtaking ego.
 
     Who overtakes is at the far side, from shortly before it is beside the other; ego overtakes
     until it is just past. One that overtakes ego is on the next lane, clearly faster, and gets past
-    within ``catching_up_s``. The third are flags of states after which it is lost from sight.
+    within ``catching_up_s``. The last are flags of states after which it is lost from sight.
     """
     limits = context.thresholds
     station, lateral = relations.station(context), relations.lateral(context)
@@ -128,19 +129,34 @@ def _overtaking(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     far, near = sides if context.side == "right" else sides[::-1]
     faster = context.ego_extents.along - context.extents.along
     ahead, beside = station == relations.IN_FRONT_OF, station == relations.BESIDE
-    soon = (station == relations.BEHIND) & (gap <= faster * limits.catching_up_s)
-    past = ahead & (gap <= context.ego_extents.along * limits.passed_s)
-    overtakes = (faster > 0) & (lateral == far) & (soon | beside | past)
+    surely, perhaps = (_ahead_and_past(context, more) for more in (0.0, 1.0))
+    slower = (faster > 0) & (lateral == far) & context.driving_along
     closing = ahead & (gap <= -faster * limits.passed_s)
     clearly = -faster * KMH >= limits.clearly_faster_kmh
     comes = clearly & (lateral == near) & _on_next_lane(context) & (closing | beside)
     comes &= context.going_along
     gets_past, lost = _gets_past(context, station == relations.BEHIND)
     return (
-        (context.driving_along & overtakes).any(axis=0),
+        (slower & (surely | beside)).any(axis=0),
+        (slower & perhaps).any(axis=0),
         (comes & gets_past).any(axis=0),
         (comes & lost).any(axis=0),
     )
+
+
+def _ahead_and_past(context: DriveContext, tolerances: float) -> Flags:
+    """Flags of participants that ego will be beside soon, or has just been, if it overtakes.
+
+    With so many tolerances of places and speeds added to what is as far as that.
+    """
+    limits, known = context.thresholds, context.tolerances
+    station, gap = relations.station(context), relations.gap(context)
+    own, other = context.ego_extents.along, context.extents.along
+    far_ahead = (own - other + 2 * tolerances * known.speed_mps) * limits.catching_up_s
+    far_behind = (own + tolerances * known.speed_mps) * limits.passed_s
+    reach = np.where(station == relations.BEHIND, far_ahead, far_behind)
+    near: Flags = (gap <= reach + tolerances * known.place_m) & (station != relations.BESIDE)
+    return near
 
 
 def _on_next_lane(context: DriveContext) -> Flags:

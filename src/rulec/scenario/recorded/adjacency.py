@@ -76,13 +76,29 @@ def _directions(line: shapely.LineString, at: NDArray[float64]) -> Points:
     return directions
 
 
+def _crossed(lanelets: Iterable[Lanelet]) -> set[str]:
+    """The lanes whose middles cross another one's."""
+    lanes = [lanelet for lanelet in lanelets if is_lane(lanelet)]
+    middles = [shapely.LineString(lanelet.centre) for lanelet in lanes]
+    if not lanes:
+        return set()
+    pairs = shapely.STRtree(middles).query(middles, predicate="crosses")
+    return {lanes[number].id for number in pairs.ravel().tolist()}
+
+
 def with_neighbours(recording: Recording) -> Recording:
-    """The recording, with neighbours that its map does not name, and a remark that says so."""
+    """The recording, with neighbours that its map does not name, and a remark that says so.
+
+    Lanes that others cross are left out: side by side in a junction, they lead different ways.
+    """
     lanelets = dict(recording.lanelets)
+    crossed = _crossed(lanelets.values())
     found = []
     for pair in sorted(bordering(lanelets.values()), key=lambda pair: -pair.part):
         right, left = lanelets[pair.right.id], lanelets[pair.left.id]
-        if pair.part < WHOLE or right.left_of is not None or left.right_of is not None:
+        if pair.part < WHOLE or crossed.intersection((right.id, left.id)):
+            continue
+        if right.left_of is not None or left.right_of is not None:
             continue
         lanelets[right.id] = replace(right, left_of=left.id)
         lanelets[left.id] = replace(left, right_of=right.id)
