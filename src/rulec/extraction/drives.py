@@ -108,7 +108,9 @@ class Drives:
         road, extents = laid_out
         tracks, columns = self._tracks, slice(stretch.first, stretch.last + 1)
         lanelets = self._matching.lanelets
-        elsewhere = (lanelets >= 0) & ~np.isin(lanelets, self._numbers_along(road))
+        on_road = np.isin(lanelets, self._numbers_along(road))
+        # Who turns off is still ahead until it has left, unlike who comes from elsewhere
+        elsewhere = (lanelets >= 0) & ~np.logical_or.accumulate(on_road, axis=1)
         if extents is None:
             rows = tracks.present[:, columns].any(axis=1).nonzero()[0]
             row = int(np.searchsorted(rows, row))
