@@ -91,3 +91,54 @@ def test_dark_and_light(page, tmp_path):
         run(page, settings, "--window-size=960,420", f"--screenshot={shot}")
         corner = imread(shot)[2, 2, :3]
         assert tuple(round(float(part) * 255) for part in corner) == expected
+
+
+@pytest.fixture(scope="module")
+def drive_page(tmp_path_factory):
+    file = tmp_path_factory.mktemp("drive") / "drive.html"
+    recording = ["docs/samples/following.xml", "--ego", "1", "--rule", "following_distance*"]
+    assert main(["draw", "drive", *recording, "-r", "de", "-o", str(file)]) == 0
+    return file
+
+
+def told(page, script, name):
+    """The text of an element when a script of somebody who uses the page has run."""
+    return re.search(rf'<\w+[^>]* id="{name}"[^>]*>(.*?)</\w+>', after_drive(page, script))[1]
+
+
+def after_drive(page, script):
+    used = page.with_name("used.html")
+    text = page.read_text(encoding="utf-8")
+    used.write_text(text.replace("</body>", f"<script>{script}</script></body>"), encoding="utf-8")
+    return run(used, "--dump-dom")
+
+
+def pressed(key, more=""):
+    return f"document.dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'{more}}}));"
+
+
+def test_a_drive_opens_at_its_first_violation(drive_page):
+    dom = after_drive(drive_page, "")
+    assert '<html lang="en" class="scripted">' in dom
+    assert ">1.0 s of 5.0 s</output>" in dom
+    assert dom.count('aria-current="true"') == 1
+    assert "gap(2) 25.8 m &lt; 26.8 m" in dom
+
+
+def test_keys_of_a_drive(drive_page):
+    assert told(drive_page, pressed("ArrowRight"), "time") == "1.5 s of 5.0 s"
+    assert told(drive_page, pressed("ArrowRight", ", shiftKey: true"), "time") == "2.0 s of 5.0 s"
+    assert told(drive_page, pressed("ArrowLeft") * 2, "time") == "0.0 s of 5.0 s"
+    assert told(drive_page, pressed("End"), "time") == "5.0 s of 5.0 s"
+    assert told(drive_page, pressed(" "), "play") == "Pause"
+
+
+def test_a_violation_in_the_list_jumps_to_its_moment(drive_page):
+    click = "document.querySelectorAll('#violations button')[1].click()"
+    assert told(drive_page, click, "time") == "2.5 s of 5.0 s"
+    assert "false: 19.8 &lt; 21.3 m" in after_drive(drive_page, click)
+
+
+def test_a_drive_in_another_theme(drive_page):
+    choose = "theme.value = 'dark'; theme.dispatchEvent(new Event('change'));"
+    assert '<html lang="en" class="scripted" data-theme="dark">' in after_drive(drive_page, choose)

@@ -12,6 +12,7 @@ from rulec.logic.printing import term_text
 from rulec.monitoring.state_view import StateView
 from rulec.vocabulary import Quantity
 
+_Quantity = ltl.QuantityTerm
 _OTHERWISE: Mapping[ltl.Relation, ltl.Relation] = {
     "<": ">=",
     "<=": ">",
@@ -24,13 +25,17 @@ _OTHERWISE: Mapping[ltl.Relation, ltl.Relation] = {
 
 @dataclass(frozen=True, slots=True)
 class Margin:
-    """What stands on the left, its value, the relation that holds, and the other value."""
+    """What stands on the left, its value, the relation that holds, and the other value.
+
+    ``against`` is what stands on the right, if that is a quantity and nothing else.
+    """
 
     text: str
     value: float
     relation: ltl.Relation
     limit: float
     unit: str
+    against: str = ""
 
     @property
     def sides(self) -> str:
@@ -41,7 +46,8 @@ class Margin:
     def __str__(self) -> str:
         value, limit = _apart(self.value, self.limit)
         unit = f" {self.unit}" if self.unit else ""
-        return f"{self.text} {value}{unit} {self.relation} {limit}{unit}"
+        right = f"{self.against} {limit}".lstrip()
+        return f"{self.text} {value}{unit} {self.relation} {right}{unit}"
 
 
 def margin_in(
@@ -59,13 +65,22 @@ def margin_in(
     holds = stands(value, comparison.relation, limit)
     relation = comparison.relation if holds else _OTHERWISE[comparison.relation]
     (_, lead), *more = left
-    declaration = None
-    if isinstance(lead, ltl.QuantityTerm):
-        declaration = view.vocabulary.declarations[lead.name]
-        lead = ltl.QuantityTerm(lead.name, tuple(bound[name] for name in lead.arguments))
+    declaration = view.vocabulary.declarations[lead.name] if isinstance(lead, _Quantity) else None
     unit = declaration.unit if isinstance(declaration, Quantity) else ""
-    text = term_text(lead) + (" + …" if more else "")
-    return Margin(text, float(value), relation, float(limit), unit)
+    against = ""
+    if len(right) == 1 and right[0][0] == 1 and not comparison.limit:
+        against = _named(right[0][1], bound)
+    text = _named(lead, bound) + (" + …" if more else "")
+    return Margin(
+        text, value=float(value), relation=relation, limit=float(limit), unit=unit, against=against
+    )
+
+
+def _named(term: ltl.Term, bound: Mapping[str, str]) -> str:
+    """A term with the objects of its variables."""
+    if isinstance(term, _Quantity):
+        term = _Quantity(term.name, tuple([bound[name] for name in term.arguments]))
+    return term_text(term)
 
 
 def _apart(value: float, limit: float) -> tuple[str, str]:

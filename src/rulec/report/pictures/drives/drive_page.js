@@ -97,7 +97,13 @@ const signs = scene.signs.map(([x, y, text, name]) => {
   return { at: [x, y], mark };
 });
 
-for (const body of [...scene.bodies].reverse()) {
+// The smaller above the larger, so that nobody is hidden.
+for (const body of scene.bodies) {
+  const [ring] = body.shapes;
+  const reach = (n) => Math.max(...ring.map((place) => place[n])) - Math.min(...ring.map((place) => place[n]));
+  body.area = ring ? reach(0) * reach(1) : 0;
+}
+for (const body of [...scene.bodies].sort((one, other) => other.area - one.area)) {
   body.drawn = make(world, "g");
   body.outline = make(body.drawn, "polygon");
   body.front = make(body.drawn, "polyline", { class: "front" });
@@ -156,8 +162,8 @@ function draw() {
     const colour = colours.filter(([first]) => first <= state).pop()[1];
     const [x, y] = there(place);
     mark.setAttribute("transform", `translate(${x} ${y})`);
-    mark.firstChild.setAttribute("class", { red: "red", yellow: "yellow", redYellow: "yellow", green: "green" }[colour] || "inactive");
-    letter.textContent = colour.slice(0, 1).toUpperCase();
+    mark.firstChild.setAttribute("class", { red: "red", yellow: "yellow", redYellow: "red", green: "green" }[colour] || "inactive");
+    letter.textContent = colour === "redYellow" ? "RY" : colour.slice(0, 1).toUpperCase();
     tip.textContent = `light: ${colour}`;
     taken.push([x - 9, y - 9, x + 9, y + 9]);
   }
@@ -178,7 +184,10 @@ function draw() {
     if (now.shape !== body.last) shaped(body, now.shape);
     body.drawn.setAttribute("class", kind);
     body.outline.setAttribute("class", kind);
-    body.drawn.setAttribute("transform", `matrix(${Math.cos(now.turn)} ${Math.sin(now.turn)} ${-Math.sin(now.turn)} ${Math.cos(now.turn)} ${now.x} ${now.y})`);
+    // Never smaller than some pixels.
+    const large = Math.max(1, 5 / (body.reach * scale));
+    const [c, s] = [large * Math.cos(now.turn), large * Math.sin(now.turn)];
+    body.drawn.setAttribute("transform", `matrix(${c} ${s} ${-s} ${c} ${now.x} ${now.y})`);
     body.tip.textContent = `${body.id}, ${body.type}, ${now.speed} km/h`;
     const [x, y] = there([now.x, now.y]);
     if (x < 0 || y < 0 || x > width || y > height) continue;
@@ -241,7 +250,8 @@ function runAt(row, state) {
 
 function valueAt(row, state) {
   const run = runAt(row, state);
-  return run.length < 2 ? "not there" : run[1] === null ? "unknown" : String(run[1]);
+  const value = run.length < 2 ? "not there" : run[1] === null ? "unknown" : String(run[1]);
+  return row.narrowly[state] ? `${value}: ${row.narrowly[state]}` : value;
 }
 
 function strip(parent, row, moment) {

@@ -23,7 +23,7 @@ _AROUND_M = np.array([14.0, 9.0])
 _SMALLEST_PX = 5.0
 _MOST_LISTED = 12
 _SURFACES = {"lane": "road", "crossing": "zebra", "footway": "footway"}
-_COLOURS = {"red": "red", "yellow": "yellow", "green": "green", "redYellow": "yellow"}
+_COLOURS = {"red": "red", "yellow": "yellow", "green": "green", "redYellow": "red"}
 
 
 def drive_picture(scene: DriveScene, state: int, violation: SceneViolation | None) -> Picture:
@@ -40,7 +40,8 @@ def drive_picture(scene: DriveScene, state: int, violation: SceneViolation | Non
     against = set(violation.against) if violation else set()
     placing.taken += _boxes(scene, state, view, {scene.ego, *against})
     labels = []
-    for body in reversed(scene.bodies):
+    # The smaller above the larger, so that nobody is hidden.
+    for body in sorted(scene.bodies, key=Body.size, reverse=True):
         style = "own" if body.id == scene.ego else "against" if body.id in against else "vehicle"
         drawn = list(_body(body, state, view, style))
         marks += drawn
@@ -216,12 +217,13 @@ def _lights(scene: DriveScene, state: int, view: _View, placing: Placing) -> Ite
         if view.sees((x, y), 8):
             style = _COLOURS.get(colour, "light")
             ring = [
-                (x + 6 * np.cos(turn), y + 6 * np.sin(turn))
+                (x + 8 * np.cos(turn), y + 8 * np.sin(turn))
                 for turn in np.linspace(0, 2 * np.pi, 16, endpoint=False).tolist()
             ]
             yield Area((tuple(ring),), style, f"light: {colour}")
-            yield LabelText(colour[:1].upper(), (x, y), "middle", "ink")
-            placing.taken.append((x - 6, y - 6, x + 6, y + 6))
+            letters = "RY" if colour == "redYellow" else colour[:1].upper()
+            yield LabelText(letters, (x, y), "middle", "ink")
+            placing.taken.append((x - 8, y - 8, x + 8, y + 8))
 
 
 def _signs(scene: DriveScene, view: _View, placing: Placing) -> Iterator[Mark]:

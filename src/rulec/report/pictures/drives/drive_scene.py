@@ -76,6 +76,10 @@ class Body:
     shapes: tuple[Points, ...]
     shape: NDArray[intp]
 
+    def size(self) -> float:
+        """Length times width of its first shape (m²)."""
+        return float(np.ptp(self.shapes[0], axis=0).prod())
+
     def row(self, state: int) -> int | None:
         """The row of a state; None if it is not there."""
         row = state - self.first
@@ -101,7 +105,7 @@ class SceneViolation:
     ``short`` names the rule's strength, its article and the objects; ``against`` are these by the
     ids of their participants. ``measured`` says by how much, a line for each comparison, ``told``
     what else decides then; ``read`` is what the rule reads of these objects, ``decides`` which rows
-    of it.
+    of it, and ``narrowly`` by row and state how narrowly a signal was decided, where it is known.
     ``links`` are, by state, the nearest points of ego and the other one (x, y, x, y), NaN where one
     of them is missing; ``gaps`` the rulebook's own gap (m) to it, None where it has none.
     """
@@ -118,6 +122,7 @@ class SceneViolation:
     told: tuple[str, ...]
     read: Ribbon
     decides: frozenset[str]
+    narrowly: Mapping[str, tuple[str, ...]]
     links: NDArray[float64]
     gaps: tuple[float | None, ...]
 

@@ -24,7 +24,13 @@ def nearest_points(ego: Body, other: Body | None, states: int) -> NDArray[float6
 
 
 def _nearest(own: Points, theirs: Points) -> NDArray[float64]:
-    """The middle of all corners and feet that are as near as the nearest ones."""
+    """The middle of all corners and feet that are as near as the nearest ones.
+
+    Of bodies that overlap a place that both cover.
+    """
+    common = np.concatenate([own[_inside(own, theirs)], theirs[_inside(theirs, own)]])
+    if len(common):
+        return np.tile(common.mean(axis=0), 2)
     feet, corners = _feet(own, theirs), _feet(theirs, own)
     pairs = np.concatenate([np.hstack(feet[:2]), np.hstack(corners[1::-1])])
     distances = np.concatenate([feet[2], corners[2]])
@@ -44,3 +50,12 @@ def _feet(corners: Points, ring: Points) -> tuple[Points, Points, NDArray[float6
     nearest = distances.argmin(axis=1)
     rows = np.arange(len(corners))
     return corners, feet[rows, nearest], distances[rows, nearest]
+
+
+def _inside(points: Points, ring: Points) -> NDArray[np.bool_]:
+    """Flags of points inside a convex ring."""
+    along = np.roll(ring, -1, axis=0) - ring
+    to = points[:, None] - ring
+    across = along[:, 0] * to[..., 1] - along[:, 1] * to[..., 0]
+    inside: NDArray[np.bool_] = np.abs(np.sign(across).sum(axis=1)) == len(ring)
+    return inside

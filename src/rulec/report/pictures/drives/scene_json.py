@@ -90,7 +90,9 @@ def _violation(violation: SceneViolation) -> dict[str, Any]:
         "links": [_steps(column * _CM) for column in links[first:last].T],
         "gaps": [violation.gap_text(state) for state in range(first, last)],
         "rows": [
-            _row(row) | {"decides": row.title.split(" in ")[0] in violation.decides}
+            _row(row)
+            | {"decides": row.title.split(" in ")[0] in violation.decides}
+            | {"narrowly": violation.narrowly.get(row.title, ())}
             for row in violation.read.rows
         ],
     }

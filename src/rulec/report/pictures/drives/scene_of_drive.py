@@ -14,7 +14,7 @@ from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.to_trace import Drive
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.tracks import Tracks, tracks_of
-from rulec.monitoring.explain.explanation import Explanation, explain
+from rulec.monitoring.explain.explanation import Deciding, Explanation, explain
 from rulec.monitoring.verdict import Verdict, Violation
 from rulec.report.pictures.drives import scene_map
 from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViolation
@@ -176,6 +176,11 @@ def _violation(
         told=tuple(_told(explanation)),
         read=ribbon(trace, only, Verdict(trace.id, (violation,)), objects),
         decides=frozenset(fact.text for fact in explanation.facts if fact.decides),
+        narrowly={
+            f"{name}({item})": tuple(_sides(numbers, item, last + 1))
+            for name, numbers in drive.decided_by.items()
+            for item in objects
+        },
         links=nearest_points(bodies[drive.ego], other, last + 1),
         gaps=tuple(_gaps(drive, objects)),
     )
@@ -194,6 +199,12 @@ def _told(explanation: Explanation) -> Iterator[str]:
         value = fact.values[at]
         if fact.decides and isinstance(value, bool | str) and not any(fact.margins):
             yield f"{fact.text} {in_words(value)}"
+
+
+def _sides(numbers: Deciding, item: str, states: int) -> Iterator[str]:
+    for state in range(states):
+        margin = numbers.margin(item, state)
+        yield f"{margin.sides} {margin.unit}" if margin else ""
 
 
 def _gaps(drive: Drive, objects: Sequence[str]) -> Iterator[float | None]:
