@@ -97,6 +97,7 @@ def test_a_drive(tmp_path, capfd):
     found = texts(file)
     assert found[0].startswith("passing, ")
     assert "10 m" in found
+    assert any(one.startswith("cannot be judged from this recording: ") for one in found)
     assert draw(capfd, "drive", *PASSING, "--ego", "g.0", "--at-time", 4, "-o", file)[0] == 0
     assert texts(file)[0].startswith("passing, g.0: ")
     assert texts(file)[1] == "4 s"

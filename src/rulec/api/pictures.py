@@ -72,7 +72,7 @@ def drive_drawing(
     return Drawing(
         scene.title,
         [drive_picture(scene, state, violation)],
-        legend(drive_entries(scene, violation), scene.notes),
+        legend(drive_entries(scene, violation), []),
         page=partial(drive_page, scene, state, violation),
     )
 

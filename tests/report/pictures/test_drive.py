@@ -31,9 +31,24 @@ HOSTILE = "</script><script>alert('x')</script>&<b>"
 STATES = 9
 
 
+BOOK = """\
+rulebook near
+use road
+traffic right
+hard rule following_distance (v: vehicle) {
+  cite    "§ 4(1)"
+  says    "Keep a distance."
+  require always (behind(v) and same_lane(v) implies safe_gap(v))
+}
+hard rule warned { require never told_to_go }
+"""
+
+
 @pytest.fixture(scope="module")
-def rules():
-    return rulec.compile_rulebook("de")
+def rules(tmp_path_factory):
+    file = tmp_path_factory.mktemp("near") / "near.rules"
+    file.write_text(BOOK, encoding="utf-8")
+    return rulec.compile_rulebook(file)
 
 
 def going(number, x, y, mps, **more):
@@ -281,7 +296,7 @@ def test_without_an_ego_it_is_the_first_that_violates_a_rule(rules):
     found = replace(found, participants=found.participants[1::-1])
     verdicts = RecordingVerdicts(found, rules, RequestedDrives(), "by hand")
     drawing = drive_drawing(verdicts, kept=frozenset({"following_distance"}))
-    assert drawing.title == "made by hand, 1: 1 violation by de"
+    assert drawing.title == "made by hand, 1: 1 violation by near"
 
 
 @pytest.mark.parametrize("form", ["svg", "png", "pdf", "html"])

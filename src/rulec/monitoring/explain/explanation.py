@@ -270,7 +270,7 @@ class _ObservedStates:
         """The margins of a comparison in the states that are shown; none of one of counts."""
         if any(isinstance(term, ltl.Count) for _, term in comparison.terms):
             return ()
-        margins = [margin_in(comparison, self.bound, self.views[number]) for number in self.shown]
+        margins = [margin_in(comparison, self.bound, self.given[number]) for number in self.shown]
         return tuple([None if isinstance(one, Unknown) else one for one in margins])
 
     def changes(self, values: Sequence[object]) -> bool:

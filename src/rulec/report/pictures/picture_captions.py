@@ -95,8 +95,9 @@ def trace_title(verdict: Verdict, rules: CompiledRulebook, only: Sequence[str] =
     """The trace and its verdict, ``only`` of some rules and objects."""
     number = len(verdict.violations)
     count = f"{number:,} violation{'s' * (number != 1)}" if number else "no violation"
+    doubtful = f", {len(verdict.open):,} open" if verdict.open else ""
     chosen = f", only {', '.join(only)}" if only else ""
-    return f"{verdict.trace}: {count} by {rules.name}{chosen}"
+    return f"{verdict.trace}: {count}{doubtful} by {rules.name}{chosen}"
 
 
 def in_letters(cell: Cell) -> str:

@@ -21,7 +21,8 @@ from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViol
 from rulec.report.pictures.drives.nearest_points import nearest_points
 from rulec.report.pictures.picture_captions import trace_title
 from rulec.report.pictures.trace_ribbon import in_words, ribbon
-from rulec.report.verdicts.verdict_report import in_a_line
+from rulec.report.text.terminal_text import first_of
+from rulec.report.verdicts.verdict_report import in_a_line, open_in_words
 from rulec.scenario.recorded.recording import Points
 
 SIGHT_M = 120.0
@@ -29,6 +30,9 @@ SIGHT_M = 120.0
 
 MOST_VIOLATIONS = 50
 """So many are drawn of a drive."""
+
+MOST_OPEN = 6
+"""So many rules that are open, or cannot be judged, are named."""
 
 _KMH = 3.6
 
@@ -44,7 +48,12 @@ def drive_scene(
     A recording that was mirrored to be judged is drawn as it was recorded.
     """
     chosen = [one for one in verdict.violations if kept is None or one.rule in kept]
-    verdict = replace(verdict, violations=tuple(chosen))
+    verdict = replace(
+        verdict,
+        violations=tuple(chosen),
+        open=tuple(one for one in verdict.open if kept is None or one.rule in kept),
+        not_judged=tuple(one for one in verdict.not_judged if kept is None or one.rule in kept),
+    )
     recording = verdicts.recording
     if verdicts.mirrored:
         recording = mirrored_recording(recording)
@@ -65,7 +74,7 @@ def drive_scene(
     steps = range(first, first + len(drive.trace.states))
     return DriveScene(
         title=f"{recording.name}, {trace_title(verdict, verdicts.rules)}",
-        notes=_notes(verdicts),
+        notes=tuple(_notes(verdicts, verdict)),
         ego=drive.ego,
         start_s=drive.start_s,
         step_s=recording.step_s,
@@ -83,9 +92,20 @@ def drive_scene(
     )
 
 
-def _notes(verdicts: RecordingVerdicts) -> tuple[str, ...]:
-    mirrored = "drawn as recorded; judged as its mirror image, so that left is right in the rules"
-    return (mirrored,) * verdicts.mirrored
+def _notes(verdicts: RecordingVerdicts, verdict: Verdict) -> Iterator[str]:
+    """What else is to be known: what is open, what was not judged, how it was judged."""
+    for result in verdict.open[:MOST_OPEN]:
+        about = f" for {' and '.join(result.binding.values())}" if result.binding else ""
+        yield f"{result.rule}{about}: {open_in_words(result)}"
+    if len(verdict.open) > MOST_OPEN:
+        yield f"and {len(verdict.open) - MOST_OPEN:,} more open"
+    if verdict.not_judged:
+        names = first_of([rule.rule for rule in verdict.not_judged], MOST_OPEN)
+        yield f"cannot be judged from this recording: {names}"
+    if verdicts.defaults:
+        yield "what the recording does not tell has its default"
+    if verdicts.mirrored:
+        yield "drawn as recorded; judged as its mirror image, so that left is right in the rules"
 
 
 def _in_time(violations: Sequence[Violation]) -> list[Violation]:
