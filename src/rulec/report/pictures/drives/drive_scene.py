@@ -138,10 +138,7 @@ class SceneViolation:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class DriveScene:
-    """What is to be seen of a drive, in ``states`` states from ``start_s`` on.
-
-    ``participants``: object of the trace -> participant. ``bodies`` begin with ego.
-    """
+    """What is to be seen of a drive in ``states`` states; ``bodies`` begin with ego."""
 
     title: str
     notes: tuple[str, ...]
@@ -155,7 +152,6 @@ class DriveScene:
     signs: tuple[SceneSign, ...]
     bodies: tuple[Body, ...]
     violations: tuple[SceneViolation, ...]
-    participants: Mapping[str, str]
 
     def time_s(self, state: int) -> float:
         """The recording's time (s) of a state."""

@@ -88,7 +88,6 @@ def drive_scene(
             _violation(violation, drive, verdicts.rules, ids, participants)
             for violation in _in_time(chosen)[:MOST_VIOLATIONS]
         ),
-        participants=participants,
     )
 
 
