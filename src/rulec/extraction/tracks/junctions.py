@@ -142,7 +142,9 @@ def junctions_of(recording: Recording) -> tuple[Junction, ...]:
     junctions = []
     for name, lanelets in members.items():
         ways = tuple(_ways({lanelet.id: lanelet for lanelet in lanelets}))
-        regulated = _regulated(recording, lanelets, ways) or (False if told else None)
+        regulated = _regulated(recording, lanelets, ways)
+        if regulated is None and told:
+            regulated = False
         junctions.append(Junction(name, ways, regulated))
     return tuple(junctions)
 
@@ -192,14 +194,15 @@ def _is_no_corner(chain: tuple[Lanelet, ...]) -> bool:
 
 def _regulated(
     recording: Recording, lanelets: list[Lanelet], ways: tuple[JunctionWay, ...]
-) -> bool:
-    """True if signs or lights say who goes first, False if nothing says so."""
+) -> bool | None:
+    """True if signs or lights say who goes first, False if the map says that nothing does."""
     if any("unregulated" in lanelet.types for lanelet in lanelets):
         return False
     if any(lanelet.first is not None for lanelet in lanelets):
         return True
     entries = [entry for way in ways for entry in approaches(recording, way)]
-    return any(entry.signs & _REGULATING or entry.lights for entry in (*entries, *lanelets))
+    signed = any(entry.signs & _REGULATING or entry.lights for entry in (*entries, *lanelets))
+    return True if signed else None
 
 
 def approaches(recording: Recording, way: JunctionWay) -> list[Lanelet]:

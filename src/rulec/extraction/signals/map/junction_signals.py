@@ -142,16 +142,18 @@ def _first_crossed(context: DriveContext, front: Floats, line: float) -> list[in
 
 
 def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, float]:
-    """The places along the road between which the line of a lanelet is, the same if it is drawn.
+    """The places along the road between which the line of a lanelet is.
 
-    Where the map has no line it is somewhere between the lanelet's end and the first place in the
-    junction beyond where other ways cross or join ego's.
+    Who is beyond a line by less than ``touching_m`` stands at it. Where the map has no line it is
+    somewhere between the lanelet's end and the first place in the junction beyond where other ways
+    cross or join ego's.
     """
     lanelet, road = context.road.lanelet(piece, lane), context.road
-    end = float(road.borders[piece + 1])
+    end, touching = float(road.borders[piece + 1]), context.thresholds.touching_m
     if lanelet.stop_line is not None:
         place = float(road.line.coordinates(lanelet.stop_line.mean(axis=0)[None])[0, 0])
-        return (place, place) if abs(place - end) <= _LINE_REACH_M else (end, end)
+        if abs(place - end) <= _LINE_REACH_M:
+            return place, place + touching
     begins, passages = 0.0, context.surroundings.passages
     for further in range(piece + 1, len(road.rows)):
         edge = passages.first_meeting(road.lanelet(further, lane).id)
@@ -160,4 +162,6 @@ def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, floa
             break
     else:
         edge = None
-    return end, end if edge is None else min(begins + edge, end + _LINE_REACH_M)
+    if edge is None:
+        return end, end + touching
+    return end, max(min(begins + edge, end + _LINE_REACH_M), end + touching)

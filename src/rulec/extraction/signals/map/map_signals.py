@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.map.junction_signals import stop_line
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, rounded
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.recording import Lanelet
@@ -27,9 +28,6 @@ _CLASSES = {"highway": "motorway", "interstate": "motorway", "country": "ordinar
 def map_signals(context: DriveContext) -> SignalColumns:
     """The signals of ego's road, as far as the map knows them."""
     lanelets = _lanelets_at(context, context.ego_extents.s[0])
-    # Where ego's front was one state before, so that its sign still holds when ego crosses a line
-    front = context.ego_extents.s_max[0]
-    being_left = _lanelets_at(context, np.append(front[:1], front[:-1]))
     to_crossing = distance_to_crossing(context)
     on = to_crossing <= 0
     world = {
@@ -52,9 +50,27 @@ def map_signals(context: DriveContext) -> SignalColumns:
     for sign, (name, at_line) in _SIGNS.items():
         drawn = any(sign in lanelet.signs for lanelet in context.recording.lanelets.values())
         if drawn or sign in context.recording.complete:
-            under = being_left if at_line else lanelets
-            world[name] = np.array([sign in lanelet.signs for lanelet in under])
+            here = np.array([sign in lanelet.signs for lanelet in lanelets])
+            world[name] = _holds_to_line(context, sign) if at_line else here
     return SignalColumns(world, unknown=unknown)
+
+
+def _holds_to_line(context: DriveContext, sign: str) -> Flags:
+    """Flags of states in which a sign holds up to its line.
+
+    By where ego's front was one state before, so that the sign still holds when it crosses the line.
+    """
+    front = context.ego_extents.s_max[0]
+    before, holds = np.append(front[:1], front[:-1]), np.zeros(context.states, dtype=bool)
+    for piece, row in enumerate(context.road.rows):
+        if any(lanelet is not None and sign in lanelet.signs for lanelet in row):
+            begins = float(context.road.borders[piece])
+            for lane in np.unique(context.ego_lane).tolist():
+                if sign in context.road.lanelet(piece, lane).signs:
+                    _, line = stop_line(context, piece, lane)
+                    there = (before >= begins) & (before <= line)
+                    holds |= there & (context.ego_lane == lane)
+    return holds
 
 
 def _lanelets_at(context: DriveContext, s: Floats) -> list[Lanelet]:
