@@ -9,8 +9,6 @@ STORED = {
     "spider_left": {"red_light"},
     "priority": {"give_way_sign"},
     "all_way_stop": {"following_distance"},
-    "right_before_left": {"following_distance", "junction_priority"},
-    "roundabout": {"following_distance", "roundabout_priority"},
     "motorway": {"near_side_passing", "speed_limit"},
 }
 SIMULATED = {}

@@ -58,7 +58,7 @@ def map_signals(context: DriveContext) -> SignalColumns:
 def _holds_to_line(context: DriveContext, sign: str) -> Flags:
     """Flags of states in which a sign holds up to its line.
 
-    By where ego's front was one state before, so that the sign still holds when it crosses the line.
+    By where ego's front was one state before, so that it still holds when ego crosses the line.
     """
     front = context.ego_extents.s_max[0]
     before, holds = np.append(front[:1], front[:-1]), np.zeros(context.states, dtype=bool)

@@ -1,0 +1,91 @@
+"""Whose ways cross ego's at a junction, who is in conflict with it, and what a net's bits say."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.tracks.junctions import junctions_of
+from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.sumo.lanelets import net_lanelets
+from rulec.scenario.sumo.net import read_net
+from support.builders.drive_contexts import context_of
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+NETS = sorted((Path(__file__).parents[2] / "worlds/stored").glob("*.net.xml"))
+INSIDE = frozenset({"intersection"})
+EAST = [
+    straight(1, -60, -4, successors=(2,)),
+    straight(2, -4, 4, predecessors=(1,), successors=(3,), types=INSIDE, junction="x"),
+    straight(3, 4, 90, predecessors=(2,)),
+]
+NORTH = [
+    lanelet(4, [(0, -90), (0, -4)], successors=(5,)),
+    lanelet(5, [(0, -4), (0, 4)], predecessors=(4,), successors=(6,), types=INSIDE, junction="x"),
+    lanelet(6, [(0, 4), (0, 90)], predecessors=(5,)),
+]
+SOUTH = [
+    replace(x, left=x.right[::-1], right=x.left[::-1], centre=x.centre[::-1])
+    for x in (
+        replace(NORTH[2], predecessors=(), successors=("5",)),
+        replace(NORTH[1], predecessors=("6",), successors=("4",)),
+        replace(NORTH[0], predecessors=("5",), successors=()),
+    )
+]
+STEPS = range(16)
+
+
+def signals(road, y, heading, complete=("YIELD",)):
+    """Ego goes east at 10 m/s, its front in the other's way at 2 s, its rear past it at 2.5 s."""
+    ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
+    other = vehicle(8, {k: (0, y(k / 2)) for k in STEPS}, speed=10, heading=heading)
+    found = replace(recording([*EAST, *road], [ego, other]), complete=frozenset(complete))
+    return priority_signals(context_of(found, route=("1", "2", "3")))
+
+
+@pytest.mark.parametrize(
+    ("comes_s", "conflict"),
+    [(2.5, True), (3.0, True), (4.5, False), (6.0, False), (1.0, False)],
+    ids=["at once", "half a second later", "two seconds", "much later", "ego lets it pass"],
+)
+@pytest.mark.parametrize(
+    ("road", "side", "sign"),
+    [(NORTH, "conflict_from_right", 1), (SOUTH, "conflict_from_left", -1)],
+)
+def test_who_is_in_conflict(road, side, sign, comes_s, conflict):
+    found = signals(road, lambda t: sign * (-3 + 10 * (t - comes_s)), sign * np.pi / 2)
+    other = ({"conflict_from_left", "conflict_from_right"} - {side}).pop()
+    assert found.world[side][3] == conflict
+    assert not found.world[other].any()
+    assert not found.unknown[side].any()
+
+
+def test_one_that_would_have_come_at_once_was_held_up():
+    """It comes 2 s after ego has left, for it brakes from 10 m/s 9 m before."""
+    found = signals(NORTH, lambda t: np.interp(t, [0, 2, 4, 4.5], [-32, -12, -7, -3]), np.pi / 2)
+    assert found.world["conflict_from_right"][3]
+
+
+def test_signs_order_a_junction_where_the_map_has_them():
+    steady = lambda t: -50.0 + t  # noqa: E731
+    free = signals(NORTH, steady, np.pi / 2)
+    assert free.world["unregulated_junction"][3]
+    assert not free.unknown["unregulated_junction"][3]
+    bare = signals(NORTH, steady, np.pi / 2, complete=())
+    assert bare.unknown["unregulated_junction"][3]
+
+
+@pytest.mark.parametrize("path", NETS, ids=lambda path: path.name.split(".")[0])
+def test_ways_that_meet_are_the_foes_of_the_net(path):
+    """Geometry alone says what SUMO's `request` bits say, way by way."""
+    told = net_lanelets(read_net(path), 0.5)
+    bare = {name: replace(x, foes=None) for name, x in told.items()}
+    junctions = junctions_of(Recording("drawn", 0.5, bare, (), ()))
+    for junction in junctions:
+        for own, way in enumerate(junction.ways):
+            foes = told[way.lanelets[0].id].foes
+            for other, its in enumerate(junction.ways):
+                if own != other and foes is not None:
+                    assert (junction.meeting(own, other) is not None) == bool(foes & its.names)
