@@ -4,8 +4,8 @@ from functools import cache
 
 import pytest
 
-from support.worlds.not_yet import STORED
-from support.worlds.scoring import answers, scores, wrong
+from support.worlds.not_yet import STORED, STORED_UNDECIDED
+from support.worlds.scoring import answers, scores, undecided, wrong
 from support.worlds.stored import SMALL, StoredWorld
 
 
@@ -19,6 +19,11 @@ def judged(name):
 @pytest.mark.parametrize("name", list(SMALL))
 def test_verdicts_are_true(name):
     assert list(wrong(judged(name), STORED.get(name, ()))) == []
+
+
+@pytest.mark.parametrize("name", list(SMALL))
+def test_where_the_truth_is_known_a_verdict_is_not_open(name):
+    assert undecided(judged(name)) <= STORED_UNDECIDED.get(name, set())
 
 
 def test_something_is_planted_in_each():

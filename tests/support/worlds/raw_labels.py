@@ -13,7 +13,10 @@ _IN_LANE_M, _ALIKE_DEG = 0.9, 15.0
 _BESIDE_LANE_M = 2.8
 _LIGHT_S = 0.5
 _QUEUE_M, _QUEUE, _FLOWS_MPS = 110.0, 3, 18.0
-_BESIDE_M = (2.2, 5.5)
+_BESIDE_M, _AWAY_M, _LEVEL_M = (2.2, 5.5), 16.0, 1.0
+_AROUND_S = 2.0
+_COUNTRY_MPS = 100 / 3.6
+"""Where there is no sign one may not know the limit; so fast it may be broken."""
 
 
 def labels(recording):
@@ -44,6 +47,8 @@ def speeding(recording, track):
     reach = round(1.0 / recording.step_s)
     lowest, highest = _around(lowest, reach, min), _around(highest, reach, max)
     speed = track.speeds(recording.step_s)
+    if not recording.motorway or recording.abroad:
+        lowest[np.isinf(lowest)] = _COUNTRY_MPS
     masks = (speed > highest + _SPEED_MPS, speed > lowest - 0.1, _SPEED_S)
     yield from _graded(recording, track, "speed_limit", masks)
 
@@ -161,18 +166,19 @@ def near_side(recording, track):
         ahead, aside = x * np.cos(own) + y * np.sin(own), y * np.cos(own) - x * np.sin(own)
         reach = (track.length + other.length) / 2
         alike = np.abs(_turned(track.headings[rows] - own)) < np.radians(60)
-        for begin, end in runs((np.abs(ahead) <= reach) & alike & (np.abs(aside) < 12)):
-            if begin == 0 or end == len(rows) - 1 or ahead[begin] > 0 or ahead[end] < 0:
+        level = (np.abs(ahead) <= reach - _LEVEL_M) & alike & (np.abs(aside) < _AWAY_M)
+        for begin, end in runs(level):
+            if ahead[begin] > 0 or ahead[end] < 0 or aside[begin : end + 1].min() > 0:
                 continue
-            if aside[begin : end + 1].min() > 0:
-                continue
-            steady = (-aside[begin - 1 : end + 2] > _BESIDE_M[0]).all()
-            steady &= (-aside[begin - 1 : end + 2] < _BESIDE_M[1]).all()
+            whole = begin > 0 and end < len(rows) - 1 and (np.abs(ahead[[0, -1]]) > reach + 1).all()
+            steady = (-aside[begin : end + 1] > _BESIDE_M[0]).all()
+            steady &= (-aside[begin : end + 1] < _BESIDE_M[1]).all()
             free = speed[rows[begin : end + 1]].min() > _FLOWS_MPS
             free &= other.speeds(recording.step_s)[theirs[begin : end + 1]].min() > _FLOWS_MPS
             free &= not _dense(recording, track, rows[begin])
-            sure = steady and free and recording.motorway
-            at = [(track.first + rows[k]) * recording.step_s for k in (begin - 1, end + 1)]
+            sure = whole and steady and free and recording.motorway
+            around = [float(track.first + rows[k]) * recording.step_s for k in (begin, end)]
+            at = around[0] - _AROUND_S, around[1] + _AROUND_S
             yield Fact(track.id, "near_side_passing", *at, bool(sure), other.id)
 
 

@@ -107,6 +107,7 @@ class RawRecording:
     def __init__(self, file):
         root = ElementTree.parse(file).getroot()
         self.step_s = float(root.get("timeStepSize"))
+        self.abroad = not file.name.startswith("DEU")
         self.motorway = any(name in file.name for name in _MOTORWAYS)
         signs = {one.get("id"): _limits(one) for one in root.iter("trafficSign")}
         self.lights = {one.get("id"): _cycle(one) for one in root.iter("trafficLight")}

@@ -132,14 +132,18 @@ def _during(fact, at):
 
 
 def wrong(by_rule, exempt=()):
-    """What is not right about scores, line by line, apart from some rules."""
+    """Each false accusation and each missed violation, apart from some rules."""
     for rule, score in by_rule.items():
         if rule not in exempt:
             yield from (f"falsely accused: {line}" for line in score.false)
             yield from (f"missed: {line}" for line in score.missed)
-            undecided = score.planted - score.found - len(score.missed)
-            if undecided:
-                yield f"{rule}: {undecided} of {score.planted} violations are not decided"
+
+
+def undecided(by_rule):
+    """The rules under which true violations are open, or not judged."""
+    return {
+        rule for rule, score in by_rule.items() if score.planted > score.found + len(score.missed)
+    }
 
 
 def table(by_kind):
