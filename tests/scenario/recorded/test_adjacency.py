@@ -53,3 +53,7 @@ def test_pavements_are_no_neighbours():
 def test_lanes_side_by_side_in_a_junction_lead_different_ways():
     across = lanelet(3, [(50, -30), (50, 30)])
     assert neighbours(straight(1, 0, 100), straight(2, 0, 100, y=4), across) == (set(), ())
+
+
+def test_short_lanes_side_by_side_may_lead_different_ways():
+    assert neighbours(straight(1, 0, 25), straight(2, 0, 25, y=4)) == (set(), ())

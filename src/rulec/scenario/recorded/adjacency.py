@@ -20,6 +20,9 @@ BORDER_M = 0.5
 WHOLE = 0.9
 """Lanelets whose borders are one for so much of either are neighbours."""
 
+LONG_M = 30.0
+"""Shorter ones side by side, as where turning lanes begin, may lead different ways."""
+
 _EVERY_M = 2.0
 _LIKE = cos(radians(30))
 _NAMED = 3
@@ -96,7 +99,7 @@ def with_neighbours(recording: Recording) -> Recording:
     found = []
     for pair in sorted(bordering(lanelets.values()), key=lambda pair: -pair.part):
         right, left = lanelets[pair.right.id], lanelets[pair.left.id]
-        if pair.part < WHOLE or crossed.intersection((right.id, left.id)):
+        if pair.part < WHOLE or pair.length < LONG_M or crossed.intersection((right.id, left.id)):
             continue
         if right.left_of is not None or left.right_of is not None:
             continue
