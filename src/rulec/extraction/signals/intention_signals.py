@@ -44,7 +44,7 @@ def intention_signals(context: DriveContext) -> SignalColumns:
             "emergency_vehicle_near": np.any(near & ~blue_told, axis=0) & ~comes,
         },
     )
-    if hazard_told.any():
+    if any("hazard_lights" in body.shows for body in context.recording.participants):
         warns = hazard | blue
         signals |= SignalColumns(
             about={"warning_lights": warns}, unknown={"warning_lights": ~hazard_told & ~warns}

@@ -15,6 +15,7 @@ from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.recording import Lanelet
 
 _OUTSIDE = frozenset({"country", "rural", "highway", "interstate"})
+_SETTINGS = _OUTSIDE | {"urban"}
 _URBAN_KMH = 70.0
 """In built-up areas limits are hardly higher."""
 
@@ -33,7 +34,7 @@ def road_signals(context: DriveContext) -> SignalColumns:
     lanes = context.ego_lane.tolist()
     own = [context.road.lanelet(*pair) for pair in zip(pieces.tolist(), lanes, strict=True)]
     is_town = _by_lanelet(own, _town(context))
-    if any(value is not None for value in is_town):
+    if any(_SETTINGS & lanelet.types for lanelet in context.recording.lanelets.values()):
         world["built_up"], unknown["built_up"] = _told(is_town)
     for number, name in enumerate(("one_way", "divided")):
         told = _by_lanelet(own, lambda x: context.surroundings.directions(x)[number])  # noqa: B023
