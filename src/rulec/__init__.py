@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from rulec.extraction.selection import RequestedDrives as RequestedDrives
     from rulec.extraction.to_trace import Drive as Drive
     from rulec.extraction.traffic_thresholds import Thresholds as Thresholds
+    from rulec.monitoring.assumptions import Assumptions as Assumptions
     from rulec.monitoring.batch.verdict_columns import VerdictColumns as VerdictColumns
     from rulec.monitoring.explain.explanation import Explanation as Explanation
     from rulec.monitoring.online.monitor_state import SoFar as SoFar
@@ -95,6 +96,8 @@ if TYPE_CHECKING:
     from rulec.trace.trace_columns import TraceColumns as TraceColumns
     from rulec.trace.trace_columns import layout_of as layout_of
     from rulec.vocabulary import Vocabulary as Vocabulary
+    from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN
+    from rulec.vocabulary.partial_values import Interval as Interval
 
 _HOME = {
     "rulec.analysis.audit.rulebook_audit": "Audit AuditCounts AuditFinding CitedArticle",
@@ -119,6 +122,7 @@ _HOME = {
     "rulec.extraction.selection": "RequestedDrives",
     "rulec.extraction.to_trace": "Drive",
     "rulec.extraction.traffic_thresholds": "Thresholds",
+    "rulec.monitoring.assumptions": "Assumptions",
     "rulec.monitoring.batch.verdict_columns": "VerdictColumns",
     "rulec.monitoring.explain.explanation": "Explanation",
     "rulec.monitoring.online.monitor_state": "SoFar VerdictChange",
@@ -140,6 +144,7 @@ _HOME = {
     "rulec.trace": "Trace TraceGraph",
     "rulec.trace.trace_columns": "TraceCells TraceColumns layout_of",
     "rulec.vocabulary": "Vocabulary",
+    "rulec.vocabulary.partial_values": "UNKNOWN Interval",
 }
 """The names that each module gives."""
 

@@ -45,11 +45,11 @@ def test_the_same_verdicts(road, book, form, tmp_path, capsys):
     found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert found == expected
     assert [line["trace"] for line in found] == ["3", "4", "5"]
-    # 4 follows 3 with a gap of 4 m at 14 m/s, against which Britain only advises; the paper has no
-    # rule about it
-    broken = [violation["rule"] for violation in found[1]["violations"]]
-    assert ("following_distance" in broken) == (book != "esterle2019")
-    assert status == (book == "nl")
+    # 4 follows 3 with a gap of 4 m at 14 m/s. Where cutting in is borne for a while, it is open: 3
+    # may have come there before the first state
+    broken = [result["rule"] for result in found[1].get("open", [])]
+    assert ("following_distance" in broken) == (book == "nl")
+    assert status == 0
 
 
 def test_one_ego(road, tmp_path, capsys):

@@ -4,6 +4,7 @@ import csv
 import io
 import subprocess
 import sys
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -24,7 +25,8 @@ from rulec.trace.formats import csv_table, table_reader
 from rulec.trace.formats import table_blocks as trace_blocks
 from rulec.trace.formats.arrow import arrow_blocks
 from rulec.trace.formats.table_blocks import Block
-from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
+from rulec.trace.formats.trace_files import is_partial, kinds_in, read_chunks, write_traces
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.rulebooks import compile_here
 from support.generators.random_records import chunks, rulebooks, told
 
@@ -194,7 +196,8 @@ def drive(chance, number):
 def written(traces, form):
     stream = io.BytesIO()
     kinds = kinds_in(state for trace in traces for state in trace.states)
-    write_traces(traces, stream, "t", form, kinds)
+    partial = any(map(is_partial, traces))
+    write_traces(traces, stream, "t", form, kinds, partial=partial)
     return stream.getvalue()
 
 
@@ -215,6 +218,30 @@ def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
     for module in (table_reader, arrow_blocks):
         monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
     assert by_columns(data, form, traffic(), block_bytes) == alone
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_only_traces_of_which_something_is_not_known_are_read(form, monkeypatch):
+    traces = list(drives()[:100])
+    for place, change in ((5, {"rain": UNKNOWN}), (20, {"yields_to": UNKNOWN})):
+        states = ({**traces[place].states[0], **change}, *traces[place].states[1:])
+        traces[place] = replace(traces[place], states=states)
+    traces[70] = replace(traces[70], ends="cut")
+    alone = [verify_or_reason(trace, traffic()) for trace in traces]
+    data, read = written(traces, form), []
+    for module in (table_reader, arrow_blocks):
+        monkeypatch.setattr(module, "traces_in", noted(module.traces_in, read))
+    assert by_columns(data, form, traffic()) == alone
+    assert read == ["t5", "t20", "t70"]
+
+
+def noted(traces_in, read):
+    def noting(*arguments):
+        for trace in traces_in(*arguments):
+            read.append(trace.id)
+            yield trace
+
+    return noting
 
 
 @pytest.mark.parametrize(

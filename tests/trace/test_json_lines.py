@@ -13,6 +13,7 @@ from rulec.trace import Trace
 from rulec.trace.formats import json_line_problems, json_lines
 from rulec.trace.formats.json_lines import read_chunks, write_traces
 from rulec.trace.formats.stream_lines import lines_as_they_come
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 GOOD = {
     "id": "t1",
@@ -275,3 +276,41 @@ def test_lines_are_the_same_however_they_arrive(parts, chance):
     expected = b"\n".join(parts).split(b"\n")
     # After the last line feed nothing begins.
     assert found == (expected if expected[-1] else expected[:-1])
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (
+            '{"from": 2, "to": 1}',
+            "in state 1 `speed`: an interval has finite bounds, the lower one",
+        ),
+        ('{"from": 1}', "is an interval without a number for `from` or `to`"),
+        ('{"to": 1}', "is an interval without a number for `from` or `to`"),
+        ('{"from": null, "to": 1}', "is an interval without a number for `from` or `to`"),
+        ('{"from": true, "to": 1}', "is an interval without a number for `from` or `to`"),
+        ('{"from": {"from": 1, "to": 2}, "to": 1}', "is an interval without a number"),
+        ('{"from": NaN, "to": 1}', "invalid character"),
+        ('{"from": 1, "to": 1e999}', "out of range"),
+    ],
+)
+def test_what_is_no_interval(value, words):
+    (error,) = read(f'{{"states": [{{}}, {{"speed": {value}}}]}}\n'.encode())
+    assert words in str(error)
+    assert "R0501" in str(error)
+
+
+def test_intervals():
+    huge = 10**400
+    text = f'{{"states": [{{"speed": {{"\\u0066rom": 1, "to": {huge}}}}}, {{"speed": null}}]}}\n'
+    (trace,) = read(text.encode())
+    assert trace.states == ({"speed": Interval(1, huge)}, {"speed": UNKNOWN})
+
+
+def test_objects_called_from_and_to():
+    about = {"from": 1, "to": 2}
+    both = line(objects={"from": "car", "to": "car"}, states=[{"gap": about}])
+    one = line(objects={"from": "car"}, states=[{"gap": {"from": about}, "speed": about}])
+    first, second = read(both + one)
+    assert first.states == ({"gap": about},)
+    assert second.states == ({"gap": {"from": Interval(1, 2)}, "speed": Interval(1, 2)},)

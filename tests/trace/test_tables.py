@@ -14,10 +14,12 @@ from rulec.trace.formats import csv_table
 from rulec.trace.formats.trace_files import (
     columns_for,
     format_of,
+    is_partial,
     kinds_in,
     read_chunks,
     write_traces,
 )
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 pyarrow = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
@@ -86,6 +88,32 @@ def test_an_object_may_be_in_any_rows_between_its_first_and_last():
     assert trace.states == ({"p": {"v": True}}, {}, {"p": {"v": True}}, {})
 
 
+def test_what_is_not_known():
+    head = "trace,step,object,type,ends,told,speed,gap,gap.from,gap.to\n"
+    (trace,) = read_text(head + "t,0,,,cut,gap speed,?,,,\nt,0,v,car,,,,,1,2.5\nt,1,v,,,,,?,,\n")
+    assert trace.states == (
+        {"speed": UNKNOWN, "gap": {"v": Interval(1, 2.5)}},
+        {"gap": {"v": UNKNOWN}},
+    )
+    assert (trace.ends, trace.told) == ("cut", {"gap", "speed"})
+
+
+def test_parquet_says_what_is_not_known_in_lists():
+    texts = pyarrow.list_(pyarrow.string())
+    data = table(
+        trace=["t", "t", "t"],
+        step=[0, 0, 1],
+        object=[None, "v", "v"],
+        type=[None, "car", None],
+        told=pyarrow.array([["gap", "speed"], None, None], texts),
+        unknown=pyarrow.array([["speed"], ["gap"], []], texts),
+        speed=pyarrow.array([None, None, None], pyarrow.float64()),
+    )
+    (trace,) = read(data, "parquet")
+    assert trace.states == ({"speed": UNKNOWN, "gap": {"v": UNKNOWN}}, {})
+    assert (trace.ends, trace.told) == ("complete", {"gap", "speed"})
+
+
 HEAD = "trace,step,object,type,other,p\n"
 
 
@@ -118,6 +146,17 @@ HEAD = "trace,step,object,type,other,p\n"
         (HEAD + "t,0,v,car,,true\nt,0,v,car,v,true\n", 3, "gives `p` twice for `v, v`", ""),
         ("trace,step,step_s\nt,0,x\n", 2, "`step_s` is `x`", ""),
         ("trace,step,step_s\nt,0,1\nt,1,2\n", 3, "`step_s` is `2`; in the rows before it is 1", ""),
+        ("trace,step,step_s\nt,0,?\n", 2, "`step_s` is `?`", ""),
+        ("trace,step,p.from\n", 1, "a column `p.from`, but no `p.to`", "has both"),
+        ("trace,step,p.from,p.to\nt,0,1,\n", 2, "`p.to` is empty", "has both"),
+        ("trace,step,p.from,p.to\nt,0,?,1\n", 2, "`p.from` is `?`", "has both"),
+        ("trace,step,p.from,p.to\nt,0,nan,1\n", 2, "`p.from` is `nan`", "has both"),
+        ("trace,step,p.from,p.to\nt,0,2,1\n", 2, "the lower one first", ""),
+        ("trace,step,p.from,p.to\nt,0,2,1e999\n", 2, "finite bounds", ""),
+        ("trace,step,p,p.from,p.to\nt,0,?,1,2\n", 2, "step 0 gives `p` twice", ""),
+        ("trace,step,ends\nt,0,cat\n", 2, "it is `complete` or `cut`", ""),
+        ("trace,step,ends\nt,0,cut\nt,1,complete\n", 3, "before it is `cut`", ""),
+        ("trace,step,told\nt,0,a b\nt,1,a\n", 3, "other names than in the rows before", ""),
         (HEAD + 't,0,,,,"true', 2, "it ends within quotes", "is one missing"),
         (HEAD + 't,0,,,,"true"x\n', 2, "behind closing quotes", "is one missing"),
         (HEAD + f"t,0,,,,{'x' * 200_000}\n", 2, "more than 131,072 characters", ""),
@@ -171,7 +210,11 @@ def test_the_end_of_a_name_says_the_format():
 
 names = st.text("abc é,\"'\n;", min_size=1, max_size=4)
 numbers = st.floats(allow_nan=False, allow_infinity=False)
-kinds = st.sampled_from([st.booleans(), numbers, st.sampled_from(["R_cw", "a b", "x,y"])])
+intervals = st.lists(numbers, min_size=2, max_size=2).map(lambda ends: Interval(*sorted(ends)))
+partial_numbers = numbers | intervals
+words = st.sampled_from(["R_cw", "a b", "x,y"])
+plain = st.sampled_from([st.booleans(), partial_numbers, words])
+kinds = plain.map(lambda values: values | st.just(UNKNOWN))
 
 
 @st.composite
@@ -205,7 +248,10 @@ def traces(draw):
             state["near"] = draw(st.dictionaries(about, pairs))
             states.append({name: value for name, value in state.items() if value != {}})
         step_s = draw(st.floats(1e-3, 1e3))
-        found.append(Trace(f"t{number}", step_s, objects, tuple(states), present))
+        ends = draw(st.sampled_from(["complete", "cut"]))
+        told = draw(st.none() | st.frozensets(st.sampled_from(["speed", "gap"])))
+        written = Trace(f"t{number}", step_s, objects, tuple(states), present, ends=ends, told=told)
+        found.append(written)
     return found
 
 
@@ -214,7 +260,8 @@ def traces(draw):
 def test_written_traces_read_back(form, written):
     stream = io.BytesIO()
     found = kinds_in(state for trace in written for state in trace.states)
-    write_traces(written, stream, "t", form, found)
+    partial = any(map(is_partial, written))
+    write_traces(written, stream, "t", form, found, partial=partial)
     assert read(stream.getvalue(), form) == written
 
 

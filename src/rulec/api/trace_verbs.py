@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rulec.diagnostics import RulecError
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives
+    from rulec.monitoring.assumptions import Assumptions
     from rulec.monitoring.batch.verdict_columns import VerdictColumns
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.report.pictures.drawing.picture_formats import Format as PictureFormat
@@ -39,25 +40,34 @@ class TraceVerbs(SessionSettings):
     def write_traces(self, traces: Iterable[Trace], path: str | Path) -> None:
         """Write traces in the format of the file's name. Raises RulecError."""
         from rulec.files import written_whole
-        from rulec.trace.formats.trace_files import format_of, kinds_in, write_traces
+        from rulec.trace.formats.trace_files import format_of, is_partial, kinds_in, write_traces
 
         listed = list(traces)
         kinds = kinds_in(state for trace in listed for state in trace.states)
+        partial = any(map(is_partial, listed))
+        form = format_of(str(path))
         with written_whole(Path(path)) as stream:
-            write_traces(iter(listed), stream, str(path), format_of(str(path)), kinds)
+            write_traces(iter(listed), stream, str(path), form, kinds, partial=partial)
 
-    def verify(self, trace: Trace, rules: Rules) -> Verdict:
+    def verify(self, trace: Trace, rules: Rules, assumptions: Assumptions | None = None) -> Verdict:
         """Judge a trace by every rule, for every binding of its variables.
+
+        ``assumptions`` say what holds where the trace does not tell, and how it ends.
 
         Raises:
             RulecError: R0501 to R0508 if it is no trace, or the rules cannot judge it.
         """
         from rulec.monitoring.verify import verify
 
+        if assumptions is not None:
+            trace = assumptions.applied(trace)
         return verify(trace, self._compiled(rules))
 
     def verify_many(
-        self, traces: Iterable[Trace | RulecError], rules: Rules
+        self,
+        traces: Iterable[Trace | RulecError],
+        rules: Rules,
+        assumptions: Assumptions | None = None,
     ) -> Iterator[Verdict | NotJudged]:
         """Judge many traces fast, and yield their verdicts in order.
 
@@ -65,6 +75,8 @@ class TraceVerbs(SessionSettings):
         """
         from rulec.monitoring.batch.batch_verify import verify_many
 
+        if assumptions is not None:
+            traces = (assumptions.of([item])[0] for item in traces)
         return verify_many(traces, self._compiled(rules))
 
     def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:

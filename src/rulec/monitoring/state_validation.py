@@ -148,6 +148,8 @@ def _check_value(
             message = f"{where} says `{name}` is {_shown(value)}; {expected}"
             raise UNFITTING_VALUE.error(place, message, help=way_out)
         return
+    if value is UNKNOWN:
+        return  # of all objects
     # Asking for a mapping takes far longer than asking for a dictionary.
     if type(value) is not dict and not isinstance(value, Mapping):
         message = f"{where} gives `{name}` one value; it is about each `{parameters[0]}`"

@@ -30,7 +30,9 @@ class StateView:
         # As value_in, which is not called because this is asked of every object in every state.
         value: Any = self.state.get(name)
         for item in items:
-            value = value.get(item) if value is not None else None
+            if value is None or value is UNKNOWN:
+                break
+            value = value.get(item)
         if value is None:
             value = self.vocabulary.declarations[name].default
         if value is None or value is UNKNOWN or type(value) is Interval:
@@ -52,8 +54,13 @@ class StateView:
 def value_in(
     state: State, name: str, objects: Sequence[str], declaration: Declaration
 ) -> PartialValue | None:
-    """Value in a state, or its default; None if there is neither."""
+    """Value in a state, or its default; None if there is neither.
+
+    A name that is unknown itself is unknown of all objects.
+    """
     value: Any = state.get(name)
     for item in objects:
-        value = value.get(item) if value is not None else None
+        if value is None or value is UNKNOWN:
+            break
+        value = value.get(item)
     return declaration.default if value is None else value

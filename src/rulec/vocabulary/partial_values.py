@@ -35,7 +35,7 @@ class Interval:
 
     def __post_init__(self) -> None:
         if not float("-inf") < self.low <= self.high < float("inf"):
-            raise ValueError(f"an interval from {self.low} to {self.high} has no numbers in it")
+            raise ValueError("an interval has finite bounds, the lower one first")
 
 
 UNKNOWN_TYPES = frozenset({UnknownValue, Interval})

@@ -143,7 +143,7 @@ def _write_drives(
     with progress(f"writing {output}", len(result.egos)) as tell:
         form = form or format_of(str(output))
         with output_stream(output) as (stream, name):
-            write_traces(traces(), stream, name, form, kinds)
+            write_traces(traces(), stream, name, form, kinds, partial=True)
     print_written(f"{count:,} drives to {output}", output)
 
 

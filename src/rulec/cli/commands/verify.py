@@ -27,10 +27,12 @@ from rulec.report.text.console import page_width, print_result, progress
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.extraction.selection import RequestedDrives
+    from rulec.monitoring.assumptions import Assumptions
     from rulec.monitoring.explain.explanation import Deciding, Explanation
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
+    from rulec.trace.trace_model import Ending
 
     Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
 
@@ -55,6 +57,13 @@ if TYPE_CHECKING:
 )
 @shared.table_format_option("traces")
 @click.option(
+    "--end",
+    "ends",
+    type=click.Choice(["cut", "complete"]),
+    help="Of traces: cut out of something longer, or over at their end.  [default: as the file "
+    "says, else complete]",
+)
+@click.option(
     "--ego",
     "egos",
     multiple=True,
@@ -72,6 +81,7 @@ def command(
     every_part: bool,
     strict: bool,
     form: Format | None,
+    ends: Ending | None,
     json_output: bool,
     at: str,
     net: Path | None,
@@ -93,17 +103,21 @@ def command(
 
     rules = read_machines(rulebook, at)
     recordings = [file for file in files if is_recording(file)]
-    option = scenario_options.given_drives_option({"net": net, "egos": egos, **options})
+    about = {name: value for name, value in options.items() if name != "assumed"}
+    option = scenario_options.given_drives_option({"net": net, "egos": egos, **about})
     if option and not recordings:
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
     run = _Run(rules, json_output, Complaints(), to_explain, every_part=every_part, strict=strict)
+    if ends is not None and recordings:
+        raise click.UsageError("--end is for traces; a recording is always cut.")
     if recordings:
-        about = scenario_options.requested_drives(egos, options, rules.vocabulary)
+        request = scenario_options.requested_drives(egos, options, rules.vocabulary)
         for file in recordings:
-            run.recording(file, net, about)
+            run.recording(file, net, request)
     if len(recordings) < len(files):
-        run.traces([file for file in files if file not in recordings], form)
+        assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
+        run.traces([file for file in files if file not in recordings], form, assumed)
     run.complaints.close()
     return ExitStatus.after(answered=run.judged and not run.not_answered, failed=run.violated)
 
@@ -122,7 +136,7 @@ class _Run:
     judged: bool = False
     not_answered: bool = False
 
-    def traces(self, files: Sequence[str], form: Format | None) -> None:
+    def traces(self, files: Sequence[str], form: Format | None, assumed: Assumptions) -> None:
         """Judge the traces of files, with one summary for all of them."""
         # Tables of automata and verdicts, 230 ms: not for --help, and not for recordings alone.
         from rulec.monitoring.batch.batch_verify import rulebook_for
@@ -131,7 +145,7 @@ class _Run:
 
         counts: Counter[bool | None] = Counter()
         not_judged = 0
-        for traces, place, answer in _answers(files, form, self.rules):
+        for traces, place, answer in _answers(files, form, self.rules, assumed):
             if isinstance(answer, NotJudged):
                 not_judged += 1
                 self._complain(answer.error)
@@ -222,7 +236,7 @@ class _Run:
 
 
 def _answers(
-    files: Sequence[str], form: Format | None, rules: CompiledRulebook
+    files: Sequence[str], form: Format | None, rules: CompiledRulebook, assumed: Assumptions
 ) -> Iterator[Answer]:
     """Traces, which of them, and its verdict, or why there is none."""
     # Tables of automata, 160 ms: as for ``_Run.traces``.
@@ -235,7 +249,7 @@ def _answers(
     ) -> Iterator[Answer]:
         with progress(f"judging {name}", size) as tell:
             for chunk in read_chunks(stream, name, form):
-                traces, answers = verify_items(chunk, rules)
+                traces, answers = verify_items(assumed.of(chunk), rules)
                 for place, answer in enumerate(answers):
                     yield traces, place, answer
                 if size is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,10 @@ from rulec.cli.options.shell_completion import complete_scenarios
 
 if TYPE_CHECKING:
     from rulec.extraction.selection import RequestedDrives
+    from rulec.monitoring.assumptions import Assumptions
     from rulec.scenario import Scenario
+    from rulec.trace import Value
+    from rulec.trace.trace_model import Ending
     from rulec.vocabulary import Vocabulary
 
 _WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
@@ -147,8 +150,8 @@ drives_options = combined(
             "assumed",
             multiple=True,
             metavar="NAME=VALUE",
-            help="In recorded traffic: what holds all along, such as built_up=true; or `defaults`: "
-            "what the recording does not tell has its default, and nothing comes after its end.",
+            help="What holds wherever a trace does not tell, in recorded traffic always, such as "
+            "built_up=true; or `defaults`: what is not told has its default, and the end is one.",
         ),
         click.option(
             "--threshold",
@@ -199,3 +202,20 @@ def requested_drives(
         )
     except ValueError as problem:
         raise click.UsageError(f"{problem}.") from None
+
+
+def assumptions(ends: Ending | None, texts: Sequence[str], vocabulary: Vocabulary) -> Assumptions:
+    """What traces are assumed to say. Raises click.UsageError."""
+    # Tables of automata, 160 ms: not for --help.
+    from rulec.monitoring.assumptions import Assumptions
+
+    values: Mapping[str, Value] = {}
+    if named := [text for text in texts if text != "defaults"]:
+        # numpy and shapely, 150 ms: only where values are assumed.
+        from rulec.extraction.selection import assumption_options
+
+        try:
+            values = assumption_options(named, vocabulary)
+        except ValueError as problem:
+            raise click.UsageError(f"{problem}.") from None
+    return Assumptions(ends, values, len(named) < len(texts))

@@ -211,6 +211,8 @@ def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> Compil
 def _verify_block(block: Block, rulebook: CompiledRulebook) -> list[Answer] | None:
     """None if something is odd about the block."""
     answers: list[Answer | None] = [None] * len(block)
+    if len(block.partial) * 2 > len(block):
+        return None
     try:
         presence = outlined(block)
         groups = groups_of(block, presence)

@@ -15,7 +15,10 @@ def completed(trace: Trace, vocabulary: Vocabulary) -> Trace:
     """The trace with defaults for what is unknown, or the least that a value can be."""
     declarations = vocabulary.declarations
     states = tuple(
-        {name: _known(value, declarations[name]) for name, value in state.items()}
+        {
+            name: _known(value, declarations[name], len(declarations[name].parameters))
+            for name, value in state.items()
+        }
         for state in trace.states
     )
     return replace(trace, states=states, ends="complete", told=None)
@@ -30,9 +33,11 @@ def with_all_defaults(vocabulary: Vocabulary) -> Vocabulary:
     return Vocabulary(vocabulary.name, vocabulary.types, declarations)
 
 
-def _known(value: Any, declaration: Declaration) -> Any:
+def _known(value: Any, declaration: Declaration, depth: int) -> Any:
     if isinstance(value, Mapping):
-        return {name: _known(inner, declaration) for name, inner in value.items()}
+        return {name: _known(inner, declaration, depth - 1) for name, inner in value.items()}
+    if depth:
+        return {}  # unknown of all objects
     if isinstance(value, Interval):
         return value.low
     return any_value(declaration) if value is UNKNOWN else value

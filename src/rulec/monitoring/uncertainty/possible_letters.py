@@ -138,7 +138,7 @@ class PossibleLetters:
             default: Any = self._vocabulary.declarations[name].default
             given: Any = [state.get(name) for state in self._trace.states]
             for item in items:
-                given = [None if inner is None else inner.get(item) for inner in given]
+                given = [x if x is None or x is UNKNOWN else x.get(item) for x in given]
             self._given[name, items] = [default if value is None else value for value in given]
         return self._given[name, items]
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from math import prod
-from typing import Any
+from typing import Any, cast
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine
@@ -32,8 +32,8 @@ from rulec.monitoring.uncertainty.possible_letters import (
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
 from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged, Verdict, Violation
 from rulec.trace import State, Trace, Value
-from rulec.vocabulary import Declaration, Enumeration, Signal
-from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
+from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
 
 MOST_ALTERNATIVES = 1 << 6
 """Values of what does not change are gone through as long as there are no more combinations."""
@@ -52,7 +52,7 @@ class _UncertainRun:
     """The judgement of one trace, with what its rules share."""
 
     def __init__(self, trace: Trace, rulebook: CompiledRulebook) -> None:
-        self.trace = trace
+        self.trace = spelled_out(trace, rulebook.vocabulary)
         self.rulebook = rulebook
         self._untold = untold_names(rulebook.vocabulary, trace.told)
         self.vocabulary = with_untold(rulebook.vocabulary, self._untold)
@@ -181,6 +181,35 @@ class _UncertainRun:
         return [
             dict(zip(options, chosen, strict=True)) for chosen in product(*options.values())
         ], is_exact
+
+
+def spelled_out(trace: Trace, vocabulary: Vocabulary) -> Trace:
+    """The trace in which a name that is unknown itself is unknown of each object."""
+    wanted = {
+        name: item.parameters for name, item in vocabulary.declarations.items() if item.parameters
+    }
+
+    def each(value: Any, kinds: Sequence[str]) -> Any:
+        if not kinds or (value is not UNKNOWN and not isinstance(value, Mapping)):
+            return value
+        given: Any = value
+        if value is UNKNOWN:
+            own = trace.objects.items()
+            given = {item: UNKNOWN for item, kind in own if vocabulary.is_subtype(kind, kinds[0])}
+        return {item: each(inner, kinds[1:]) for item, inner in given.items()}
+
+    if not any(
+        name in wanted
+        and (value is UNKNOWN or (len(wanted[name]) > 1 and UNKNOWN in cast("Any", value).values()))
+        for state in trace.states
+        for name, value in state.items()
+    ):
+        return trace
+    states = [
+        {name: each(value, wanted.get(name, ())) for name, value in state.items()}
+        for state in trace.states
+    ]
+    return replace(trace, states=tuple(states))
 
 
 def _supposed(states: Sequence[State], values: Mapping[Subject, Value]) -> Iterator[State]:

@@ -156,7 +156,7 @@ def _known(value: PartialValue | None) -> Value | None:
 def _said(state: State, name: str, objects: Sequence[str]) -> bool:
     value: Any = state.get(name)
     for item in objects:
-        value = value.get(item) if value is not None else None
+        value = value.get(item) if isinstance(value, Mapping) else value
     return value is not None
 
 

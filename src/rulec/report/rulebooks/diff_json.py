@@ -13,6 +13,7 @@ from rulec.logic.printing import number_in_words
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.rulebook.rulebook_model import Certainty, Rule, Strength, Variable
 from rulec.trace import Trace
+from rulec.trace.trace_model import Ending
 
 
 class BookData(JsonPart, frozen=True, kw_only=True):
@@ -44,6 +45,8 @@ class TraceData(JsonPart, frozen=True, kw_only=True):
     objects: Mapping[str, str]
     states: Sequence[Mapping[str, Any]]
     present: Mapping[str, tuple[int, int]] | UnsetType = UNSET
+    ends: Ending | UnsetType = UNSET
+    told: Sequence[str] | UnsetType | None = UNSET
 
 
 class RulePairData(JsonPart, frozen=True, kw_only=True):

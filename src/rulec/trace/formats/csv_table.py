@@ -13,7 +13,8 @@ from typing import IO, cast
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats import table_reader as tables
 from rulec.trace.formats.stream_lines import foreign, not_utf8, placed
-from rulec.trace.trace_model import Trace, Value
+from rulec.trace.trace_model import Trace
+from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
 LARGE_BYTES = 1 << 22
 """Of a smaller file the rows are read sooner than Arrow is."""
@@ -21,7 +22,7 @@ LARGE_BYTES = 1 << 22
 _LONGEST_HEAD_BYTES = 1 << 16
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
-_BOOLEANS = {"true": True, "false": False}
+_WORDS_OF_VALUES: dict[str, PartialValue] = {"true": True, "false": False, "?": UNKNOWN}
 
 
 def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
@@ -160,14 +161,14 @@ def _not_utf8(stream: IO[bytes], place: SourceLocation, reason: UnicodeDecodeErr
     return tables.problem(message, place, "save the file in UTF-8")
 
 
-def _value(cell: str) -> Value:
-    if cell in _BOOLEANS:
-        return _BOOLEANS[cell]
+def _value(cell: str) -> PartialValue:
+    if cell in _WORDS_OF_VALUES:
+        return _WORDS_OF_VALUES[cell]
     return float(cell) if _NUMBER.fullmatch(cell) else cell
 
 
 def write_csv(
-    rows: Iterable[Sequence[Value | None]], columns: Sequence[str], stream: IO[bytes]
+    rows: Iterable[Sequence[tables.Cell]], columns: Sequence[str], stream: IO[bytes]
 ) -> None:
     """Write a table: its columns' names, then its rows."""
     text = io.TextIOWrapper(stream, "utf-8", newline="")
@@ -180,7 +181,7 @@ def write_csv(
         text.detach()  # which writes what is left
 
 
-def _cell(value: Value | None) -> str:
+def _cell(value: tables.Cell) -> str:
     match value:
         case None:
             return ""
@@ -188,5 +189,9 @@ def _cell(value: Value | None) -> str:
             return "true" if value else "false"
         case float():
             return float.__repr__(value)
+        case list():
+            return " ".join(value) or " "  # an empty cell says nothing
+        case _ if value is UNKNOWN:
+            return UNKNOWN.value
         case _:
             return str(value)

@@ -12,10 +12,11 @@ import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats import json_line_problems
-from rulec.trace.formats.partial_json import from_json, to_json
+from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
 from rulec.trace.trace_model import Ending, State, Trace
 
+_INTERVAL = 'an interval is written {"from": 1, "to": 2.5}'
 _LONGEST_HEAD_BYTES = 1 << 16
 
 
@@ -126,14 +127,20 @@ def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
 
 def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trace | RulecError:
     if read_state.pays and len(line) <= json_line_problems.LONGEST_LINE_BYTES:
-        with suppress(msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
+        with suppress(ValueError, RecursionError):  # msgspec's errors are, too
             outline = _OUTLINE_DECODER.decode(line)
-            return _made(outline, [read_state[bytes(raw)] for raw in outline.states], place)
+            if BOUNDS.isdisjoint(outline.objects):
+                return _made(outline, [read_state[bytes(raw)] for raw in outline.states], place)
     # Read as a whole, it says what is wrong.
     record = _TRACE.read(line, place)
     if isinstance(record, RulecError):
         return record
-    return _made(record, [from_json(state) for state in record.states], place)
+    states: list[State] = []
+    try:
+        states.extend(from_json(state, record.objects) for state in record.states)
+    except ValueError as wrong:
+        return _TRACE.bad(f"in state {len(states)} {wrong}", place, _INTERVAL)
+    return _made(record, states, place)
 
 
 def _made(record: _Header, states: Sequence[State], place: SourceLocation) -> Trace:
@@ -161,8 +168,8 @@ class _StateReader(dict[bytes, State]):
 
     def __missing__(self, text: bytes) -> State:
         decoded = self._DECODE(text)
-        plain = b"null" not in text and b'"from"' not in text
-        state = cast("State", decoded) if plain else from_json(decoded)
+        plain = b"null" not in text and b'"from"' not in text and b'"to"' not in text
+        state = cast("State", decoded) if plain and b"\\" not in text else from_json(decoded, ())
         self._met += 1
         if self._met > self._MOST or len(text) > self._LONGEST:
             # There is no end to them: what is remembered is of no use.
@@ -231,4 +238,9 @@ def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
             if isinstance(record, RulecError):
                 yield record
             else:
-                yield LiveState(from_json(record.state), record.objects, place)
+                try:
+                    state = from_json(record.state, record.objects)
+                except ValueError as wrong:
+                    yield _STATE.bad(str(wrong), place, _INTERVAL)
+                else:
+                    yield LiveState(state, record.objects, place)

@@ -2,31 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from rulec.trace.trace_model import State
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
-
-def from_json(state: Mapping[str, Any]) -> State:
-    """The state that decoded JSON stands for."""
-    return {name: _value_of(value) for name, value in state.items()}
+BOUNDS = frozenset({"from", "to"})
 
 
-def _value_of(value: Any) -> Any:
+def from_json(state: Mapping[str, Any], objects: Collection[str]) -> State:
+    """The state that decoded JSON stands for.
+
+    What has no other keys than `from` and `to` is an interval, unless all of them are ``objects``.
+    Raises ValueError, with what is wrong, where it is none.
+    """
+    named = BOUNDS.intersection(objects)
+    return {name: _value_of(value, name, named) for name, value in state.items()}
+
+
+def _value_of(value: Any, name: str, named: frozenset[str]) -> Any:
     if value is None:
         return UNKNOWN
     if type(value) is not dict:
         return value
-    if value.keys() == {"from", "to"} and _is_interval(value["from"], value["to"]):
-        return Interval(value["from"], value["to"])
-    return {name: _value_of(inner) for name, inner in value.items()}
-
-
-def _is_interval(low: Any, high: Any) -> bool:
-    numbers = all(isinstance(end, int | float) and not isinstance(end, bool) for end in (low, high))
-    return numbers and low <= high
+    if value and value.keys() <= BOUNDS and not value.keys() <= named:
+        low, high = value.get("from"), value.get("to")
+        if not all(type(end) in (int, float) for end in (low, high)):
+            raise ValueError(f"`{name}` is an interval without a number for `from` or `to`")
+        try:
+            return Interval(low, high)  # type: ignore[arg-type]
+        except ValueError as wrong:
+            raise ValueError(f"`{name}`: {wrong}") from None
+    return {item: _value_of(inner, name, named) for item, inner in value.items()}
 
 
 def to_json(state: State) -> dict[str, Any]:

@@ -53,7 +53,8 @@ class Block(Sequence["Trace | RulecError"]):
 
     ``columns`` has what is in the ``table``'s columns. ``starts`` are the rows with which traces
     begin, counted from 0, and how many rows there are. ``rows`` gives those from one to another
-    (exclusive) as ``traces_in`` reads them.
+    (exclusive) as ``traces_in`` reads them. ``partial`` are the traces of which something is not
+    known, which the columns do not say.
     """
 
     table: tables.Table
@@ -61,6 +62,7 @@ class Block(Sequence["Trace | RulecError"]):
     starts: NDArray[np.int64]
     rows: Callable[[int, int], Iterable[tables.Row]]
     file: SourceLocation
+    partial: frozenset[int] = frozenset()
 
     def __len__(self) -> int:
         return len(self.starts) - 1

@@ -5,23 +5,34 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import groupby
-from typing import Any
+from itertools import chain, groupby
+from typing import Any, cast, get_args
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
 from rulec.trace.trace_messages import NOT_A_TABLE
-from rulec.trace.trace_model import State, Trace, Value
+from rulec.trace.trace_model import Ending, State, Trace
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 
 TRACE, STEP, STEP_S = "trace", "step", "step_s"
 OBJECT, TYPE, OTHER = "object", "type", "other"
-OWN = (TRACE, STEP, STEP_S, OBJECT, TYPE, OTHER)
+ENDS, TOLD, UNKNOWN_NAMES = "ends", "told", "unknown"
+PARTIAL = (ENDS, TOLD, UNKNOWN_NAMES)
+"""Columns about what is not known."""
+
+OWN = (TRACE, STEP, STEP_S, OBJECT, TYPE, OTHER, *PARTIAL)
 """The columns that are no names of a vocabulary."""
+
+FROM, TO = ".from", ".to"
+"""How the columns of an interval's bounds end."""
 
 NAMES = frozenset((TRACE, STEP, OBJECT, TYPE, OTHER))
 """Those of them that tell things apart."""
 
 Row = tuple[int, Sequence[Any]]
 """Its number, for messages, and its cells; an empty cell is None or the empty text."""
+
+Cell = PartialValue | list[str] | None
+"""What is written into a table."""
 
 _MOST_REMEMBERED = 1 << 16
 _MOST_STATES = 1 << 16
@@ -36,7 +47,7 @@ class Table:
     """
 
     columns: tuple[str, ...]
-    value: Callable[[Any], Value]
+    value: Callable[[Any], PartialValue]
     place: Callable[[int], SourceLocation]
     has_texts: bool = False
 
@@ -48,7 +59,15 @@ class Table:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The columns that are names of a vocabulary."""
-        return tuple(name for name in self.columns if name not in OWN)
+        bounds = {name + end for name in self.intervals for end in (FROM, TO)}
+        return tuple(name for name in self.columns if name not in OWN and name not in bounds)
+
+    @cached_property
+    def intervals(self) -> dict[str, tuple[int, int]]:
+        """Name -> the columns of its bounds."""
+        at = self.at
+        names = [name.removesuffix(FROM) for name in at if name.endswith(FROM)]
+        return {name: (at[name + FROM], at[name + TO]) for name in names if name + TO in at}
 
     def cell(self, cells: Sequence[Any], column: str) -> Any:
         """A row's cell in a column that may be missing."""
@@ -63,11 +82,17 @@ def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
             raise problem("a column has no name", place)
         if columns.count(name) > 1:
             raise problem(f"there are two columns `{name}`", place)
+        for end, other in ((FROM, TO), (TO, FROM)):
+            if name.endswith(end) and name.removesuffix(end) + other not in columns:
+                missing = name.removesuffix(end) + other
+                raise problem(f"there is a column `{name}`, but no `{missing}`", place, _BOUNDS)
     for name in (TRACE, STEP):
         if name not in columns:
             near = did_you_mean(name, columns)
             raise problem(f"there is no column `{name}`", place, near or _FORM)
 
+
+_BOUNDS = "a number known to lie between two others has both: such as 1 and 2.5"
 
 _FORM = "the first columns are `trace`, `step`, `object`, `type`; further ones are named for values"
 
@@ -111,6 +136,8 @@ class _Building:
     objects: dict[str, str] = field(default_factory=dict)
     spans: dict[str, tuple[int, int]] = field(default_factory=dict)
     step_s: float | None = None
+    ends: Ending | None = None
+    told: frozenset[str] | None = None
     now: list[Row] = field(default_factory=list)
 
     def read(self, rows: Sequence[Row]) -> Trace | RulecError:
@@ -129,6 +156,8 @@ class _Building:
             states=tuple(self.states),
             present={name: span for name, span in self.spans.items() if span != always},
             place=self.table.place(rows[0][0]),
+            ends=self.ends or "complete",
+            told=self.told,
         )
 
     def _add(self, number: int, cells: Sequence[Any]) -> None:
@@ -146,6 +175,10 @@ class _Building:
         self._go_to(cells[table.at[STEP]], number)
         if STEP_S in table.at:
             self._last(cells[table.at[STEP_S]], number)
+        if ENDS in table.at:
+            self._end(cells[table.at[ENDS]], number)
+        if TOLD in table.at:
+            self._tell(cells[table.at[TOLD]], number)
         self._appear(cells, number)
         self.now.append((number, cells))
 
@@ -166,12 +199,37 @@ class _Building:
         if is_empty(step_s):
             return
         value = self.table.value(step_s)
-        if isinstance(value, bool | str):
+        if type(value) not in (int, float):
             raise self._problem(f"`step_s` is {_shown(step_s)}; it is a number of seconds", number)
         if self.step_s is not None and self.step_s != value:
             message = f"`step_s` is {_shown(step_s)}; in the rows before it is {self.step_s:g}"
             raise self._problem(message, number)
-        self.step_s = value
+        self.step_s = cast("float", value)
+
+    def _end(self, ends: Any, number: int) -> None:
+        if is_empty(ends):
+            return
+        if ends not in get_args(Ending):
+            message = f"`ends` is {_shown(ends)}; it is `complete` or `cut`"
+            raise self._problem(message, number)
+        if self.ends not in (None, ends):
+            raise self._problem(f"`ends` is `{ends}`; before it is `{self.ends}`", number)
+        self.ends = ends
+
+    def _tell(self, told: Any, number: int) -> None:
+        if is_empty(told):
+            return
+        names = frozenset(self._names(TOLD, told, number))
+        if self.told not in (None, names):
+            raise self._problem("`told` has other names than in the rows before", number)
+        self.told = names
+
+    def _names(self, column: str, cell: Any, number: int) -> list[str]:
+        """Names in a cell: a list, or a text with blanks between them."""
+        names = cell.split() if isinstance(cell, str) else cell
+        if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+            raise self._problem(f"`{column}` is {_shown(cell)}; it is a list of names", number)
+        return names
 
     def _appear(self, cells: Sequence[Any], number: int) -> None:
         cell = self.table.cell
@@ -195,7 +253,12 @@ class _Building:
     def _end_state(self) -> None:
         at = self.table.at
         columns = [at[name] for name in (OBJECT, OTHER, *self.table.names) if name in at]
+        columns += chain.from_iterable(self.table.intervals.values())
+        key: tuple[object, ...]
         key = tuple([tuple([cells[column] for column in columns]) for _, cells in self.now])
+        if UNKNOWN_NAMES in at:
+            unknown = at[UNKNOWN_NAMES]
+            key += tuple([str(cells[unknown]) for _, cells in self.now])
         state = self.known.get(key)
         if state is None:
             state = self._state()
@@ -212,18 +275,47 @@ class _Building:
             path = [str(item) for item in items if not is_empty(item)]
             for name in table.names:
                 cell = table.cell(cells, name)
-                if is_empty(cell):
-                    continue
-                *before, last = (name, *path)
-                inner = state
-                for key in before:
-                    inner = inner.setdefault(key, {})
-                    if not isinstance(inner, dict):
-                        raise self._twice(name, path, number)
-                if last in inner:
-                    raise self._twice(name, path, number)
-                inner[last] = table.value(cell)
+                if not is_empty(cell):
+                    self._say(state, name, path, table.value(cell), number)
+            for name, (low, high) in table.intervals.items():
+                if not (is_empty(cells[low]) and is_empty(cells[high])):
+                    interval = self._interval(name, cells[low], cells[high], number)
+                    self._say(state, name, path, interval, number)
+            unknown = table.cell(cells, UNKNOWN_NAMES)
+            for name in () if is_empty(unknown) else self._names(UNKNOWN_NAMES, unknown, number):
+                self._say(state, name, path, UNKNOWN, number)
         return state
+
+    def _say(
+        self,
+        state: dict[str, Any],
+        name: str,
+        path: Sequence[str],
+        value: PartialValue,
+        number: int,
+    ) -> None:
+        *before, last = (name, *path)
+        inner = state
+        for key in before:
+            inner = inner.setdefault(key, {})
+            if not isinstance(inner, dict):
+                raise self._twice(name, path, number)
+        if last in inner:
+            raise self._twice(name, path, number)
+        inner[last] = value
+
+    def _interval(self, name: str, low: Any, high: Any, number: int) -> Interval:
+        bounds: list[Any] = []
+        for end, cell in ((FROM, low), (TO, high)):
+            value = None if is_empty(cell) else self.table.value(cell)
+            if type(value) not in (int, float):
+                message = f"`{name}{end}` is {_shown(cell)}; it is a number"
+                raise self._problem(message, number, _BOUNDS)
+            bounds.append(value)
+        try:
+            return Interval(*bounds)
+        except ValueError as wrong:
+            raise self._problem(f"`{name}`: {wrong}", number) from None
 
     def _twice(self, name: str, path: Sequence[str], number: int) -> RulecError:
         about = f" for `{', '.join(path)}`" if path else ""

@@ -12,14 +12,18 @@ from rulec.files import opened
 from rulec.trace.formats import json_lines
 from rulec.trace.formats.arrow.parquet import read_parquet, write_parquet
 from rulec.trace.formats.csv_table import read_csv, write_csv
-from rulec.trace.formats.table_reader import OWN
-from rulec.trace.trace_model import State, Trace, Value
+from rulec.trace.formats.table_reader import ENDS, FROM, OWN, PARTIAL, TO, TOLD, UNKNOWN_NAMES
+from rulec.trace.trace_model import State, Trace
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 
 Format = Literal["jsonl", "csv", "parquet"]
 FORMATS: tuple[Format, ...] = get_args(Format)
 
 Kinds = Mapping[str, type]
-"""For each name that states speak of what its values are: ``bool``, ``float`` or ``str``."""
+"""For each name that states speak of what its values are: ``bool``, ``float`` or ``str``.
+
+An interval's bounds have names of their own, as columns of tables have.
+"""
 
 
 def format_of(file: str) -> Format:
@@ -55,10 +59,17 @@ def read_chunks(
 
 
 def write_traces(
-    traces: Iterable[Trace], stream: IO[bytes], file: str, form: Format, kinds: Kinds
+    traces: Iterable[Trace],
+    stream: IO[bytes],
+    file: str,
+    form: Format,
+    kinds: Kinds,
+    *,
+    partial: bool = False,
 ) -> None:
     """Write traces; ``kinds`` are those of all names that they speak of.
 
+    ``partial``: tables have room for what is not known of traces.
     Raises RulecError R0706 if Parquet cannot be written here. Raises ValueError if a name cannot be
     a column.
     """
@@ -66,11 +77,15 @@ def write_traces(
         json_lines.write_traces(traces, stream)
         return
     columns = columns_for(kinds)
-    rows = chain.from_iterable(rows_of(trace, list(kinds)) for trace in traces)
+    if not partial:
+        columns = [name for name in columns if name not in PARTIAL]
+    elif form == "csv":
+        columns.remove(UNKNOWN_NAMES)  # `?` says it
+    rows = chain.from_iterable(rows_of(trace, columns) for trace in traces)
     if form == "csv":
         write_csv(rows, columns, stream)
         return
-    own = {"step": int, "step_s": float}
+    own = {"step": int, "step_s": float, TOLD: list, UNKNOWN_NAMES: list}
     types = [(name, kinds.get(name) or own.get(name, str)) for name in columns]
     write_parquet(rows, types, stream, file)
 
@@ -78,14 +93,34 @@ def write_traces(
 def kinds_in(states: Iterable[State]) -> dict[str, type]:
     """Kinds of all names that states speak of, in order."""
     kinds: dict[str, type] = {}
+    unknown: dict[str, type] = {}
     for state in states:
         for name, value in state.items():
             for leave in _leaves(value):
-                kinds.setdefault(name, float if type(leave) is int else type(leave))
-    return kinds
+                if leave is UNKNOWN:
+                    unknown[name] = str
+                elif isinstance(leave, Interval):
+                    kinds |= {name + FROM: float, name + TO: float}
+                else:
+                    kinds.setdefault(name, float if type(leave) is int else type(leave))
+    return {**unknown, **kinds}
 
 
-def _leaves(value: Any) -> Iterator[Value]:
+def is_partial(trace: Trace) -> bool:
+    """Tell whether something about a trace is not known."""
+    return (
+        trace.ends != "complete"
+        or trace.told is not None
+        or any(
+            leave is UNKNOWN
+            for state in trace.states
+            for value in state.values()
+            for leave in _leaves(value)
+        )
+    )
+
+
+def _leaves(value: Any) -> Iterator[PartialValue]:
     if isinstance(value, Mapping):
         for inner in value.values():
             yield from _leaves(inner)
@@ -101,23 +136,42 @@ def columns_for(kinds: Kinds) -> list[str]:
     return [*OWN, *kinds]
 
 
-def rows_of(trace: Trace, names: Sequence[str]) -> Iterator[list[Any]]:
-    """Rows of a trace: of states, of their objects, of pairs.
+def rows_of(trace: Trace, columns: Sequence[str]) -> Iterator[list[Any]]:
+    """Rows of a trace for ``columns_for`` names: of states, of their objects, of pairs.
 
     What is said of objects that are not there is left out; no rule reads it.
     """
+    own = [name for name in columns if name in PARTIAL]
+    names = columns[len(OWN) - len(PARTIAL) + len(own) :]
+    told = None if trace.told is None else sorted(trace.told)
+    of_trace = {ENDS: None if trace.ends == "complete" else trace.ends, TOLD: told}
+    nothing = [None] * len(own)
+    first = [of_trace.get(name) for name in own]
     for step, state in enumerate(trace.states):
         start = [trace.id, step, trace.step_s]
-        yield [*start, None, None, None, *(_about(state, name, ()) for name in names)]
+
+        def row(
+            *items: str, start: Sequence[Any] = start, state: State = state, step: int = step
+        ) -> list[Any]:
+            values = [_about(state, name, items) for name in names]
+            about = first if not step and not items else nothing
+            if UNKNOWN_NAMES in own:
+                unknown = [name for name in state if _about(state, name, items) is UNKNOWN]
+                about = [*about[:-1], unknown or None]
+                values = [None if value is UNKNOWN else value for value in values]
+            kind = trace.objects[items[0]] if items else None
+            item, other = (*items, None, None)[:2]
+            return [*start, item, kind, other, *about, *values]
+
+        yield row()
         there = [item for item in trace.objects if _is_there(item, step, trace)]
         for item in there:
-            values = [_about(state, name, (item,)) for name in names]
-            yield [*start, item, trace.objects[item], None, *values]
+            yield row(item)
         for item in there:
             for other in there:
-                values = [_about(state, name, (item, other)) for name in names]
-                if any(value is not None for value in values):
-                    yield [*start, item, trace.objects[item], other, *values]
+                values = row(item, other)
+                if any(value is not None for value in values[len(OWN) - len(PARTIAL) :]):
+                    yield values
 
 
 def _is_there(item: str, step: int, trace: Trace) -> bool:
@@ -125,8 +179,11 @@ def _is_there(item: str, step: int, trace: Trace) -> bool:
     return first <= step <= last
 
 
-def _about(state: State, name: str, items: Sequence[str]) -> Value | None:
+def _about(state: State, column: str, items: Sequence[str]) -> PartialValue | None:
+    name, _, bound = column.partition(".")
     value: Any = state.get(name)
     for item in items:
         value = value.get(item) if isinstance(value, Mapping) else None
-    return None if isinstance(value, Mapping) else value
+    if isinstance(value, Interval):
+        return {"from": value.low, "to": value.high}.get(bound)
+    return None if bound or isinstance(value, Mapping) else value

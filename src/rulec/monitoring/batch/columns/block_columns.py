@@ -38,9 +38,9 @@ class BlockGroup:
 
 
 def groups_of(block: Block, presence: BlockPresence) -> list[BlockGroup]:
-    """The traces of a block, by their shape."""
+    """The traces of a block of which all is known, by their shape."""
     shapes: dict[tuple[object, ...], list[int]] = {}
-    for trace in range(len(block)):
+    for trace in sorted(set(range(len(block))) - block.partial):
         shapes.setdefault(presence.shape_of(trace), []).append(trace)
     return [_group(block, presence, np.array(traces)) for traces in shapes.values()]
 

@@ -8,12 +8,23 @@ from typing import Any
 
 import numpy as np
 import pyarrow
+from numpy.typing import NDArray
 from pyarrow import compute, types
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats import table_blocks as blocks
-from rulec.trace.formats.table_reader import NAMES, TRACE, Row, Table, in_chunks, traces_in
-from rulec.trace.trace_model import Trace, Value
+from rulec.trace.formats.table_reader import (
+    NAMES,
+    OWN,
+    PARTIAL,
+    TRACE,
+    Row,
+    Table,
+    in_chunks,
+    traces_in,
+)
+from rulec.trace.trace_model import Trace
+from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
 Piece = Any
 """A record batch."""
@@ -72,6 +83,7 @@ def _block(
     if not pieces:
         return list(traces_in((), table, file))
     whole = pyarrow.Table.from_batches(pieces).combine_chunks().to_batches()[0]
+    partial = _partial_rows(whole, table)
     try:
         columns = columns_of(whole, table)
     except blocks.OddTableError:
@@ -81,7 +93,26 @@ def _block(
     def rows(start: int, stop: int) -> Iterator[Row]:
         return _rows([whole.slice(start, stop - start)], first + start)
 
-    return blocks.Block(table, columns, starts, rows, file)
+    owner = np.searchsorted(starts, np.flatnonzero(partial), "right") - 1
+    return blocks.Block(table, columns, starts, rows, file, frozenset(owner.tolist()))
+
+
+def _partial_rows(piece: Piece, table: Table) -> NDArray[np.bool_]:
+    """The rows that say that something is not known."""
+    rows = np.zeros(len(piece), dtype=bool)
+    bounds = chain.from_iterable(table.intervals.values())
+    for place in (*(table.at[name] for name in PARTIAL if name in table.at), *bounds):
+        array = piece.column(place)
+        said = compute.is_valid(array)
+        if types.is_string(array.type):
+            said = compute.and_kleene(said, compute.not_equal(array, ""))
+        rows |= said.fill_null(False).to_numpy(zero_copy_only=False)
+    if table.has_texts:
+        for name in table.names:
+            is_mark = compute.equal(piece.column(table.at[name]), UNKNOWN.value)
+            if compute.any(is_mark).as_py():
+                rows |= is_mark.fill_null(False).to_numpy(zero_copy_only=False)
+    return rows
 
 
 def _rows(pieces: Iterable[Piece], first: int) -> Iterator[Row]:
@@ -94,7 +125,10 @@ def _rows(pieces: Iterable[Piece], first: int) -> Iterator[Row]:
 def columns_of(piece: Any, table: Table) -> Mapping[str, blocks.Column]:
     """The columns of a piece (a record batch). Raises OddTableError."""
     columns: dict[str, blocks.Column] = {}
-    for name, array in zip(table.columns, piece.columns, strict=True):
+    for name in (*OWN, *table.names):
+        if name in PARTIAL or name not in table.at:
+            continue
+        array = piece.column(table.at[name])
         if types.is_dictionary(array.type):
             array = array.dictionary_decode()  # whose values need not be distinct
         if name in NAMES:
@@ -131,7 +165,11 @@ def _numbers(array: Any) -> blocks.Numbers:
     )
 
 
-def _read(texts: blocks.Coded, value: Callable[[str], Value]) -> blocks.Column:
+def _read(texts: blocks.Coded, value: Callable[[str], PartialValue]) -> blocks.Column:
+    if UNKNOWN.value in texts.values:  # its rows are read one by one
+        place = texts.values.index(UNKNOWN.value)
+        texts = blocks.Coded(np.where(texts.codes == place, -1, texts.codes), texts.values)
+        texts = blocks.Coded(texts.codes, ["" if x == UNKNOWN.value else x for x in texts.values])
     if len(texts.values) > _FEW:
         written = pyarrow.array([text or "0" for text in texts.values])
         if compute.all(compute.match_substring_regex(written, NUMBER)).as_py():

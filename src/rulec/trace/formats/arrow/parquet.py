@@ -9,9 +9,16 @@ from typing import IO, TYPE_CHECKING, Any
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats.stream_lines import packed
-from rulec.trace.formats.table_reader import Table, check_columns, problem
+from rulec.trace.formats.table_reader import (
+    TOLD,
+    UNKNOWN_NAMES,
+    Cell,
+    Table,
+    check_columns,
+    problem,
+)
 from rulec.trace.trace_messages import PARQUET_UNAVAILABLE
-from rulec.trace.trace_model import Trace, Value
+from rulec.trace.trace_model import Trace
 
 if TYPE_CHECKING:
     from rulec.trace.formats.arrow.arrow_blocks import Piece
@@ -103,6 +110,8 @@ def _check_types(schema: Any, pyarrow: Any, file: str) -> None:
     for name, kind in zip(schema.names, schema.types, strict=True):
         value = kind.value_type if types.is_dictionary(kind) else kind
         known = ("boolean", "integer", "float64", "string", "large_string", "null")
+        if name in (TOLD, UNKNOWN_NAMES) and (types.is_list(kind) or types.is_large_list(kind)):
+            value = kind.value_type
         if not any(getattr(types, f"is_{type_name}")(value) for type_name in known):
             message = f"the column `{name}` is of type {kind}"
             help_text = "types are bool, integers, double (float64), and string"
@@ -110,14 +119,15 @@ def _check_types(schema: Any, pyarrow: Any, file: str) -> None:
 
 
 def write_parquet(
-    rows: Iterable[Sequence[Value | None]],
+    rows: Iterable[Sequence[Cell]],
     types: Sequence[tuple[str, type]],
     stream: IO[bytes],
     file: str,
 ) -> None:
     """Write a table; ``types`` has each column's. Raises RulecError R0706."""
     pyarrow, parquet = arrow(file)
-    kinds = {bool: "bool", int: "int64", float: "float64", str: "string"}
+    texts = pyarrow.list_(pyarrow.string())
+    kinds = {bool: "bool", int: "int64", float: "float64", str: "string", list: texts}
     schema = pyarrow.schema([(name, kinds[kind]) for name, kind in types])
     waiting = iter(rows)
     with parquet.ParquetWriter(stream, schema) as writer:

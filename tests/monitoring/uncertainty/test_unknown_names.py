@@ -1,0 +1,105 @@
+"""A name that is unknown itself is unknown of every object, whoever reads it."""
+
+from dataclasses import replace
+
+import pytest
+
+from rulec.monitoring.assumptions import Assumptions
+from rulec.monitoring.batch.batch_verify import verify_chunk
+from rulec.monitoring.explain.explanation import explain
+from rulec.monitoring.verify import verify
+from rulec.rulebook.loader import parse_rulebook
+from rulec.trace import Trace
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
+from support.builders.rulebooks import compile_here
+
+BOOK = parse_rulebook(
+    """rulebook gaps
+type car
+quantity gap(v: car) in m
+kind(v: car) is one of fast, slow
+signal near(v: car, w: car) default false
+signal rain default false
+hard rule far (v: car) { require always (gap(v) > 5 m or slow(v)) }
+hard rule apart (v: car, w: car) { require never near(v, w) }
+hard rule dry { require always !rain }"""
+)
+DECLARATIONS = BOOK.vocabulary.declarations
+KIND = replace(DECLARATIONS["kind"], constant=True)
+WORDS = Vocabulary("gaps", BOOK.vocabulary.types, {**DECLARATIONS, "kind": KIND})
+RULES = compile_here(replace(BOOK, vocabulary=WORDS))
+OBJECTS = {"a": "car", "b": "car"}
+KNOWN = {
+    "gap": {"a": 9.0, "b": 9.0},
+    "kind": {"a": "fast", "b": "fast"},
+    "near": {"a": {"b": False}, "b": {"a": False}},
+}
+EACH = {
+    "gap": {"a": UNKNOWN, "b": UNKNOWN},
+    "kind": {"a": UNKNOWN, "b": UNKNOWN},
+    "near": {"a": {"a": UNKNOWN, "b": UNKNOWN}, "b": {"a": UNKNOWN, "b": UNKNOWN}},
+}
+
+
+def trace(**changes):
+    return Trace("t", 1.0, OBJECTS, ({**KNOWN, **changes}, KNOWN))
+
+
+def doubts(verdict):
+    return {(result.rule, tuple(result.binding.values())) for result in verdict.open}
+
+
+@pytest.mark.parametrize(
+    ("name", "opened"),
+    [
+        ("gap", {("far", ("a",)), ("far", ("b",))}),
+        ("near", {("apart", ("a", "b")), ("apart", ("b", "a"))}),
+    ],
+)
+def test_unknown_of_every_object(name, opened):
+    verdict = verify(trace(**{name: UNKNOWN}), RULES)
+    assert doubts(verdict) == opened
+    assert verdict == verify(trace(**{name: EACH[name]}), RULES)
+
+
+def test_unknown_of_every_second_object():
+    verdict = verify(trace(near={"a": UNKNOWN, "b": {"a": False}}), RULES)
+    assert doubts(verdict) == {("apart", ("a", "b"))}
+
+
+def test_constants():
+    near = {"gap": {"a": 1.0, "b": 1.0}}
+    state = {**KNOWN, **near, "kind": UNKNOWN}
+    whole = verify(Trace("t", 1.0, OBJECTS, (state, state)), RULES)
+    assert whole.violations == ()
+    assert doubts(whole) == {("far", ("a",)), ("far", ("b",))}
+    each = {**state, "kind": EACH["kind"]}
+    assert whole == verify(Trace("t", 1.0, OBJECTS, (each, each)), RULES)
+
+
+def test_together_as_alone():
+    traces = [trace(), trace(gap=UNKNOWN), trace(near=UNKNOWN), trace(kind=UNKNOWN)] * 20
+    assert verify_chunk(traces, RULES) == [verify(one, RULES) for one in traces]
+
+
+def test_an_explanation_shows_one_completion():
+    lost = trace(gap=UNKNOWN, near=UNKNOWN, rain=True)
+    (violation,) = verify(lost, RULES).violations
+    assert explain(violation, lost, RULES).decisive == 0
+
+
+def test_assumptions_are_about_what_is_not_told():
+    told = frozenset(KNOWN)
+    open_ = Trace("t", 1.0, OBJECTS, ({**KNOWN, "rain": UNKNOWN}, KNOWN), ends="cut", told=told)
+    assert [result.rule for result in verify(open_, RULES).not_judged] == ["dry"]
+    raining = Assumptions(values={"rain": True}).applied(open_)
+    assert [state["rain"] for state in raining.states] == [True, True]
+    assert raining.ends == "cut"
+    assert [violation.rule for violation in verify(raining, RULES).violations] == ["dry"]
+    dry = Assumptions(values={"rain": True}).applied(trace(rain=False))
+    assert [state.get("rain") for state in dry.states] == [False, None]
+    usual = Assumptions(defaults=True).applied(open_)
+    assert (usual.ends, usual.told) == ("complete", None)
+    assert usual.states == (KNOWN, KNOWN)
+    assert Assumptions("cut", defaults=True).applied(open_).ends == "cut"
