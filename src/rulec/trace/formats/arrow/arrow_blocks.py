@@ -94,7 +94,8 @@ def _block(
         return _rows([whole.slice(start, stop - start)], first + start)
 
     owner = np.searchsorted(starts, np.flatnonzero(partial), "right") - 1
-    return blocks.Block(table, columns, starts, rows, file, frozenset(owner.tolist()))
+    partial_traces = frozenset(owner.tolist())
+    return blocks.Block(table, columns, starts, rows, file, partial=partial_traces)
 
 
 def _partial_rows(piece: Piece, table: Table) -> NDArray[np.bool_]:
