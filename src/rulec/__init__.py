@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from rulec.monitoring.assumptions import Assumptions as Assumptions
     from rulec.monitoring.batch.verdict_columns import VerdictColumns as VerdictColumns
     from rulec.monitoring.explain.explanation import Explanation as Explanation
+    from rulec.monitoring.online.four_valued import VerdictRange as VerdictRange
     from rulec.monitoring.online.monitor_state import SoFar as SoFar
     from rulec.monitoring.online.monitor_state import VerdictChange as VerdictChange
     from rulec.monitoring.online.running_monitor import Monitor as Monitor
@@ -125,6 +126,7 @@ _HOME = {
     "rulec.monitoring.assumptions": "Assumptions",
     "rulec.monitoring.batch.verdict_columns": "VerdictColumns",
     "rulec.monitoring.explain.explanation": "Explanation",
+    "rulec.monitoring.online.four_valued": "VerdictRange",
     "rulec.monitoring.online.monitor_state": "SoFar VerdictChange",
     "rulec.monitoring.online.running_monitor": "Monitor",
     "rulec.monitoring.verdict": "NotJudged Verdict Violation",

@@ -100,13 +100,18 @@ def test_json(answer):
         "version": 1,
         "state": 0,
         "verdict": "pending",
+        "best": "pending",
+        "worst": "pending",
         "rules": {"stop": "holds so far", "look": "pending"},
+        "open": {},
         "changes": [
             {
                 "rule": "look",
                 "binding": {"c": "c"},
                 "before": "holds so far",
                 "verdict": "pending",
+                "best": "pending",
+                "worst": "pending",
                 "ended": False,
             }
         ],

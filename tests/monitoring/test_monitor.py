@@ -309,7 +309,7 @@ def without(key):
 
 DAMAGES = [
     with_(["format"], "rulec compiled rulebook"),
-    with_(["version"], 2),
+    with_(["version"], 3),
     with_(["machines"], "0" * 64),
     with_(["step_s"], "0"),
     with_(["step_s"], "1/0"),

@@ -59,6 +59,15 @@ class OutcomeMachine:
         return frozenset(np.flatnonzero(lost).tolist())
 
     @cached_property
+    def safe(self) -> frozenset[int]:
+        """The states from which every word is kept."""
+        successors, outputs = np.array(self.successors), np.array(self.outputs)
+        safe = (outputs == KEPT).all(axis=1)
+        while not np.array_equal(safe, still := safe & safe[successors].all(axis=1)):
+            safe = still
+        return frozenset(np.flatnonzero(safe).tolist())
+
+    @cached_property
     def _order(self) -> NDArray[np.bool_]:
         """``[a, b]``: no word comes to more from ``a`` than from ``b``."""
         size = len(self.successors)
@@ -93,6 +102,21 @@ class OutcomeMachine:
 def of_complete_words(machine: MealyMonitor) -> OutcomeMachine:
     """The machine as it judges words that are over: kept or violated."""
     outputs = [[KEPT if kept else VIOLATED for kept in row] for row in machine.outputs]
+    return OutcomeMachine(
+        machine.reads, machine.letters, machine.successors, outputs, frozenset({0})
+    )
+
+
+def of_running_words(machine: MealyMonitor) -> OutcomeMachine:
+    """The machine as it judges words that may go on: violated is what is lost for good."""
+    lost = machine.rejecting_sink
+    outputs = [
+        [
+            KEPT if kept else VIOLATED if target == lost else PENDING
+            for target, kept in zip(targets, row, strict=True)
+        ]
+        for targets, row in zip(machine.successors, machine.outputs, strict=True)
+    ]
     return OutcomeMachine(
         machine.reads, machine.letters, machine.successors, outputs, frozenset({0})
     )

@@ -49,7 +49,12 @@ def past_of(
     for name, kind in monitor.objects.items():
         if there.get(name, kind) != kind:
             raise _no_way(f"`{name}` was a `{kind}` and now is a `{there[name]}`", place)
-    past = monitor.past(there)
+    try:
+        past = monitor.past(there)
+    except ValueError:
+        message = "what the past comes to for these rules depends on values that are unknown"
+        way_out = "give a past whose values are known, as far as these rules read them"
+        raise UNFITTING_PAST.error(place, message, help=way_out) from None
     violations = [own for own in past.violations if own.strength in strengths]
     return replace(past, violations=tuple(violations))
 

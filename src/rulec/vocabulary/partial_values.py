@@ -15,6 +15,9 @@ class UnknownValue(Enum):
     def __repr__(self) -> str:
         return "UNKNOWN"
 
+    # It is part of many keys, and an enumeration hashes its members' names anew each time.
+    __hash__ = object.__hash__
+
     def __bool__(self) -> bool:
         raise TypeError("what is unknown is neither true nor false")
 

@@ -72,4 +72,4 @@ def command(
                 print_result(write(result))
         complaints.close()
     violated = {"violated"} if save is not None else {"violated", "pending"}
-    return ExitStatus.after(answered=not refused, failed=monitor.so_far.verdict in violated)
+    return ExitStatus.after(answered=not refused, failed=monitor.so_far.best in violated)

@@ -5,24 +5,32 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
+from rulec.logic.free_names import names_in
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
-from rulec.monitoring.online.four_valued import MonitorEdge
 from rulec.monitoring.online.group_letters import GroupLetters
 from rulec.monitoring.online.rule_group import GroupNode, PreparedRule, RuleGroup, RuleGroups
-from rulec.monitoring.state_validation import check_state
+from rulec.monitoring.state_validation import check_state, has_partial_values
 from rulec.trace import State
+from rulec.vocabulary import Quantity
 from rulec.vocabulary.vocabulary_model import choices
+
+if TYPE_CHECKING:
+    from rulec.monitoring.online.four_valued import LetterClass
+    from rulec.monitoring.online.uncertain_steps import Edge
 
 Letters: TypeAlias = list[int]
 """For each binding of each group, one after the other, the letter that it reads."""
+
+MOST_STATES = 1 << 12
+"""Partly known states whose letters are kept before all are forgotten."""
 
 MOST_SHAPES = 64
 """Shapes of states that are kept before all are forgotten."""
@@ -45,7 +53,7 @@ class BoundRule:
     places: slice
     number: int
 
-    def edges(self, nodes: Sequence[GroupNode]) -> list[MonitorEdge]:
+    def edges(self, nodes: Sequence[GroupNode]) -> list[Edge]:
         """The edge of the rule's monitor for each binding."""
         return [node.edges[self.number] for node in nodes[self.places]]
 
@@ -60,6 +68,14 @@ class BoundRules:
         self.groups = groups
         self._rulebook = rulebook
         self._counting = any(counts(axiom.formula) for axiom in rulebook.axioms)
+        declarations = rulebook.vocabulary.declarations
+        # What facts say of numbers is not among what tells encoded states apart.
+        self._weighing = any(
+            isinstance(declarations[name], Quantity)
+            for axiom in rulebook.axioms
+            for name in names_in(axiom.formula)
+        )
+        self._partial: dict[KnownState, Letters] = {}
         self._readers: dict[tuple[str, ...], GroupLetters | None] = {}
         self._bindings: list[tuple[RuleGroup, tuple[Items, ...]]] = []
         by_name: dict[str, BoundRule] = {}
@@ -92,7 +108,17 @@ class BoundRules:
                     return reader.letters(state, encoded), known
         except (LookupError, TypeError):
             pass
-        return self._careful_letters(state, number, place), known
+        with suppress(LookupError, TypeError):
+            return self._partial[known], known  # type: ignore[index]
+        letters, is_partial = self._careful_letters(state, number, place)
+        if not is_partial:
+            return letters, known
+        if known is None or self._weighing:
+            return letters, None
+        if len(self._partial) >= MOST_STATES:
+            self._partial.clear()
+        self._partial[known] = letters
+        return letters, known
 
     def _reader_of(self, names: tuple[str, ...]) -> GroupLetters | None:
         """Reader of states with these names; None for the careful way."""
@@ -109,22 +135,36 @@ class BoundRules:
             self._readers[names] = GroupLetters(shape, self._bindings)
         return self._readers[names]
 
-    def _careful_letters(self, state: State, number: int, place: SourceLocation | None) -> Letters:
-        """Letters read like ``verify`` does, with all cases and errors."""
+    def _careful_letters(
+        self, state: State, number: int, place: SourceLocation | None
+    ) -> tuple[Letters, bool]:
+        """Letters read like ``verify`` does, with all cases and errors.
+
+        Also whether some value is partly known, or the past is not.
+        """
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)
-        where = name.format
-        reader = LetterReader((state,), rulebook, where, place=place, objects=self.objects)
-        check_counting_axioms(rulebook, 1, reader.view, where, place)
-        classes = {
-            bound_rule.prepared.name: [
-                reader.word(bound_rule.prepared.rule, bound_rule.prepared.bound(items), 0, 0)[0]
-                for items in bound_rule.bindings
-            ]
-            for bound_rule in self.rules
-        }
+        reader = LetterReader((state,), rulebook, name.format, place=place, objects=self.objects)
+        check_counting_axioms(rulebook, 1, reader.view, name.format, place)
+        is_partial = self.groups.is_partial or has_partial_values(state)
+        if is_partial:
+            # numpy, a tenth of a second, is loaded only where something is unknown.
+            from rulec.monitoring.online.partial_states import possible_classes
+
+            bound = [(bound_rule.prepared, bound_rule.bindings) for bound_rule in self.rules]
+            classes: Mapping[str, Sequence[LetterClass]] = possible_classes(
+                bound, state, rulebook, self.objects, (name, place)
+            )
+        else:
+            classes = {
+                bound_rule.prepared.name: [
+                    reader.word(bound_rule.prepared.rule, bound_rule.prepared.bound(items), 0, 0)[0]
+                    for items in bound_rule.bindings
+                ]
+                for bound_rule in self.rules
+            }
         letters = []
         for group in self.groups.groups:
             words = [classes[prepared.name] for prepared in group.rules]
             letters += [group.letter(classes_read) for classes_read in zip(*words, strict=True)]
-        return letters
+        return letters, is_partial

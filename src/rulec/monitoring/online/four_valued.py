@@ -6,9 +6,9 @@ Journal of Logic and Computation 20(3), 2010.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 from rulec.automata.mealy_monitor import MealyMonitor
 
@@ -19,6 +19,38 @@ FourValued: TypeAlias = Literal["satisfied", "violated", "holds so far", "pendin
 other two the end decides: if it came now, what ``holds so far`` would be kept, and what is
 ``pending`` violated.
 """
+
+
+class VerdictRange(NamedTuple):
+    """The best and the worst of a verdict where not all is known; they differ."""
+
+    best: FourValued
+    worst: FourValued
+
+    def __str__(self) -> str:
+        return f"{self.worst} to {self.best}"
+
+
+RunningVerdict: TypeAlias = "FourValued | VerdictRange"
+"""A verdict that is known, or within which it lies."""
+
+LetterClass: TypeAlias = int | frozenset[int]
+"""A class of letters, or several of which a state has one."""
+
+
+def best_of(verdict: RunningVerdict) -> FourValued:
+    """The verdict at best."""
+    return verdict.best if isinstance(verdict, VerdictRange) else verdict
+
+
+def worst_of(verdict: RunningVerdict) -> FourValued:
+    """The verdict at worst."""
+    return verdict.worst if isinstance(verdict, VerdictRange) else verdict
+
+
+def within(best: FourValued, worst: FourValued) -> RunningVerdict:
+    """The verdict that lies between these two."""
+    return best if best == worst else VerdictRange(best, worst)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,19 +70,30 @@ def linked_edges(
     machine: MealyMonitor,
 ) -> tuple[MonitorEdge, dict[tuple[int, FourValued], MonitorEdge]]:
     """Where a monitor is before its first letter, and its edges by state reached and verdict."""
-    rows: list[list[MonitorEdge]] = [[] for _ in machine.successors]
-    edges: dict[tuple[int, FourValued], MonitorEdge] = {}
-    for state, row in enumerate(rows):
-        for target, accepted in zip(machine.successors[state], machine.outputs[state], strict=True):
-            verdict = four_valued(machine, target, accepted=accepted)
-            if (target, verdict) not in edges:
-                edges[target, verdict] = MonitorEdge(rows[target], target, verdict)
-            row.append(edges[target, verdict])
+    verdicts = [
+        [four_valued(machine, *ends) for ends in zip(targets, row, strict=True)]
+        for targets, row in zip(machine.successors, machine.outputs, strict=True)
+    ]
+    rows, edges = edges_between(machine.successors, verdicts)
     before_all: FourValued = "satisfied" if machine.accepting_sink == 0 else "holds so far"
     return MonitorEdge(rows[0], 0, before_all), edges
 
 
-def four_valued(machine: MealyMonitor, state: int, *, accepted: bool) -> FourValued:
+def edges_between(
+    successors: Sequence[Sequence[int]], verdicts: Sequence[Sequence[FourValued]]
+) -> tuple[list[list[MonitorEdge]], dict[tuple[int, FourValued], MonitorEdge]]:
+    """The edges that leave each state, and all by state reached and verdict."""
+    rows: list[list[MonitorEdge]] = [[] for _ in successors]
+    edges: dict[tuple[int, FourValued], MonitorEdge] = {}
+    for row, targets, said in zip(rows, successors, verdicts, strict=True):
+        for target, verdict in zip(targets, said, strict=True):
+            if (target, verdict) not in edges:
+                edges[target, verdict] = MonitorEdge(rows[target], target, verdict)
+            row.append(edges[target, verdict])
+    return rows, edges
+
+
+def four_valued(machine: MealyMonitor, state: int, accepted: bool) -> FourValued:
     """Four-valued verdict (RV-LTL) on a word that leads to a state."""
     # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
     if accepted:
@@ -58,10 +101,21 @@ def four_valued(machine: MealyMonitor, state: int, *, accepted: bool) -> FourVal
     return "violated" if state == machine.rejecting_sink else "pending"
 
 
-def conjunction(verdicts: Iterable[FourValued]) -> FourValued:
-    """The verdict on several rules together; nothing at all is satisfied."""
+def conjunction(verdicts: Iterable[RunningVerdict]) -> RunningVerdict:
+    """The verdict on several rules together; nothing at all is satisfied.
+
+    Each may come out anywhere in its range, whatever the others do.
+    """
     distinct = set(verdicts)
-    return next((verdict for verdict in _WORST_FIRST if verdict in distinct), "satisfied")
+    if _FOUR.issuperset(distinct):
+        return _worst(distinct)
+    return within(_worst(map(best_of, distinct)), _worst(map(worst_of, distinct)))
 
 
-_WORST_FIRST: tuple[FourValued, ...] = ("violated", "pending", "holds so far")
+def _worst(verdicts: Iterable[RunningVerdict]) -> FourValued:
+    distinct = set(verdicts)
+    return next((verdict for verdict in WORST_FIRST if verdict in distinct), "satisfied")
+
+
+WORST_FIRST: tuple[FourValued, ...] = ("violated", "pending", "holds so far", "satisfied")
+_FOUR = frozenset(WORST_FIRST)

@@ -17,6 +17,7 @@ from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView
 from rulec.trace import State
 from rulec.vocabulary import Enumeration
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES
 
 MOST = 1 << 12
 """States of the world, and letters of each group in them, kept before all are forgotten."""
@@ -45,7 +46,7 @@ class GroupLetters:
         for (name, items), (part, place) in shape.places.items():
             declaration = shape.vocabulary.declarations[name]
             if isinstance(declaration, Enumeration) and (name, items) not in read:
-                values = frozenset([*declaration.values, encoded_values.MISSING])
+                values = frozenset([*declaration.values, encoded_values.MISSING, UNKNOWN])
                 self._unread.append((part, slice(place, place + 1), values))
         self._by_world: dict[tuple[Encoded, ...], list[_ReadLetters]] = {}
 
@@ -94,7 +95,11 @@ class _LetterTable(dict[Any, int]):
             read: read.digit(value, self._breakpoints)
             for read, value in zip(self._own, encoded, strict=True)
         }
-        letter = self._group.letter_of({**self._others, **digits})
+        digits = {**self._others, **digits}
+        if UNKNOWN_TYPES.isdisjoint(map(type, digits.values())):
+            letter = self._group.letter_of(digits)
+        else:
+            letter = self._group.letter_of_partial(digits)
         if len(self) >= MOST:
             self.clear()
         self[key] = letter

@@ -29,7 +29,7 @@ def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> Monitor:
     Raises RulecError R0501 to R0508 if the trace does not fit the rulebook, as in ``verify``.
     """
     check_trace(trace)
-    monitor = Monitor(rulebook, trace.step_s)
+    monitor = Monitor(rulebook, trace.step_s, told=trace.told)
     check_objects(trace.objects, rulebook.vocabulary, trace.place)
     for number, state in enumerate(trace.states):
         check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)

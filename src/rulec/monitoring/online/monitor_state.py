@@ -5,12 +5,20 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
 from operator import getitem
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import msgspec
 
 from rulec.monitoring.online.bound_rules import BoundRules, Letters
-from rulec.monitoring.online.four_valued import FourValued, MonitorEdge, conjunction
+from rulec.monitoring.online.four_valued import (
+    FourValued,
+    RunningVerdict,
+    VerdictRange,
+    best_of,
+    conjunction,
+    within,
+    worst_of,
+)
 from rulec.monitoring.online.rule_group import (
     GroupNode,
     OtherVerdictError,
@@ -18,6 +26,9 @@ from rulec.monitoring.online.rule_group import (
     RuleGroup,
 )
 from rulec.value_display import short_repr
+
+if TYPE_CHECKING:
+    from rulec.monitoring.online.uncertain_steps import Edge
 
 
 class VerdictChange(NamedTuple):
@@ -29,8 +40,8 @@ class VerdictChange(NamedTuple):
 
     rule: str
     binding: Mapping[str, str]
-    before: FourValued
-    verdict: FourValued
+    before: RunningVerdict
+    verdict: RunningVerdict
     ended: bool = False
 
     def __reduce__(self) -> tuple[type[VerdictChange], tuple[Any, ...]]:
@@ -43,15 +54,26 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
 
     ``state`` is its number, from 0. ``verdict`` is that of all hard rules together, ``rules`` has
     each rule's, soft ones included, ``changes`` what is new, in the order of rules and objects.
+    Where not all is known a verdict may be a ``VerdictRange``.
     """
 
     __repr__ = short_repr
 
     # A struct is made several times as quickly as a dataclass or a named tuple.
     state: int
-    verdict: FourValued
-    rules: Mapping[str, FourValued]
+    verdict: RunningVerdict
+    rules: Mapping[str, RunningVerdict]
     changes: tuple[VerdictChange, ...] = ()
+
+    @property
+    def best(self) -> FourValued:
+        """The verdict on all hard rules together, at best."""
+        return best_of(self.verdict)
+
+    @property
+    def worst(self) -> FourValued:
+        """The verdict on all hard rules together, at worst."""
+        return worst_of(self.verdict)
 
     def __reduce__(self) -> tuple[type[SoFar], tuple[Any, ...]]:
         return SoFar, (self.state, self.verdict, dict(self.rules), self.changes)
@@ -61,19 +83,23 @@ class MonitorState(msgspec.Struct, frozen=True, eq=False):
     """State of a monitor for fixed objects, without the state's number.
 
     ``nodes`` are the states of each group's machines for each binding, in the order of the groups.
-    ``n_violations`` is how many bindings have violated their rule for good. ``after`` is a cache of
-    the steps that follow, by the keys of states.
+    ``n_violations`` is how many bindings have violated their rule for good; rules that are
+    ``doubted`` may have been violated by objects that have left. ``after`` is a cache of the steps
+    that follow, by the keys of states.
     """
 
     bound_rules: BoundRules
     nodes: tuple[GroupNode, ...]
-    verdict: FourValued
-    rules: Mapping[str, FourValued]
+    verdict: RunningVerdict
+    rules: Mapping[str, RunningVerdict]
     n_violations: int
+    doubted: frozenset[str] = frozenset()
     after: dict[Hashable, StepResult] = msgspec.field(default_factory=dict)
 
 
-_NONE_KNOWN: Mapping[str, FourValued] = MappingProxyType({})
+_NONE_KNOWN: Mapping[str, RunningVerdict] = MappingProxyType({})
+_NONE: frozenset[str] = frozenset()
+_OPEN_AT_END = frozenset({"satisfied", "holds so far"})
 
 StepResult: TypeAlias = tuple[MonitorState, tuple[VerdictChange, ...]]
 """The next state of a monitor, and what changes by the step."""
@@ -85,12 +111,10 @@ def initial_state(bound_rules: BoundRules) -> MonitorState:
         bound_rule.prepared.name: [bound_rule.prepared.start] * len(bound_rule.bindings)
         for bound_rule in bound_rules.rules
     }
-    return state_at(bound_rules, nodes_at(bound_rules, start), frozenset(), 0)
+    return state_at(bound_rules, nodes_at(bound_rules, start), (_NONE, _NONE), 0)
 
 
-def nodes_at(
-    bound_rules: BoundRules, edges: Mapping[str, Sequence[MonitorEdge]]
-) -> tuple[GroupNode, ...]:
+def nodes_at(bound_rules: BoundRules, edges: Mapping[str, Sequence[Edge]]) -> tuple[GroupNode, ...]:
     """The nodes with these edges, given for each rule and binding."""
     nodes: list[GroupNode] = []
     for group in bound_rules.groups.groups:
@@ -112,10 +136,11 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
         except OtherVerdictError:
             pass
         else:
-            rules = current.rules
-            return MonitorState(
-                bound_rules, nodes, current.verdict, rules, current.n_violations
-            ), ()
+            verdict, n_violations = current.verdict, current.n_violations
+            after = MonitorState(
+                bound_rules, nodes, verdict, current.rules, n_violations, doubted=current.doubted
+            )
+            return after, ()
     else:
         edges, changes = carry_over(current.bound_rules, current.nodes, bound_rules)
         before = nodes_at(bound_rules, edges)
@@ -124,22 +149,26 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
     violated_rules = {rule for rule, verdict in current.rules.items() if verdict == "violated"}
     violated_rules.update(change.rule for change in changes if change.verdict == "violated")
     n_violations = current.n_violations + sum(change.verdict == "violated" for change in changes)
+    doubted = current.doubted.union(
+        [change.rule for change in changes if change.ended and change.verdict != "violated"]
+    )
     # A rule's verdict changes only if it does so for an object that stays, comes or leaves.
     unchanged = current.rules.keys() - {change.rule for change in changes}
     known = {rule: current.rules[rule] for rule in unchanged}
-    return state_at(bound_rules, nodes, violated_rules, n_violations, known), tuple(changes)
+    lost = violated_rules, doubted
+    return state_at(bound_rules, nodes, lost, n_violations, known), tuple(changes)
 
 
 def carry_over(
     bound_rules: BoundRules, nodes: Sequence[GroupNode], into: BoundRules
-) -> tuple[dict[str, list[MonitorEdge]], list[VerdictChange]]:
+) -> tuple[dict[str, list[Edge]], list[VerdictChange]]:
     """First edges of bindings, by rule, after the objects have changed.
 
     A binding goes on if its objects have stayed, that is, are there under the same names and of the
     same types; others start. There are also the changes by bindings that end.
     """
     stayed = {name for name, kind in bound_rules.objects.items() if into.objects.get(name) == kind}
-    entered: dict[str, list[MonitorEdge]] = {}
+    entered: dict[str, list[Edge]] = {}
     ended: list[VerdictChange] = []
     for before, after in zip(bound_rules.rules, into.rules, strict=True):
         prepared = after.prepared
@@ -147,11 +176,21 @@ def carry_over(
         for items, edge in zip(before.bindings, before.edges(nodes), strict=True):
             if stayed.issuperset(items):
                 known[items] = edge
-            elif edge.verdict == "pending":
+            elif edge.verdict == "pending" or isinstance(edge.verdict, VerdictRange):
                 binding = MappingProxyType(prepared.bound(items))
-                ended.append(VerdictChange(prepared.name, binding, "pending", "violated", True))
+                after_all = _at_the_end(edge.verdict)
+                if after_all != "satisfied":
+                    change = VerdictChange(prepared.name, binding, edge.verdict, after_all, True)
+                    ended.append(change)
         entered[prepared.name] = [known.get(items, prepared.start) for items in after.bindings]
     return entered, ended
+
+
+def _at_the_end(verdict: RunningVerdict) -> RunningVerdict:
+    """What a verdict comes to when its objects part."""
+    best: FourValued = "satisfied" if best_of(verdict) in _OPEN_AT_END else "violated"
+    worst: FourValued = "satisfied" if worst_of(verdict) in _OPEN_AT_END else "violated"
+    return within(best, worst)
 
 
 def _changes(
@@ -174,31 +213,35 @@ def _changes(
 def state_at(
     bound_rules: BoundRules,
     nodes: tuple[GroupNode, ...],
-    violated_rules: Set[str],
+    lost: tuple[Set[str], frozenset[str]],
     n_violations: int,
-    known: Mapping[str, FourValued] = _NONE_KNOWN,
+    known: Mapping[str, RunningVerdict] = _NONE_KNOWN,
 ) -> MonitorState:
     """The monitor's state with these nodes, where some rules' verdicts are ``known``.
 
-    ``violated_rules`` are violated for good, by objects now present or not.
+    ``lost`` are rules violated for good, by objects now present or not, and rules that are doubted.
     """
     rules = {
         bound_rule.prepared.name: known.get(bound_rule.prepared.name)
-        or _verdict_on(bound_rule.prepared, bound_rule.edges(nodes), violated_rules)
+        or _verdict_on(bound_rule.prepared, bound_rule.edges(nodes), lost)
         for bound_rule in bound_rules.rules
     }
     verdict = conjunction(rules[rule] for rule in bound_rules.hard)
-    return MonitorState(bound_rules, nodes, verdict, MappingProxyType(rules), n_violations)
+    read_only = MappingProxyType(rules)
+    return MonitorState(bound_rules, nodes, verdict, read_only, n_violations, doubted=lost[1])
 
 
 def _verdict_on(
-    prepared: PreparedRule, edges: Sequence[MonitorEdge], violated_rules: Set[str]
-) -> FourValued:
-    if prepared.name in violated_rules:
+    prepared: PreparedRule, edges: Sequence[Edge], lost: tuple[Set[str], Set[str]]
+) -> RunningVerdict:
+    violated, doubted = lost
+    if prepared.name in violated:
         return "violated"
     verdict = conjunction({edge.verdict for edge in edges})
     # What all that are present have satisfied for good another may still come and violate.
-    rule = prepared.rule
-    if verdict == "satisfied" and rule.variables and rule.machine.accepting_sink != 0:
-        return "holds so far"
-    return verdict
+    if prepared.rule.variables and prepared.start.verdict != "satisfied":
+        if verdict == "satisfied":
+            verdict = "holds so far"
+        elif isinstance(verdict, VerdictRange) and verdict.best == "satisfied":
+            verdict = within("holds so far", verdict.worst)
+    return within(best_of(verdict), "violated") if prepared.name in doubted else verdict

@@ -8,10 +8,11 @@ when they are first met.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.monitoring.online.encoding.encoded_values import (
     Breakpoints,
@@ -20,20 +21,52 @@ from rulec.monitoring.online.encoding.encoded_values import (
     breakpoints_of,
     monitor_inputs,
 )
-from rulec.monitoring.online.four_valued import FourValued, MonitorEdge, linked_edges
+from rulec.monitoring.online.four_valued import (
+    FourValued,
+    LetterClass,
+    MonitorEdge,
+    RunningVerdict,
+    linked_edges,
+)
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES
+
+if TYPE_CHECKING:
+    from rulec.automata.outcome_machine import OutcomeMachine
+    from rulec.monitoring.online.uncertain_steps import Edge, UncertainSteps
 
 MOST_CACHED = 1 << 18
 """Nodes, letters and transitions that are kept before all are forgotten."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class PreparedRule:
-    """A rule prepared for any objects: its monitor's ``start`` and ``edges``, and its inputs."""
+    """A rule prepared for any objects: its monitor's ``start`` and ``edges``, and its inputs.
+
+    ``letters`` has the class of each letter. ``axioms`` are the rulebook's.
+    """
 
     rule: CompiledRule
-    start: MonitorEdge
+    start: Edge
     edges: Mapping[tuple[int, FourValued], MonitorEdge]
     inputs: tuple[tuple[MonitorInput, DigitWeight], ...]
+    letters: tuple[int, ...]
+    axioms: tuple[CompiledAxiom, ...] = ()
+
+    @cached_property
+    def uncertain(self) -> UncertainSteps:
+        """The steps where not all is known."""
+        # numpy, a tenth of a second, is loaded only where something is unknown.
+        from rulec.automata.outcome_machine import of_running_words
+        from rulec.monitoring.online.uncertain_steps import UncertainSteps
+
+        return UncertainSteps(of_running_words(self.rule.machine), self.edges)
+
+    @cached_property
+    def is_joint(self) -> bool:
+        """Whether what is unknown may have to do with other values of a state."""
+        from rulec.monitoring.uncertainty.possible_letters import is_joint  # as above
+
+        return is_joint(self.rule, self.axioms)
 
     @property
     def name(self) -> str:
@@ -59,10 +92,10 @@ class GroupNode(dict[int, "GroupNode"]):
     __eq__ = object.__eq__
     __hash__ = object.__hash__  # type: ignore[assignment]
 
-    def __init__(self, group: RuleGroup, edges: tuple[MonitorEdge, ...]) -> None:
+    def __init__(self, group: RuleGroup, edges: tuple[Edge, ...]) -> None:
         self.group = group
         self.edges = edges
-        self.verdicts: tuple[FourValued, ...] = tuple([edge.verdict for edge in edges])
+        self.verdicts: tuple[RunningVerdict, ...] = tuple([edge.verdict for edge in edges])
 
     def __missing__(self, letter: int) -> GroupNode:
         node = self.successor(letter)
@@ -75,10 +108,19 @@ class GroupNode(dict[int, "GroupNode"]):
     def successor(self, letter: int) -> GroupNode:
         """The node behind a letter."""
         classes = self.group.classes[letter]
-        edges = [
-            edge.successors[letter_class]
-            for edge, letter_class in zip(self.edges, classes, strict=True)
-        ]
+        try:
+            edges: list[Edge] = [
+                edge.successors[letter_class]  # type: ignore[index]
+                for edge, letter_class in zip(self.edges, classes, strict=True)
+            ]
+        except (TypeError, LookupError):
+            # Several classes are no index, and several edges have no successors.
+            edges = [
+                prepared.uncertain.after(edge, letter_class)
+                for prepared, edge, letter_class in zip(
+                    self.group.rules, self.edges, classes, strict=True
+                )
+            ]
         return self.group.node(tuple(edges))
 
 
@@ -102,18 +144,18 @@ class RuleGroup:
         inputs = dict.fromkeys(read for prepared in rules for read, _ in prepared.inputs)
         self.own = tuple([read for read in inputs if read.places or read.name is None])
         self.world = tuple([read for read in inputs if read not in self.own])
-        self.classes: list[tuple[int, ...]] = []
-        self._letters: dict[tuple[int, ...], int] = {}
-        self._nodes: dict[tuple[MonitorEdge, ...], GroupNode] = {}
+        self.classes: list[tuple[LetterClass, ...]] = []
+        self._letters: dict[tuple[LetterClass, ...], int] = {}
+        self._nodes: dict[tuple[Edge, ...], GroupNode] = {}
 
-    def node(self, edges: tuple[MonitorEdge, ...]) -> GroupNode:
+    def node(self, edges: tuple[Edge, ...]) -> GroupNode:
         """The node with these edges, one for each rule."""
         if edges not in self._nodes:
             self._nodes[edges] = GroupNode(self, edges)
             self.cache_size.n += 1
         return self._nodes[edges]
 
-    def letter(self, classes: tuple[int, ...]) -> int:
+    def letter(self, classes: tuple[LetterClass, ...]) -> int:
         """The letter that has these classes, one for each rule."""
         if classes not in self._letters:
             self._letters[classes] = len(self.classes)
@@ -129,20 +171,48 @@ class RuleGroup:
         classes = []
         for prepared in self.rules:
             number = sum([weight_of(digits[read]) for read, weight_of in prepared.inputs])
-            classes.append(prepared.rule.machine.letters[number])
+            classes.append(prepared.letters[number])
         if IMPOSSIBLE in classes:
             raise LookupError
+        return self.letter(tuple(classes))
+
+    def letter_of_partial(self, digits: Mapping[MonitorInput, Any]) -> int:
+        """The letter where some inputs have, in place of digits, values that are partly known.
+
+        Raises LookupError or TypeError as ``letter_of``, or if this takes a closer look.
+        """
+        from rulec.monitoring.online.uncertain_steps import mask_of  # numpy, as above
+
+        classes: list[LetterClass] = []
+        for prepared in self.rules:
+            masks, is_partial = [], False
+            reads = prepared.rule.machine.reads
+            for (read, weight_of), machine_read in zip(prepared.inputs, reads, strict=True):
+                if type(digits[read]) in UNKNOWN_TYPES:
+                    is_partial = True
+                else:
+                    weight_of(digits[read])
+                masks.append(mask_of(machine_read, digits[read]))
+            if is_partial and prepared.is_joint:
+                raise LookupError
+            letter_class = prepared.uncertain.letter_class((tuple(masks),))
+            if letter_class is None:
+                raise LookupError
+            classes.append(letter_class)
         return self.letter(tuple(classes))
 
 
 class RuleGroups:
     """Rules of a rulebook, singly and grouped by their variables' types.
 
-    The groups cache their nodes, letters and transitions.
+    The groups cache their nodes, letters and transitions. With ``is_partial`` names that no state
+    says may be unknown, or the past is.
     """
 
-    def __init__(self, rules: Sequence[PreparedRule], breakpoints: Breakpoints) -> None:
-        self.rules, self.breakpoints = tuple(rules), breakpoints
+    def __init__(
+        self, rules: Sequence[PreparedRule], breakpoints: Breakpoints, *, is_partial: bool = False
+    ) -> None:
+        self.rules, self.breakpoints, self.is_partial = tuple(rules), breakpoints, is_partial
         self.cache_size = CacheSize()
         by_types: dict[tuple[str, ...], list[PreparedRule]] = {}
         for prepared in rules:
@@ -154,15 +224,32 @@ class RuleGroups:
 
     def without_cache(self) -> RuleGroups:
         """These groups as they were at first."""
-        return RuleGroups(self.rules, self.breakpoints)
+        return RuleGroups(self.rules, self.breakpoints, is_partial=self.is_partial)
 
 
-def rule_groups(rulebook: CompiledRulebook) -> RuleGroups:
-    """Prepare the rules of a rulebook."""
-    rules = [
-        PreparedRule(
-            rule, *linked_edges(rule.machine), tuple(monitor_inputs(rule, rulebook.vocabulary))
+def rule_groups(
+    rulebook: CompiledRulebook, cut: Mapping[str, OutcomeMachine] | None = None
+) -> RuleGroups:
+    """Prepare the rules of a rulebook; ``cut`` are their machines if the past is not known."""
+    rules = []
+    for rule in rulebook.rules:
+        prepared = PreparedRule(
+            rule,
+            *linked_edges(rule.machine),
+            tuple(monitor_inputs(rule, rulebook.vocabulary)),
+            rule.machine.letters,
+            rulebook.axioms,
         )
-        for rule in rulebook.rules
-    ]
-    return RuleGroups(rules, breakpoints_of(rulebook))
+        rules.append(prepared if cut is None else _of_cut(prepared, cut[rule.name]))
+    defaults = [declaration.default for declaration in rulebook.vocabulary.declarations.values()]
+    is_partial = cut is not None or any(type(value) in UNKNOWN_TYPES for value in defaults)
+    return RuleGroups(rules, breakpoints_of(rulebook), is_partial=is_partial)
+
+
+def _of_cut(prepared: PreparedRule, machine: OutcomeMachine) -> PreparedRule:
+    from rulec.monitoring.online.uncertain_steps import cut_edges  # numpy, as above
+
+    start, edges, steps = cut_edges(machine)
+    prepared = replace(prepared, start=start, edges=edges, letters=machine.letters)
+    vars(prepared)["uncertain"] = steps
+    return prepared

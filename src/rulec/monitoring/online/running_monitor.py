@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Any, TypeAlias
@@ -11,6 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.online.bound_rules import BoundRules
+from rulec.monitoring.online.four_valued import MonitorEdge
 from rulec.monitoring.online.monitor_state import (
     MonitorState,
     SoFar,
@@ -20,7 +21,7 @@ from rulec.monitoring.online.monitor_state import (
     take_step,
 )
 from rulec.monitoring.online.rule_group import MOST_CACHED, rule_groups
-from rulec.monitoring.online.snapshot import from_data, restored, to_data
+from rulec.monitoring.online.snapshot import from_data, restored, to_data, with_source
 from rulec.monitoring.online.transition_cache import TransitionCache
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import CarriedState, Violation
@@ -46,11 +47,22 @@ class Monitor:
         rulebook: the rules; they are not compiled here.
         step_s: seconds from one state to the next; needed only by rules with bounds in seconds. If
             left out, the step that they were compiled for.
+        told: the names that the source can tell; others are unknown where no state says them, bar
+            those with ``presumed`` defaults. If left out, all have their defaults.
+        cut: what was before the first state, and before an object was there, is unknown.
 
-    Raises RulecError R0507 if a rule was compiled for another step and cannot be compiled again.
+    Raises RulecError R0507 if a rule was compiled for another step and cannot be compiled again,
+    R0403 if it is cut and Spot is not installed.
     """
 
-    def __init__(self, rulebook: CompiledRulebook, step_s: Fraction | float | None = None) -> None:
+    def __init__(
+        self,
+        rulebook: CompiledRulebook,
+        step_s: Fraction | float | None = None,
+        *,
+        told: Iterable[str] | None = None,
+        cut: bool = False,
+    ) -> None:
         steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
         self._step_s = exact_step(step_s) if step_s is not None else steps[0] if steps else None
         if self._step_s is not None:
@@ -59,7 +71,16 @@ class Monitor:
                 check_step(rule, self._step_s, "the monitor")
         self._rulebook = rulebook
         self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
-        start = initial_state(BoundRules(rulebook, rule_groups(rulebook), NO_OBJECTS))
+        self._told = None if told is None else frozenset(told)
+        self._cut = cut
+        machines = None
+        if self._told is not None or cut:
+            # numpy, a tenth of a second, is loaded only where something is unknown.
+            from rulec.monitoring.online.dark_sources import judged_rules
+
+            rulebook, machines = judged_rules(rulebook, self._told, cut=cut)
+        self._judged = rulebook
+        start = initial_state(BoundRules(rulebook, rule_groups(rulebook, machines), NO_OBJECTS))
         self._now: _Now = start, -1, (), TransitionCache()
         self._violations: list[Violation] = []
 
@@ -67,6 +88,12 @@ class Monitor:
     def rulebook(self) -> CompiledRulebook:
         """The rules that judge."""
         return self._rulebook
+
+    @property
+    def not_judged(self) -> tuple[str, ...]:
+        """The rules that nothing can be said of, for want of what the source cannot tell."""
+        judged = {rule.name for rule in self._judged.rules}
+        return tuple(rule.name for rule in self._rulebook.rules if rule.name not in judged)
 
     @property
     def step_s(self) -> Fraction | None:
@@ -142,11 +169,11 @@ class Monitor:
         else:
             if not isinstance(objects, Mapping):
                 raise _no_object("what is given as objects", "names and types", place)
-            check_objects(objects, self._rulebook.vocabulary, place)
+            check_objects(objects, self._judged.vocabulary, place)
         is_full = bound_rules.groups.cache_size.n > MOST_CACHED
         if is_full or not same_objects:
             groups = bound_rules.groups.without_cache() if is_full else bound_rules.groups
-            bound_rules, cache = BoundRules(self._rulebook, groups, objects), TransitionCache()
+            bound_rules, cache = BoundRules(self._judged, groups, objects), TransitionCache()
         if type(state) is not dict and not isinstance(state, Mapping):
             raise _no_object(f"state {number}", "names and values", place)
         letters, known = bound_rules.read(state, number, place)
@@ -168,24 +195,34 @@ class Monitor:
         return SoFar(number, after.verdict, after.rules, changes)
 
     def past(self, objects: Mapping[str, str]) -> CarriedState:
-        """Past that affects verdicts on future states with these objects."""
+        """Past that affects verdicts on future states with these objects.
+
+        Raises ValueError if it is not known in which states the rules' machines are.
+        """
         current = self._now[0]
-        bound_rules = BoundRules(self._rulebook, current.bound_rules.groups, objects)
+        if self._cut or self.not_judged:
+            raise ValueError("it depends on what is unknown")
+        bound_rules = BoundRules(self._judged, current.bound_rules.groups, objects)
         edges, ended = carry_over(current.bound_rules, current.nodes, bound_rules)
         states, settled = {}, set()
         for bound_rule in bound_rules.rules:
             name = bound_rule.prepared.name
             for items, edge in zip(bound_rule.bindings, edges[name], strict=True):
+                if not isinstance(edge, MonitorEdge):
+                    raise ValueError("it depends on what is unknown")
                 states[name, items] = edge.state
                 if edge.verdict == "violated":
                     settled.add((name, items))
+        if current.doubted or any(change.verdict != "violated" for change in ended):
+            raise ValueError("it depends on what is unknown")
         lost = [self._violation(change, None) for change in ended]
         return CarriedState(states, frozenset(settled), (*self.violations, *lost))
 
     def snapshot(self) -> dict[str, Any]:
         """The monitor's state, for ``restore``: data that JSON can take."""
         current, number, *_ = self._now
-        return to_data(current, number, self._rulebook, self._step_s, self.violations)
+        data = to_data(current, number, self._rulebook, self._step_s, self.violations)
+        return with_source(data, self._told, cut=self._cut)
 
     @classmethod
     def restore(
@@ -201,9 +238,9 @@ class Monitor:
         Raises RulecError R0510 if this is no snapshot, one of other rules, or damaged.
         """
         saved, step_s = from_data(snapshot, rulebook, place)
-        monitor = cls(rulebook, step_s)
+        monitor = cls(rulebook, step_s, told=saved.told, cut=saved.cut)
         groups = monitor._now[0].bound_rules.groups
-        number, current, violations = restored(saved, rulebook, groups, place)
+        number, current, violations = restored(saved, monitor._judged, groups, place)
         monitor._now, monitor._violations = (current, number, (), TransitionCache()), violations
         return monitor
 
@@ -228,8 +265,9 @@ def _unpickled(
     violations: list[Violation],
 ) -> Monitor:
     """A monitor in another one's state; its caches are empty."""
-    monitor = Monitor(rulebook, step_s)
-    current, number, _, cache = Monitor.restore(rulebook, snapshot)._now
+    monitor = Monitor.restore(rulebook, snapshot)
+    monitor._step_s = step_s
+    current, number, _, cache = monitor._now
     monitor._now, monitor._violations = (current, number, changes, cache), violations
     return monitor
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from fractions import Fraction
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
@@ -16,14 +16,18 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.bound_rules import BoundRules
-from rulec.monitoring.online.four_valued import FourValued, MonitorEdge
+from rulec.monitoring.online.four_valued import FourValued, MonitorEdge, VerdictRange
 from rulec.monitoring.online.monitor_state import MonitorState, initial_state, nodes_at, state_at
-from rulec.monitoring.online.rule_group import RuleGroups
+from rulec.monitoring.online.rule_group import PreparedRule, RuleGroups
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
 
+if TYPE_CHECKING:
+    from rulec.monitoring.online.uncertain_steps import Edge
+
 FORMAT = "rulec monitor"
-VERSION = 1
+VERSION, PARTIAL_VERSION = 1, 2
+"""Versions of files; the second is of monitors of which not all is known."""
 
 
 class _Header(msgspec.Struct):
@@ -33,8 +37,8 @@ class _Header(msgspec.Struct):
 
 class _Binding(msgspec.Struct, forbid_unknown_fields=True):
     objects: tuple[str, ...]
-    state: int
-    verdict: FourValued
+    state: int | list[int]
+    verdict: FourValued | tuple[FourValued, FourValued]
 
 
 class _Rule(msgspec.Struct, forbid_unknown_fields=True):
@@ -49,7 +53,11 @@ class _Violation(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class SavedMonitor(msgspec.Struct, forbid_unknown_fields=True):
-    """Saved monitor: its number of ``states``, and states by rule and binding."""
+    """Saved monitor: its number of ``states``, and states by rule and binding.
+
+    Where not all is known there are several states, and the best and the worst verdict; ``doubted``
+    are rules that objects that have left may have violated, ``told`` and ``cut`` as of a trace.
+    """
 
     format: str
     version: int
@@ -60,6 +68,9 @@ class SavedMonitor(msgspec.Struct, forbid_unknown_fields=True):
     objects: dict[str, str]
     rules: list[_Rule]
     violations: list[_Violation]
+    told: list[str] | None = None
+    cut: bool = False
+    doubted: list[str] = []
 
 
 def to_data(
@@ -70,9 +81,12 @@ def to_data(
     violations: Sequence[Violation],
 ) -> dict[str, Any]:
     """JSON data of a monitor after a state, for ``from_data``."""
+    edges = {rule: rule.edges(current.nodes) for rule in current.bound_rules.rules}
+    single = all(isinstance(edge, MonitorEdge) for row in edges.values() for edge in row)
+    doubted = sorted(current.doubted)
     return {
         "format": FORMAT,
-        "version": VERSION,
+        "version": VERSION if single and not doubted else PARTIAL_VERSION,
         "rulebook": rulebook.name,
         "machines": fingerprint(rulebook),
         "step_s": None if step_s is None else str(step_s),
@@ -82,17 +96,36 @@ def to_data(
             {
                 "rule": rule.prepared.name,
                 "bindings": [
-                    {"objects": list(items), "state": edge.state, "verdict": edge.verdict}
-                    for items, edge in zip(rule.bindings, rule.edges(current.nodes), strict=True)
+                    {"objects": list(items), **_saved(edge)}
+                    for items, edge in zip(rule.bindings, edges[rule], strict=True)
                 ],
             }
             for rule in current.bound_rules.rules
         ],
+        **({"doubted": doubted} if doubted else {}),
         "violations": [
             {"rule": violation.rule, "binding": dict(violation.binding), "step": violation.step}
             for violation in violations
         ],
     }
+
+
+def _saved(edge: Edge) -> dict[str, Any]:
+    if isinstance(edge, MonitorEdge):
+        return {"state": edge.state, "verdict": edge.verdict}
+    open_verdict = isinstance(edge.verdict, VerdictRange)
+    return {
+        "state": list(edge.states),
+        "verdict": list(edge.verdict) if open_verdict else edge.verdict,
+    }
+
+
+def with_source(data: dict[str, Any], told: Set[str] | None, *, cut: bool) -> dict[str, Any]:
+    """A snapshot with what its source can tell."""
+    if told is None and not cut:
+        return data
+    names = None if told is None else sorted(told)
+    return {**data, "version": PARTIAL_VERSION, "told": names, "cut": cut}
 
 
 def fingerprint(rulebook: CompiledRulebook) -> str:
@@ -124,10 +157,10 @@ def from_data(
         header = msgspec.convert(data, _Header)
     except msgspec.ValidationError as problem:
         raise _refused(f"this is not a saved monitor: {json_words(problem)}", place) from None
-    if header.version != VERSION:
+    if header.version not in (VERSION, PARTIAL_VERSION):
         raise _refused(
             f"this saved monitor is of version {header.version}; "
-            f"this rulec reads version {VERSION}",
+            f"this rulec reads versions {VERSION} and {PARTIAL_VERSION}",
             place,
         )
     try:
@@ -169,23 +202,32 @@ def restored(
         raise _refused("this saved monitor is damaged", place) from None
     violated_rules = {violation.rule for violation in violations}
     nodes = nodes_at(bound_rules, edges)
-    current = state_at(bound_rules, nodes, violated_rules, len(violations))
+    lost = violated_rules, frozenset(saved.doubted)
+    current = state_at(bound_rules, nodes, lost, len(violations))
     return saved.states - 1, current, violations
 
 
-def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[MonitorEdge]]:
+def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[Edge]]:
     """Edges of exactly these bindings. Raises LookupError or ValueError otherwise."""
-    edges: dict[str, list[MonitorEdge]] = {}
+    edges: dict[str, list[Edge]] = {}
     for bound_rule, rule in zip(bound_rules.rules, saved.rules, strict=True):
         prepared = bound_rule.prepared
         by_objects = {binding.objects: binding for binding in rule.bindings}
         if rule.rule != prepared.name or len(rule.bindings) != len(bound_rule.bindings):
             raise ValueError
         bindings = [by_objects[items] for items in bound_rule.bindings]
-        edges[prepared.name] = [
-            prepared.edges[binding.state, binding.verdict] for binding in bindings
-        ]
+        edges[prepared.name] = [_edge(prepared, binding) for binding in bindings]
     return edges
+
+
+def _edge(prepared: PreparedRule, saved: _Binding) -> Edge:
+    if isinstance(saved.state, int) and isinstance(saved.verdict, str):
+        return prepared.edges[saved.state, saved.verdict]
+    states = [saved.state] if isinstance(saved.state, int) else saved.state
+    if not states or not {state for state, _ in prepared.edges}.issuperset(states):
+        raise ValueError
+    verdicts = [saved.verdict] if isinstance(saved.verdict, str) else saved.verdict
+    return prepared.uncertain.edge(states, verdicts)
 
 
 def _violation(saved: _Violation, n_states: int, rules: Mapping[str, CompiledRule]) -> Violation:

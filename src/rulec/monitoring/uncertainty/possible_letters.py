@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.automata.thresholds import exact, scale
@@ -154,13 +154,13 @@ class PossibleLetters:
             first, last = span
             if isinstance(read, Read):
                 values = self.values(read.name, items)[first : last + 1]
-                known = {value: self._mask(read, value) for value in set(values)}
+                known = {value: possible_digits(read, value) for value in set(values)}
                 masks = [known[value] for value in values]
                 missing = (read.name, items)
             elif (quantity := scale(read).quantity) is not None:
                 arguments = tuple([objects[variable] for variable in quantity.arguments])
                 values = self.values(quantity.name, arguments)[first : last + 1]
-                masks = [self._mask(read, value) for value in values]
+                masks = [possible_digits(read, value) for value in values]
                 missing = (quantity.name, arguments)
             else:
                 masks = [self._sum(read, objects, n, rule) for n in range(first, last + 1)]
@@ -170,19 +170,6 @@ class PossibleLetters:
                 raise missing_value(missing, where, rule, self._trace.place)
             self._columns[key] = masks, any(mask & (mask - 1) for mask in masks)
         return self._columns[key]
-
-    def _mask(self, read: Read | NumberRead, value: PartialValue | Fraction | None) -> int:
-        if value is None:
-            return 0
-        if value is UNKNOWN:
-            return (1 << read.size) - 1
-        if isinstance(value, Interval):
-            assert isinstance(read, NumberRead)
-            return _digits_between(read, exact(value.low), exact(value.high))
-        if isinstance(value, Fraction):
-            assert isinstance(read, NumberRead)
-            return 1 << read.digit(value)
-        return 1 << (read if isinstance(read, Read) else scale(read)).digit(value)
 
     def _sum(self, read: NumberRead, objects: Mapping[str, str], number: int, rule: str) -> int:
         """The digits of a sum or a count; all of them if what is counted is unknown."""
@@ -225,23 +212,37 @@ class PossibleLetters:
         return frozenset(name for each in subjects for name, _ in each)
 
     def _is_joint(self, rule: CompiledRule) -> bool:
-        """Whether one read may bear on what another one, or a value that is not read, can be."""
         if rule.name not in self._joint:
-            terms = [
-                term
-                for read in rule.machine.reads
-                if isinstance(read, NumberRead)
-                for _, term in read.terms
-            ]
-            about_names = {
-                name for axiom in self._rulebook.axioms for name in names_in(axiom.formula)
-            }
-            self._joint[rule.name] = (
-                any(isinstance(term, ltl.Count) for term in terms)
-                or len(set(terms)) < len(terms)
-                or not about_names.isdisjoint(names_in(rule.formula))
-            )
+            self._joint[rule.name] = is_joint(rule, self._rulebook.axioms)
         return self._joint[rule.name]
+
+
+def possible_digits(read: Read | NumberRead, value: PartialValue | None) -> int:
+    """The digits, as bits, that a read may have of a value; none of one that is missing."""
+    if value is None:
+        return 0
+    if value is UNKNOWN:
+        return (1 << read.size) - 1
+    if isinstance(value, Interval):
+        assert isinstance(read, NumberRead)
+        return _digits_between(read, exact(value.low), exact(value.high))
+    return 1 << (read if isinstance(read, Read) else scale(read)).digit(value)
+
+
+def is_joint(rule: CompiledRule, axioms: Sequence[CompiledAxiom]) -> bool:
+    """Whether one read may bear on what another one, or a value that is not read, can be."""
+    terms = [
+        term
+        for read in rule.machine.reads
+        if isinstance(read, NumberRead)
+        for _, term in read.terms
+    ]
+    about_names = {name for axiom in axioms for name in names_in(axiom.formula)}
+    return (
+        any(isinstance(term, ltl.Count) for term in terms)
+        or len(set(terms)) < len(terms)
+        or not about_names.isdisjoint(names_in(rule.formula))
+    )
 
 
 def _digits_between(read: NumberRead, low: Fraction, high: Fraction) -> int:

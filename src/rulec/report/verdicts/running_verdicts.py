@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Literal, TypeAlias
 
 from rulec.diagnostics import RulecError
-from rulec.monitoring.online.four_valued import FourValued
+from rulec.monitoring.online.four_valued import (
+    FourValued,
+    RunningVerdict,
+    VerdictRange,
+    best_of,
+    worst_of,
+)
 from rulec.monitoring.online.monitor_state import SoFar, VerdictChange
 from rulec.report.json_document import JsonDocument, JsonPart, as_line, filled
 from rulec.report.text.terminal_text import styled, visible
@@ -14,7 +21,10 @@ from rulec.report.verdicts.verdict_json import ErrorData, error_data
 MOST_CHANGES = 20
 """So many fit on a line; JSON has them all."""
 
-_STYLES: Mapping[FourValued, str] = {"satisfied": "green", "violated": "red", "pending": "yellow"}
+RunningData: TypeAlias = FourValued | Literal["open"]
+"""A verdict after a state; open if it depends on what is unknown."""
+
+_STYLES: Mapping[str, str] = {"satisfied": "green", "violated": "red", "pending": "yellow"}
 
 
 class ChangeData(JsonPart, frozen=True, kw_only=True):
@@ -25,17 +35,32 @@ class ChangeData(JsonPart, frozen=True, kw_only=True):
 
     rule: str
     binding: Mapping[str, str]
-    before: FourValued
-    verdict: FourValued
+    before: RunningData
+    verdict: RunningData
+    best: FourValued
+    worst: FourValued
     ended: bool
 
 
+class RangeData(JsonPart, frozen=True, kw_only=True):
+    """The best and the worst of a verdict that is open."""
+
+    best: FourValued
+    worst: FourValued
+
+
 class StateVerdict(JsonDocument, frozen=True, kw_only=True):
-    """Verdicts after a state, counted from 0; ``verdict`` covers hard rules."""
+    """Verdicts after a state, counted from 0; ``verdict`` covers hard rules.
+
+    ``open`` has the rules whose verdict is open.
+    """
 
     state: int
-    verdict: FourValued
-    rules: Mapping[str, FourValued]
+    verdict: RunningData
+    best: FourValued
+    worst: FourValued
+    rules: Mapping[str, RunningData]
+    open: Mapping[str, RangeData]
     changes: Sequence[ChangeData]
 
 
@@ -52,9 +77,31 @@ def as_json(result: SoFar) -> str:
         filled(
             StateVerdict,
             result,
-            changes=[filled(ChangeData, change) for change in result.changes],
+            verdict=_in_a_word(result.verdict),
+            rules={rule: _in_a_word(verdict) for rule, verdict in result.rules.items()},
+            open={
+                rule: RangeData(best=verdict.best, worst=verdict.worst)
+                for rule, verdict in result.rules.items()
+                if isinstance(verdict, VerdictRange)
+            },
+            changes=[_change_data(change) for change in result.changes],
         )
     )
+
+
+def _change_data(change: VerdictChange) -> ChangeData:
+    return filled(
+        ChangeData,
+        change,
+        before=_in_a_word(change.before),
+        verdict=_in_a_word(change.verdict),
+        best=best_of(change.verdict),
+        worst=worst_of(change.verdict),
+    )
+
+
+def _in_a_word(verdict: RunningVerdict) -> RunningData:
+    return "open" if isinstance(verdict, VerdictRange) else verdict
 
 
 def refused_as_json(error: RulecError) -> str:
@@ -67,7 +114,7 @@ def as_text(so_far: SoFar) -> str:
     changes = [visible(_change(change)) for change in so_far.changes[:MOST_CHANGES]]
     if len(so_far.changes) > len(changes):
         changes.append(f"and {len(so_far.changes) - len(changes):,} more")
-    verdict = styled(so_far.verdict, _STYLES.get(so_far.verdict, ""))
+    verdict = styled(str(so_far.verdict), _STYLES.get(str(so_far.verdict), ""))
     return f"{so_far.state}: {'; '.join([verdict, *changes])}"
 
 
@@ -75,5 +122,6 @@ def _change(verdict_change: VerdictChange) -> str:
     where = ", ".join(f"{name} = {item}" for name, item in verdict_change.binding.items())
     about = f" for {where}" if where else ""
     left = "they parted" if len(verdict_change.binding) > 1 else "it left"
-    left = f", not fulfilled when {left}" if verdict_change.ended else ""
+    perhaps = "perhaps " if isinstance(verdict_change.verdict, VerdictRange) else ""
+    left = f", {perhaps}not fulfilled when {left}" if verdict_change.ended else ""
     return f"{verdict_change.rule}{about}: {verdict_change.verdict}{left}"

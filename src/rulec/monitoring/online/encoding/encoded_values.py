@@ -19,6 +19,7 @@ from rulec.automata.thresholds import EXACT_IN_FLOATS, scale
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import NUMBERS
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES
 
 Breakpoints: TypeAlias = Mapping[str, tuple[float, ...] | None]
 """By quantity the ``floor_of`` each threshold of any rule, ascending; None if all values matter.
@@ -30,8 +31,11 @@ Encoded: TypeAlias = tuple[Any, ...]
 """Values of an enumeration or a signal as they are, and of a quantity their digits.
 
 The digit of a number is how many of the ``Breakpoints`` it reaches; where every value matters, it
-is the number itself.
+is the number itself. What is unknown, or an interval, stands for itself.
 """
+
+PARTIAL_NUMBERS = NUMBERS | UNKNOWN_TYPES
+"""The types of numbers, and of what stands for one that is not known."""
 
 MISSING: Final = object()
 """In place of an encoded value that is not given and has no default."""
@@ -105,7 +109,7 @@ def values_at(names: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
 def _encode_truths(values: tuple[Any, ...]) -> Encoded:
     # As keys 1 and true are the same; as values of a signal they are not.
     for value in values:
-        if value is not True and value is not False:
+        if value is not True and value is not False and value is not UNKNOWN:
             raise LookupError
     return values
 
@@ -113,15 +117,27 @@ def _encode_truths(values: tuple[Any, ...]) -> Encoded:
 def _encode_numbers(values: tuple[Any, ...]) -> Encoded:
     # Whole numbers and floats of this size that are equal have the same decimals. nan has no size.
     for value in values:
+        if type(value) in UNKNOWN_TYPES:
+            continue
         if not -EXACT_IN_FLOATS <= value <= EXACT_IN_FLOATS or type(value) not in NUMBERS:
             raise LookupError
     return values
 
 
 def _encode_digits(floors: Sequence[float], values: tuple[Any, ...]) -> Encoded:
-    digits = tuple([bisect_right(floors, value) for value in values])
+    types: frozenset[type] = NUMBERS
+    try:
+        digits: Encoded = tuple([bisect_right(floors, value) for value in values])
+    except TypeError:
+        types = PARTIAL_NUMBERS
+        digits = tuple(
+            [
+                value if type(value) in UNKNOWN_TYPES else bisect_right(floors, value)
+                for value in values
+            ]
+        )
     # nan is above all floors.
-    if 0 in digits or len(floors) in digits or not NUMBERS.issuperset(map(type, values)):
+    if 0 in digits or len(floors) in digits or not types.issuperset(map(type, values)):
         raise LookupError
     return digits
 
@@ -136,6 +152,7 @@ class MonitorInput:
 
     ``name`` is the declaration; None if ``number`` is a count or a sum, whose ``variables`` these
     are. A number's digit is how many thresholds it passes; that of anything else is its value.
+    What is partly known stands for itself.
     """
 
     name: str | None
@@ -148,7 +165,7 @@ class MonitorInput:
 
         Raises a TypeError where a number is missing.
         """
-        if self.name is None or self.number is None:
+        if self.name is None or self.number is None or type(encoded) in UNKNOWN_TYPES:
             return encoded
         floors = breakpoints[self.name]
         # A number has reached just these of its own floors that the highest one of all has reached.

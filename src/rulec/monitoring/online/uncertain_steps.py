@@ -1,0 +1,139 @@
+"""Steps of one rule's monitor where states, letters or the past are not all known.
+
+A set of edges stands for all that completions of what has been seen may have come to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine
+from rulec.monitoring.online.four_valued import (
+    WORST_FIRST,
+    FourValued,
+    LetterClass,
+    MonitorEdge,
+    RunningVerdict,
+    edges_between,
+    within,
+)
+from rulec.monitoring.uncertainty.possible_letters import (
+    LetterClasses,
+    Letters,
+    possible_digits,
+)
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
+
+MOST_STEPS = 1 << 16
+"""Steps that are kept before all are forgotten."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class UncertainEdge:
+    """Several edges of a monitor: the states that may be reached, and the verdicts.
+
+    Of the states those are left out that lie between two others in what they can still come to.
+    It has no ``successors``, since these depend on more than a letter.
+    """
+
+    states: tuple[int, ...]
+    verdict: RunningVerdict
+    successors: Sequence[Any] = ()
+
+
+Edge: TypeAlias = MonitorEdge | UncertainEdge
+
+
+class UncertainSteps:
+    """Steps of a rule's machine from and to sets of edges, made as they are met.
+
+    ``edges`` are the single edges of ``machine``, by state reached and verdict.
+    """
+
+    def __init__(
+        self, machine: OutcomeMachine, edges: Mapping[tuple[int, FourValued], MonitorEdge]
+    ) -> None:
+        self._machine = machine
+        self._classes = LetterClasses(machine)
+        self._single = edges
+        self._edges: dict[tuple[frozenset[int], RunningVerdict], UncertainEdge] = {}
+        self._steps: dict[tuple[Edge, LetterClass], Edge] = {}
+
+    def after(self, edge: Edge, letters: LetterClass) -> Edge:
+        """The edge or the edges behind some letters."""
+        key = edge, letters
+        known = self._steps.get(key)
+        if known is None:
+            if len(self._steps) >= MOST_STEPS:
+                self._steps.clear()
+                self._edges.clear()
+            states = edge.states if isinstance(edge, UncertainEdge) else (edge.state,)
+            symbols = (letters,) if isinstance(letters, int) else letters
+            pairs = [(state, symbol) for state in states for symbol in symbols]
+            reached = {self._machine.successors[state][symbol] for state, symbol in pairs}
+            verdicts = {self._verdict(state, symbol) for state, symbol in pairs}
+            known = self._steps[key] = self.edge(reached, verdicts)
+        return known
+
+    def edge(self, states: Iterable[int], verdicts: Iterable[FourValued]) -> Edge:
+        """The edges to any of these states, with verdicts from the worst to the best of these."""
+        members = self._machine.extremes(states)
+        ranks = sorted(map(WORST_FIRST.index, verdicts))
+        verdict = within(WORST_FIRST[ranks[-1]], WORST_FIRST[ranks[0]])
+        single = isinstance(verdict, str) and self._single.get((min(members), verdict))
+        if len(members) == 1 and single:
+            return single
+        key = members, verdict
+        if key not in self._edges:
+            self._edges[key] = UncertainEdge(tuple(sorted(members)), verdict)
+        return self._edges[key]
+
+    def letter_class(self, letters: Letters) -> LetterClass | None:
+        """The classes of possible letters; None if facts exclude them all."""
+        mask = self._classes.of(letters)
+        if not mask & (mask - 1):
+            return mask.bit_length() - 1 if mask else None
+        return frozenset(n for n in range(mask.bit_length()) if mask >> n & 1)
+
+    def _verdict(self, state: int, symbol: int) -> FourValued:
+        return _four_valued(self._machine, state, symbol)
+
+
+def mask_of(read: Read | NumberRead, digit: Any) -> int:
+    """The possible digits, as bits, of a read whose digit, or value if partly known, is given.
+
+    Raises LookupError for an interval of what is no number.
+    """
+    if isinstance(read, Read) and isinstance(digit, Interval):
+        raise LookupError
+    if type(digit) in UNKNOWN_TYPES or isinstance(read, Read):
+        return possible_digits(read, digit)
+    return 1 << int(digit)
+
+
+def cut_edges(
+    machine: OutcomeMachine,
+) -> tuple[Edge, dict[tuple[int, FourValued], MonitorEdge], UncertainSteps]:
+    """Where a machine for cut words begins, its edges, and the steps with sets of them."""
+    classes = range(machine.n_classes)
+    verdicts = [
+        [_four_valued(machine, state, symbol) for symbol in classes]
+        for state in range(len(machine.successors))
+    ]
+    rows, edges = edges_between(machine.successors, verdicts)
+    before: FourValued = "satisfied" if machine.starts <= machine.safe else "holds so far"
+    states = machine.extremes(machine.starts)
+    for state in states:
+        edges.setdefault((state, before), MonitorEdge(rows[state], state, before))
+    steps = UncertainSteps(machine, edges)
+    return steps.edge(states, [before]), edges, steps
+
+
+def _four_valued(machine: OutcomeMachine, state: int, symbol: int) -> FourValued:
+    outcome = machine.outputs[state][symbol]
+    if outcome == KEPT:
+        return "satisfied" if machine.successors[state][symbol] in machine.safe else "holds so far"
+    return "violated" if outcome == VIOLATED else "pending"

@@ -1,0 +1,238 @@
+"""A running monitor's best and worst verdicts are those over all completions."""
+
+import json
+from fractions import Fraction
+
+import pytest
+from hypothesis import Phase, given, settings
+
+import rulec
+from rulec.diagnostics import RulecError
+from rulec.logic.free_names import names_in
+from rulec.monitoring.online.four_valued import WORST_FIRST, best_of, worst_of
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.monitoring.verify import verify
+from rulec.rulebook.loader import parse_rulebook
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from support.builders.rulebooks import (
+    P,
+    Q,
+    always,
+    book,
+    compile_here,
+    eventually,
+    far,
+    implies,
+    near,
+    no,
+    rule,
+)
+from support.generators.blurred_traces import blurred, telling_numbers
+from support.generators.random_rulebooks import rulebook
+from support.generators.random_traces import traces
+from support.generators.seeds import seeds
+from support.oracles.completion_oracle import completions, keeps_facts, unknown_places, values_of
+from support.oracles.presence import there
+
+NUMBERS = telling_numbers()
+ORDER = settings(phases=[Phase.generate])
+KEPT = ("satisfied", "satisfied")
+MOST = 150
+
+
+def followed(monitor, trace, *, saved=lambda _: False):
+    """The verdicts of each rule and binding after each state; those that parted stay."""
+    known, every = {}, []
+    for number, state in enumerate(trace.states):
+        present = there(trace, number)
+        monitor.step({name: within(present, value) for name, value in state.items()}, present)
+        known.update(
+            {
+                (change.rule, tuple(change.binding.values())): pair(change.verdict)
+                for change in monitor.so_far.changes
+                if change.ended
+            }
+        )
+        lost = {(x.rule, tuple(x.binding.values())) for x in monitor.violations}
+        now = known | dict.fromkeys(lost, ("violated", "violated"))
+        for about in monitor.snapshot()["rules"]:
+            for one in about["bindings"]:
+                now[about["rule"], tuple(one["objects"])] = pair(one["verdict"])
+        every.append(now)
+        if saved(number):
+            snapshot = json.loads(json.dumps(monitor.snapshot()))
+            monitor = Monitor.restore(monitor.rulebook, snapshot)
+    return monitor, every
+
+
+def within(objects, value):
+    if not isinstance(value, dict):
+        return value
+    return {name: within(objects, inner) for name, inner in value.items() if name in objects}
+
+
+def pair(verdict):
+    return (verdict, verdict) if isinstance(verdict, str) else tuple(verdict)
+
+
+def extent(verdicts):
+    ranks = sorted(map(WORST_FIRST.index, verdicts))
+    return WORST_FIRST[ranks[-1]], WORST_FIRST[ranks[0]]
+
+
+def _n_completions(trace, vocabulary):
+    n = 1
+    for _, name, _, value in unknown_places(trace):
+        n *= len(values_of(name, value, vocabulary, NUMBERS))
+    return n
+
+
+def whole_runs(compiled, book_, trace):
+    for _, whole in completions(trace, book_.vocabulary, NUMBERS):
+        if keeps_facts(book_, whole):
+            yield followed(Monitor(compiled, whole.step_s), whole)[1]
+
+
+@given(seeds)
+@ORDER
+def test_after_every_state_they_are_the_best_and_the_worst_of_all_completions(chance):
+    book_ = rulebook(chance, Fraction(1))
+    compiled = compile_here(book_, Fraction(1))
+    formulas = [x.formula for x in (*book_.rules, *book_.axioms)]
+    names = {name for formula in formulas for name in names_in(formula)}
+    for trace in traces(chance, Fraction(1))[:2]:
+        partial = blurred(chance, trace, names, most=3)
+        if _n_completions(partial, book_.vocabulary) > MOST:
+            continue
+        try:
+            expected = list(whole_runs(compiled, book_, partial))
+        except RulecError:
+            # A value without default is missing.
+            continue
+        if not expected:
+            continue
+        monitor, found = followed(
+            Monitor(compiled, partial.step_s), partial, saved=lambda _: chance.random() < 0.3
+        )
+        for number, verdicts in enumerate(found):
+            for key in {*verdicts, *(key for one in expected for key in one[number])}:
+                # What is no longer spoken of was kept.
+                outcomes = [one[number].get(key, KEPT)[0] for one in expected]
+                assert verdicts.get(key, KEPT) == extent(outcomes), (number, key, partial, book_)
+        judged = verify(partial, compiled)
+        said = {(x.rule, tuple(x.binding.values())) for x in judged.violations}
+        doubted = {(x.rule, tuple(x.binding.values())) for x in judged.open}
+        lost = {"pending", "violated"}
+        last = found[-1].items()
+        assert said == {key for key, (best, _) in last if best in lost}
+        assert doubted == {key for key, (best, worst) in last if worst in lost and best not in lost}
+        final = {(x.rule, tuple(x.binding.values()), x.step) for x in monitor.violations}
+        settled = {
+            (x.rule, tuple(x.binding.values()), x.step)
+            for x in judged.violations
+            if x.step is not None
+        }
+        assert {one for one in final if one[2] is not None} == settled
+
+
+CAR = {"a": "car"}
+NEVER_FAR = rule("never_far", always(no(far("x"))), "x: car")
+COMES_NEAR = rule("comes_near", eventually(near("x")), "x: car")
+ANSWERED = rule("answered", always(implies(P, eventually(Q))))
+
+
+def monitor(*rules, **source):
+    return Monitor(compile_here(book(*rules)), **source)
+
+
+def test_what_is_unknown_leaves_a_verdict_between_two():
+    judge = monitor(NEVER_FAR)
+    found = judge.step({"place": {"a": UNKNOWN}}, CAR)
+    assert (found.best, found.worst) == ("holds so far", "violated")
+    assert found.rules["never_far"] == found.verdict
+    assert judge.violations == ()
+    assert judge.step({"place": {"a": "far"}}, CAR).verdict == "violated"
+    assert [one.step for one in judge.violations] == [1]
+
+
+def test_what_becomes_known_settles_what_was_open():
+    judge = monitor(COMES_NEAR)
+    assert judge.step({"place": {"a": UNKNOWN}}, CAR).best == "holds so far"
+    assert judge.so_far.worst == "pending"
+    assert judge.step({"place": {"a": "near"}}, CAR).verdict == "holds so far"
+
+
+def test_who_leaves_while_it_is_open_leaves_the_rule_open():
+    judge = monitor(COMES_NEAR)
+    judge.step({"place": {"a": UNKNOWN}}, CAR)
+    found = judge.step({}, {})
+    (change,) = found.changes
+    assert change.ended
+    assert tuple(change.verdict) == ("satisfied", "violated")
+    again = Monitor.restore(judge.rulebook, json.loads(json.dumps(judge.snapshot())))
+    for one in (judge, again):
+        later = one.step({"place": {"b": "near"}}, {"b": "car"})
+        assert (later.best, later.worst) == ("holds so far", "violated")
+
+
+def test_who_leaves_when_it_is_violated_or_pending_has_violated():
+    judge = monitor(rule("starts", near("x"), "x: car"), COMES_NEAR)
+    judge.step({"place": {"a": "far"}}, CAR)
+    judge.step({"place": {"a": "gone"}}, CAR)
+    assert judge.step({}, {}).rules["comes_near"] == "violated"
+
+
+@pytest.mark.parametrize(
+    ("told", "judged"),
+    [
+        (None, ["no_p", "answered"]),
+        (["q"], []),
+        (["p"], ["no_p"]),
+        (["p", "q"], ["no_p", "answered"]),
+    ],
+)
+def test_rules_that_a_source_says_too_little_for_are_not_judged(told, judged):
+    judge = monitor(rule("no_p", always(no(P))), ANSWERED, told=told)
+    judge.step({"p": False, "q": True})
+    again = Monitor.restore(judge.rulebook, json.loads(json.dumps(judge.snapshot())))
+    for one in (judge, again):
+        assert list(one.so_far.rules) == judged
+        assert {*judged, *one.not_judged} == {"no_p", "answered"}
+
+
+def test_what_a_source_cannot_tell_is_unknown_though_it_has_a_default():
+    text = "signal p signal q default false hard rule both { require always (p and not q) }"
+    compiled = rulec.compile_rulebook(parse_rulebook(f"rulebook dark {text}"))
+    assert Monitor(compiled).step({"p": True}).verdict == "holds so far"
+    dark = Monitor(compiled, told=["p"])
+    assert (dark.step({"p": True}).best, dark.so_far.worst) == ("holds so far", "violated")
+    assert dark.step({"p": False}).verdict == "violated"
+
+
+def test_what_was_before_a_cut_trace_is_unknown():
+    text = "rulebook past signal p, q hard rule recalled { require always (p implies once q) }"
+    recalled = rulec.compile_rulebook(parse_rulebook(text))
+    state = {"p": True, "q": False}
+    assert Monitor(recalled).step(state).verdict == "violated"
+    judge = Monitor(recalled, cut=True)
+    found = judge.step(state)
+    assert (found.best, found.worst) == ("satisfied", "violated")
+    again = Monitor.restore(judge.rulebook, json.loads(json.dumps(judge.snapshot())))
+    assert again.so_far.rules == found.rules
+
+
+def test_a_monitor_that_knows_all_is_saved_as_ever():
+    judge = monitor(NEVER_FAR)
+    judge.step({"place": {"a": "near"}}, CAR)
+    assert judge.snapshot()["version"] == 1
+    judge.step({"place": {"a": UNKNOWN}}, CAR)
+    assert judge.snapshot()["version"] == 2
+    assert worst_of(judge.so_far.verdict) == "violated"
+    assert best_of(judge.so_far.verdict) == "holds so far"
+
+
+def test_an_interval_is_no_truth_and_no_value_of_an_enumeration():
+    judge = monitor(NEVER_FAR)
+    with pytest.raises(RulecError) as refused:
+        judge.step({"place": {"a": Interval(1, 2)}}, CAR)
+    assert [one.code for one in refused.value.diagnostics] == ["R0503"]
