@@ -11,7 +11,8 @@ from rulec.automata.thresholds import exact_step
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, bindings
 from rulec.monitoring.letter_reader import LetterReader, present_in
-from rulec.monitoring.state_validation import StateValidator, check_objects
+from rulec.monitoring.monitoring_messages import UNFITTING_VALUE
+from rulec.monitoring.state_validation import StateValidator, check_objects, has_partial_values
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
 from rulec.monitoring.verify import run
 from rulec.rulebook.rulebook_model import Strength
@@ -57,8 +58,8 @@ def instances(
     ``step_s`` is the graph's step where that is no decimal, a third of a second for one. Bindings
     of a rule that every node is the same to are one instance. Those that were settled in the
     ``past`` are left out, the others go on where they stood. Raises RulecError: R0502 to R0505 if
-    the graph does not supply what the rules read, R0507 if one of these rules was compiled for
-    another step, R0508 if a state contradicts a fact.
+    the graph does not supply what the rules read or a value is not known, R0507 if one of these
+    rules was compiled for another step, R0508 if a state contradicts a fact.
     """
     vocabulary = rulebook.vocabulary
     rules = [rule for rule in rulebook.rules if rule.strength in strengths]
@@ -68,7 +69,11 @@ def instances(
     validator = StateValidator(vocabulary, graph.objects)
     places = [f"a cell of layer {layer}".format for layer in range(len(graph.states))]
     for states, where in zip(graph.states, places, strict=True):
-        validator.check(states, where)
+        if validator.check(states, where):
+            some = next(n for n, state in enumerate(states) if has_partial_values(state))
+            message = f"{where(some)} has a value that is unknown or an interval"
+            way_out = "paths through a graph are judged only where all values are known"
+            raise UNFITTING_VALUE.error(None, message, help=way_out)
     columns = [
         LetterReader(
             states,
