@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import AuditCounts as AuditCounts
     from rulec.analysis.audit.rulebook_audit import AuditFinding as AuditFinding
     from rulec.analysis.audit.rulebook_audit import CitedArticle as CitedArticle
+    from rulec.analysis.audit.source_audit import RuleBasis as RuleBasis
+    from rulec.analysis.audit.source_audit import SourceAudit as SourceAudit
     from rulec.analysis.diff.rule_comparison import RuleComparison as RuleComparison
     from rulec.analysis.diff.rulebook_comparison import OneSided as OneSided
     from rulec.analysis.diff.rulebook_comparison import RulebookDiff as RulebookDiff
@@ -102,16 +104,17 @@ if TYPE_CHECKING:
 
 _HOME = {
     "rulec.analysis.audit.rulebook_audit": "Audit AuditCounts AuditFinding CitedArticle",
+    "rulec.analysis.audit.source_audit": "RuleBasis SourceAudit",
     "rulec.analysis.diff.rule_comparison": "RuleComparison",
     "rulec.analysis.diff.rulebook_comparison": "OneSided RulePair RulebookDiff SettingPair",
     "rulec.analysis.lineage.rule_lineage": "BookLineage RuleHistory",
     "rulec.api.session": "Session",
-    "rulec.api.verbs": "alternative_counts analyze audit check compile compile_rulebook coverage "
-    "diff doc draw draw_drive envelope envelopes explain find_maneuvers format judge_recording "
-    "lineage list load_rulebook load_scenario load_vocabulary navigation_graph "
-    "new_rulebook parse_rulebook read_recording read_traces rule_probabilities show "
-    "test traces tree verify verify_cells verify_columns verify_many verify_recording "
-    "write_compiled write_traces",
+    "rulec.api.verbs": "alternative_counts analyze audit audit_source check compile "
+    "compile_rulebook coverage diff doc draw draw_drive envelope envelopes explain "
+    "find_maneuvers format judge_recording lineage list load_rulebook load_scenario "
+    "load_vocabulary navigation_graph new_rulebook parse_rulebook read_recording read_traces "
+    "rule_probabilities show test traces tree verify verify_cells verify_columns verify_many "
+    "verify_recording write_compiled write_traces",
     "rulec.automata.bundle.compiled_rulebook": "CompiledRule CompiledRulebook",
     "rulec.automata.mealy_monitor": "MealyMonitor",
     "rulec.book_tests.example_coverage": "RuleCoverage UncoveredEdge",

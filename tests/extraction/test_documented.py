@@ -5,6 +5,8 @@ from dataclasses import fields
 from pathlib import Path
 
 from rulec.extraction.drives import Drives
+from rulec.extraction.selection import RequestedDrives, selected_drives
+from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.rulebook.loader import load_rulebook
 from rulec.trace.vocabulary_projection import RECORDED_UNITS
@@ -39,6 +41,31 @@ def test_every_word():
     found = recording([lane], [vehicle(1, {0: (9, 0), 1: (19, 0)})])
     (drive,) = Drives(found, "right").of("1")
     assert drive.words | NOT_IN_THAT == documented
+
+
+def test_every_word_is_told_by_the_formats_that_the_page_says():
+    section = PAGE[PAGE.index("## Words") : PAGE.index("## Thresholds")]
+    told = {"commonroad": set(), "sumo": set()}
+    needs = ""
+    for line in section.splitlines():
+        if line.startswith("| `"):
+            cells = [cell.strip() for cell in line.strip("|").split("|")]
+            needs = needs if cells[2:] == ["the same"] else "".join(cells[2:])
+            words = set(re.findall(r"`(\w+)`", cells[0]))
+            if "(SUMO)" not in needs and not re.match("SUMO(?!, or)", needs):
+                told["commonroad"] |= words
+            if "(CommonRoad)" not in needs:
+                told["sumo"] |= words
+    assert told == TELLABLE_WORDS
+
+
+def test_a_recording_tells_what_files_of_its_format_can_tell():
+    found = recording([straight(1, 0, 99)], [vehicle(1, {0: (9, 0), 1: (19, 0)})])
+    drives = selected_drives(found, RequestedDrives(), "some.xml")
+    # Where there is neither a bus nor what runs on rails nobody has to see their doors and tracks.
+    of_nobody = {"conflict_with_rail", "boarding", "leaving_stop"}
+    assert told_words(drives) - of_nobody <= TELLABLE_WORDS["commonroad"]
+    assert {"speed", "limit", "ego_mass"} & told_words(drives) == {"speed"}
 
 
 def test_every_word_is_one_of_a_vocabulary_and_numbers_have_its_unit():

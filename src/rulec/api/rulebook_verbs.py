@@ -14,6 +14,7 @@ from rulec.api.session_settings import SessionSettings, ignore
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
+    from rulec.analysis.audit.source_audit import SourceAudit
     from rulec.analysis.diff.rulebook_comparison import RulebookDiff
     from rulec.analysis.lineage.rule_lineage import BookLineage
     from rulec.api.rulebook_compilation import Rules
@@ -212,6 +213,27 @@ class RulebookVerbs(SessionSettings):
         outcomes = self.test(reference).outcomes if run_examples else ()
         failing = [(outcome.rule.name, outcome.name) for outcome in outcomes if not outcome.passed]
         return audit(loaded.rulebook, inherited, failing)
+
+    def audit_source(
+        self, reference: str | Path, source: str | Path, net: str | Path | None = None
+    ) -> SourceAudit:
+        """Say which rules can be judged on what a source tells.
+
+        ``source`` is a format (``commonroad``, ``sumo``), of which some files may tell less, or a
+        file of recorded traffic with its ``net``. Raises RulecError.
+        """
+        from rulec.analysis.audit.source_audit import audit_source
+        from rulec.extraction.selection import RequestedDrives, selected_drives
+        from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
+        from rulec.scenario.scenario_files import read_recording
+
+        rulebook = self.compile(reference)
+        told = TELLABLE_WORDS.get(str(source))
+        if told is None:
+            recording = read_recording(Path(source), None if net is None else Path(net))
+            drives = selected_drives(recording, RequestedDrives(), str(source), rulebook.traffic)
+            told = told_words(drives)
+        return audit_source(rulebook, str(source), told)
 
     def tree(self, reference: str | Path) -> BookLineage:
         """Trace everything in a rulebook to its origin and through its changes."""

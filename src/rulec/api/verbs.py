@@ -51,6 +51,7 @@ def compile_rulebook(
 alternative_counts = _USUAL.alternative_counts
 analyze = _USUAL.analyze
 audit = _USUAL.audit
+audit_source = _USUAL.audit_source
 check = _USUAL.check
 coverage = _USUAL.coverage
 diff = _USUAL.diff

@@ -43,15 +43,23 @@ def put(state, name, objects, value):
 
 
 def completions(trace, vocabulary, numbers):
-    """Pairs of chosen values, by place, and the trace that they make."""
-    places = list(unknown_places(trace))
-    options = [values_of(name, given, vocabulary, numbers) for _, name, _, given in places]
+    """Pairs of chosen values, by place, and the trace that they make.
+
+    A constant, which is unknown in all states or in none, has one value in all of them.
+    """
+    together = {}
+    for number, name, objects, given in unknown_places(trace):
+        number_of = None if vocabulary.declarations[name].constant else number
+        together.setdefault((number_of, name, objects), (given, []))[1].append(number)
+    options = [
+        values_of(name, given, vocabulary, numbers) for (_, name, _), (given, _) in together.items()
+    ]
     for chosen in product(*options):
         states = list(trace.states)
-        for (number, name, objects, _), value in zip(places, chosen, strict=True):
-            states[number] = put(states[number], name, objects, value)
-        keys = [place[:3] for place in places]
-        yield dict(zip(keys, chosen, strict=True)), replace(trace, states=tuple(states))
+        for (_, name, objects), value in zip(together, chosen, strict=True):
+            for number in together[_, name, objects][1]:
+                states[number] = put(states[number], name, objects, value)
+        yield dict(zip(together, chosen, strict=True)), replace(trace, states=tuple(states))
 
 
 def keeps_facts(book, trace):

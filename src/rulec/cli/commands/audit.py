@@ -10,12 +10,14 @@ import click
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.scenario_options import net_option
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import errors_told, open_session
 from rulec.report.text.console import page_width, print_result
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
+    from rulec.analysis.audit.source_audit import SourceAudit
 
 
 @click.command()
@@ -39,6 +41,13 @@ if TYPE_CHECKING:
     shell_complete=complete_rulebooks,
     help="Say what has changed since an older audit (.json), or against another rulebook.",
 )
+@click.option(
+    "--source",
+    metavar="FILE|FORMAT",
+    help="Say which rules can be judged on what a recording tells, or files of a format "
+    "(`commonroad`, `sumo`), and which words the others lack.",
+)
+@net_option
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
@@ -46,6 +55,8 @@ def command(
     fatal: tuple[str, ...],
     run: bool,
     compare: str | None,
+    source: str | None,
+    net: Path | None,
     at: str,
 ) -> int:
     """Say what every RULEBOOK (a name, or the path of a source) rests on.
@@ -68,12 +79,16 @@ def command(
         else:
             older = (open_session(at).audit(compare, run_examples=run),)
     audits: list[Audit] = []
+    sources: list[SourceAudit] = []
     for rulebook in rulebooks:
         with errors_told():
-            audits.append(open_session(at).audit(rulebook, run_examples=run))
+            done = open_session(at).audit(rulebook, run_examples=run)
+            if source is not None:
+                sources.append(open_session(at).audit_source(rulebook, source, net))
+            audits.append(done)
     against = {} if older is None else compare_audits(audits, older)
     if audits or output_format == "json":
-        print_result(render(audits, against, output_format, page_width()))
+        print_result(render(audits, against, output_format, page_width(), sources))
     findings = [
         finding
         for done in audits

@@ -17,6 +17,7 @@ from typing import Any, cast
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine
+from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.monitoring.bindings import Binding, bindings
@@ -33,7 +34,8 @@ from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, unc
 from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged, Verdict, Violation
 from rulec.trace import State, Trace, Value
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, PartialValue
+from rulec.vocabulary.vocabulary_model import choices
 
 MOST_ALTERNATIVES = 1 << 6
 """Values of what does not change are gone through as long as there are no more combinations."""
@@ -151,36 +153,50 @@ class _UncertainRun:
     def _suppositions(
         self, rule: CompiledRule, binding: Binding
     ) -> tuple[list[dict[Subject, Value]], bool]:
-        """The values that unknown constants which a rule reads may have, together."""
+        """The values that unknown constants which a rule or a fact reads may have, together."""
         declarations = self.vocabulary.declarations
-        names = [name for name in names_in(rule.formula) if declarations[name].constant]
-        if not names:
-            return [{}], True
-        everybody = StateView(self.trace.states[0], self.trace.objects, self.vocabulary)
-        reads = {
-            x
-            for read in rule.machine.reads
-            for x in subjects_of_read(read, binding.objects, everybody)
-        }
+        facts = [axiom.formula for axiom in self.rulebook.axioms]
+        formulas = [rule.formula, *facts]
+        in_facts = {name for formula in facts for name in names_in(formula)}
         options: dict[Subject, Sequence[Value]] = {}
         is_exact = True
-        for subject in sorted(x for x in reads if x[0] in names):
-            given = set(self._letters_where({}).values(*subject)) - {None}
-            if not any(type(value) in UNKNOWN_TYPES for value in given):
+        for subject in sorted(self._constants_read(rule, binding)):
+            bounds = self._constant(subject)
+            if type(bounds) not in UNKNOWN_TYPES:
                 continue
-            known = [value for value in given if type(value) not in UNKNOWN_TYPES]
-            values: Sequence[Any] = known
-            if not known:
-                values = _constant_values(subject[0], rule, declarations)
-            if known[1:] or not values or Interval in map(type, given):
-                is_exact = False
-            else:
+            values = _constant_values(declarations[subject[0]], bounds, formulas)
+            if values:
                 options[subject] = values
+            # Facts of which nothing is unknown once this is supposed are not held against it.
+            is_exact = is_exact and bool(values) and subject[0] not in in_facts
         if prod(map(len, options.values())) > MOST_ALTERNATIVES:
             return [{}], False
         return [
             dict(zip(options, chosen, strict=True)) for chosen in product(*options.values())
         ], is_exact
+
+    def _constants_read(self, rule: CompiledRule, binding: Binding) -> set[Subject]:
+        """The constants that a rule reads of these objects, and the facts of anybody."""
+        trace, vocabulary = self.trace, self.vocabulary
+        if not vocabulary.constants:
+            return set()
+        everybody = StateView(trace.states[0], trace.objects, vocabulary)
+        found = {
+            subject
+            for read in rule.machine.reads
+            for subject in subjects_of_read(read, binding.objects, everybody)
+            if vocabulary.declarations[subject[0]].constant
+        }
+        in_facts = {name for axiom in self.rulebook.axioms for name in names_in(axiom.formula)}
+        for name in in_facts.intersection(vocabulary.constants):
+            types = vocabulary.declarations[name].parameters
+            found |= {(name, items) for items in choices(types, trace.objects, vocabulary)}
+        return found
+
+    def _constant(self, subject: Subject) -> PartialValue | None:
+        """What the states in which its objects are there, all alike, say of a constant."""
+        first = max((self.trace.present.get(x, (0, 0))[0] for x in subject[1]), default=0)
+        return self._letters_where({}).values(*subject)[first]
 
 
 def spelled_out(trace: Trace, vocabulary: Vocabulary) -> Trace:
@@ -230,22 +246,26 @@ def _nested(given: Mapping[str, Any], items: tuple[str, ...], value: Value) -> M
 
 
 def _constant_values(
-    name: str, rule: CompiledRule, declarations: Mapping[str, Declaration]
+    declaration: Declaration, bounds: object, formulas: Sequence[ltl.Formula]
 ) -> Sequence[Any]:
-    """Values that stand for all that a rule can tell apart; none if it reads the name in sums."""
-    match declarations[name]:
+    """Values that stand for all that formulas can tell apart; none if the name is in sums."""
+    name = declaration.name
+    match declaration:
         case Enumeration(values=values):
             return list(values)
         case Signal():
             return [False, True]
     limits: set[Fraction] = set()
-    for terms, limit in _comparisons_with(name, rule.formula):
+    for terms, limit in (x for formula in formulas for x in _comparisons_with(name, formula)):
         if len(terms) > 1:
             return []
-        limits.add(limit)
+        limits.add(limit / terms[0][0])
+    within = None
+    if isinstance(bounds, Interval):
+        within = exact(bounds.low), exact(bounds.high)
     number = ltl.QuantityTerm(name)
     planes = [LinearPlane({number: Fraction(1)}, limit) for limit in limits]
-    points = sample_points({number: None}, planes)
+    points = sample_points({number: within}, planes)
     return [] if points is None else [point[number] for point in points]
 
 

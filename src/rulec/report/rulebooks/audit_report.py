@@ -9,7 +9,9 @@ from textwrap import fill
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.analysis.audit.rulebook_audit import Audit, AuditChanges, AuditFinding
+from rulec.analysis.audit.source_audit import SourceAudit
 from rulec.report.json_document import JsonDocument, as_indented
+from rulec.report.rulebooks import source_report
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.markdown import code, escaped, table
 from rulec.report.text.terminal_text import fact_lines, styled, visible
@@ -26,23 +28,32 @@ class ComparedAudit(Audit):
 
 
 class AuditDocument(JsonDocument, frozen=True, kw_only=True):
-    """The audits of rulebooks."""
+    """The audits of rulebooks; ``sources`` say what their rules rest on, if that was asked for."""
 
     audits: Sequence[ComparedAudit]
+    sources: Sequence[SourceAudit] = ()
 
 
 def render(
-    audits: Sequence[Audit], compared: Compared, output_format: str, width: int = PAGE_WIDTH
+    audits: Sequence[Audit],
+    compared: Compared,
+    output_format: str,
+    width: int = PAGE_WIDTH,
+    sources: Sequence[SourceAudit] = (),
 ) -> str:
-    """All audits as ``text`` of a width, ``markdown`` or ``json``."""
+    """All audits as ``text`` of a width, ``markdown`` or ``json``, then those of sources."""
     pairs = [(audit, compared.get(audit.rulebook)) for audit in audits]
     match output_format:
         case "json":
-            return as_indented(AuditDocument(audits=[_with_changes(*pair) for pair in pairs]))
+            changed = [_with_changes(*pair) for pair in pairs]
+            return as_indented(AuditDocument(audits=changed, sources=sources))
         case "markdown":
-            return "\n\n".join(_as_markdown(*pair) for pair in pairs)
+            parts = [_as_markdown(*pair) for pair in pairs]
+            return "\n\n".join([*parts, *map(source_report.as_markdown, sources)])
         case _:
-            return "\n\n\n".join(_as_text(*pair, width) for pair in pairs)
+            parts = [_as_text(*pair, width) for pair in pairs]
+            parts += [source_report.as_text(source, width) for source in sources]
+            return "\n\n\n".join(parts)
 
 
 def _with_changes(audit: Audit, changes: AuditChanges | None) -> ComparedAudit:

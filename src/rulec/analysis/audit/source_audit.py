@@ -1,0 +1,91 @@
+"""Which rules can be judged on what a source tells, before there is any trace from it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Literal, TypeAlias
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.logic.free_names import names_in
+from rulec.monitoring.uncertainty.possible_letters import untold_names
+from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
+from rulec.value_display import Rows, short_repr
+
+Basis: TypeAlias = Literal["evidence", "presumption", "nothing"]
+"""What verdicts on a rule rest on: what is told, also on what is presumed, or there are none."""
+
+
+@dataclass(frozen=True, slots=True)
+class RuleBasis:
+    """What verdicts on a rule rest on.
+
+    ``presumed`` are names that it reads and that hold by presumption, ``untold`` all others that
+    it reads and the source does not tell, ``lacking`` those of them for want of which it cannot be
+    judged.
+    """
+
+    rule: str
+    strength: Literal["hard", "soft"]
+    basis: Basis
+    presumed: tuple[str, ...] = ()
+    untold: tuple[str, ...] = ()
+    lacking: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SourceAudit(Rows):
+    """What a rulebook's rules rest on where ``source`` tells the names ``told``."""
+
+    __repr__ = short_repr
+
+    rulebook: str
+    source: str
+    told: tuple[str, ...]
+    rules: tuple[RuleBasis, ...]
+
+    def count(self, basis: Basis) -> int:
+        """The number of rules that rest on this."""
+        return Counter(rule.basis for rule in self.rules)[basis]
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a rule."""
+        return [asdict(rule) for rule in self.rules]
+
+
+def audit_source(rulebook: CompiledRulebook, source: str, told: frozenset[str]) -> SourceAudit:
+    """The basis of every rule on traces that are cut and say nothing but what is told.
+
+    Raises RulecError R0403 if Spot, which machines for such traces take, is not installed.
+    """
+    compiler = rulebook.prefixes
+    prefixes = {} if compiler is None else compiler(rulebook)
+    return SourceAudit(
+        rulebook.name,
+        source,
+        tuple(name for name in rulebook.vocabulary.declarations if name in told),
+        tuple(_bases(rulebook, told, prefixes)),
+    )
+
+
+def _bases(
+    rulebook: CompiledRulebook, told: frozenset[str], prefixes: Mapping[str, OutcomeMachine | None]
+) -> Iterator[RuleBasis]:
+    vocabulary = rulebook.vocabulary
+    unknown = untold_names(vocabulary, told)
+    for rule in rulebook.rules:
+        read = _names_read(rule, rulebook)
+        presumed = tuple(
+            name for name in read if name not in told and vocabulary.declarations[name].presumed
+        )
+        untold = tuple(name for name in read if name in unknown)
+        lacking = uncertain_machine(rule, prefixes.get(rule.name)).untold(unknown)
+        basis: Basis = "nothing" if lacking else "presumption" if presumed else "evidence"
+        yield RuleBasis(rule.name, rule.strength, basis, presumed, untold, lacking)
+
+
+def _names_read(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[str, ...]:
+    names = frozenset(names_in(rule.formula))
+    return tuple(name for name in rulebook.vocabulary.declarations if name in names)

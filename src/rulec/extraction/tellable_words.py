@@ -1,0 +1,52 @@
+"""The words that files of a format can tell, and those that a recording's drives do tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rulec.extraction.selection import SelectedDrives
+from rulec.extraction.to_trace import Drive
+
+_EITHER = frozenset(
+    (
+        *("CONGESTED", "about_to_overtake", "abreast_at_narrowing", "accelerating"),
+        *("arrived_together", "being_overtaken", "braking_hard", "broken_on_own_side"),
+        *("built_up", "came_up_beside", "can_stop_at_once", "conflict_from_left"),
+        *("conflict_from_right", "conflict_on_roundabout", "congested", "crosses_light_line"),
+        *("crosses_side_road", "crosses_stop_line", "crossing_kind", "crossing_use"),
+        *("crossing_zone", "dense_all_lanes", "distance_to_crossing", "divided", "ego_length"),
+        *("ego_type", "emergency_vehicle_near", "enters_junction", "enters_roundabout"),
+        *("exit_clear", "far_lane_queue", "gap", "give_way_sign", "in_the_road", "indicator"),
+        *("junction_zone", "lane", "lane_change", "lane_is_clear", "lane_position", "lanes"),
+        *("lateral", "lateral_gap", "light", "limit", "marked_lanes", "merged", "narrowing"),
+        *("needs_access", "obstructed", "on_call", "on_priority_road", "on_solid_line"),
+        *("oncoming", "oncoming_clear", "one_way", "other_in_junction", "other_lane_available"),
+        *("other_road_ends", "overtaking", "own_road_ends", "parked", "position", "precedes"),
+        *("preparing_to_leave", "road_class", "room_on_near_side", "roundabout"),
+        *("roundabout_signed", "safe_gap", "single_line", "speed", "speed_difference", "station"),
+        *("stop_sign", "stopped", "stopped_for_pedestrian", "straddling", "surface"),
+        *("time_headway", "turn", "turn_on_red_sign", "turning_far", "two_wheeled"),
+        *("unregulated_junction", "walking_pace_flow", "warning_lights", "way_cleared"),
+    )
+)
+_COMMONROAD_ONLY = frozenset(
+    (*("icy", "lane_kind", "no_overtaking_sign", "no_turn_on_red_sign", "visibility", "wet"),)
+)
+_SUMO_ONLY = frozenset(
+    (
+        *("boarding", "conflict_with_rail", "enters_level_crossing", "guarded", "leaving_stop"),
+        *("level_crossing_zone", "told_to_go", "told_to_stop", "tracks_at_kerb", "tunnel"),
+    )
+)
+
+TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
+    "commonroad": _EITHER | _COMMONROAD_ONLY,
+    "sumo": _EITHER | _SUMO_ONLY,
+}
+"""Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""
+
+
+def told_words(drives: SelectedDrives) -> frozenset[str]:
+    """The words that some of these drives tell."""
+    found = (drive for ego in drives.egos for drive in drives.of(ego))
+    return frozenset().union(*(drive.words for drive in found if isinstance(drive, Drive)))

@@ -1,0 +1,186 @@
+"""Constants are unknown once for a trace: verdicts are those of all values that they may have."""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import islice
+
+import pytest
+from hypothesis import Phase, given, settings
+
+import rulec
+from rulec.diagnostics import RulecError
+from rulec.logic.free_names import names_in
+from rulec.monitoring.batch.batch_verify import verify_many
+from rulec.monitoring.verify import verify
+from rulec.trace import Trace
+from rulec.vocabulary import Quantity, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from support.builders.full_vocabulary import WORLD
+from support.builders.rulebooks import compile_here
+from support.generators.blurred_traces import blurred, places_of, telling_numbers
+from support.generators.random_rulebooks import rulebook
+from support.generators.random_traces import traces
+from support.generators.seeds import seeds
+from support.oracles.completion_oracle import CompletionOracle, completions, put
+from support.oracles.rulebook_oracle import Oracle, Said
+from support.oracles.state_oracle import Reading
+
+NUMBERS = telling_numbers()
+MOST = 400
+"""Completions that are gone through."""
+
+
+def with_some_constant(chance, book):
+    names = chance.sample(list(WORLD.declarations), 3)
+    declarations = {
+        name: replace(item, constant=name in names) for name, item in WORLD.declarations.items()
+    }
+    return replace(book, vocabulary=Vocabulary("world", WORLD.types, declarations))
+
+
+def steady(chance, trace, constants):
+    """The trace whose states that say something of a constant all say what the first one says."""
+    said, states = {}, list(trace.states)
+    for number, name, objects in places_of(trace):
+        if name in constants:
+            value = of(trace.states[number][name], objects)
+            value = said.setdefault((name, objects), value)
+            states[number] = put(states[number], name, objects, value)
+    return replace(trace, states=tuple(states))
+
+
+def of(value, objects):
+    for item in objects:
+        value = value[item]
+    return value
+
+
+def with_unknown_constants(chance, trace, constants):
+    """A few of these wholly unknown; of numbers one at most, perhaps an interval."""
+    subjects = list(
+        {(name, objects): 0 for _, name, objects in places_of(trace) if name in constants}
+    )
+    numeric = [x for x in subjects if isinstance(WORLD.declarations[x[0]], Quantity)]
+    others = [x for x in subjects if x not in numeric]
+    chance.shuffle(numeric)
+    chance.shuffle(others)
+    states = list(trace.states)
+    for name, objects in [*numeric[:1], *others[:3]]:
+        value = UNKNOWN
+        if (name, objects) in numeric and chance.random() < 0.5:
+            value = Interval(*sorted(chance.choices([0, 0.1, 0.3, 1, 1.5, 2, -0.5], k=2)))
+        for number, where, items in places_of(trace):
+            if (where, items) == (name, objects):
+                states[number] = put(states[number], name, objects, value)
+    return replace(trace, states=tuple(states))
+
+
+@given(seeds)
+@settings(phases=[Phase.generate])
+def test_verdicts_are_those_of_all_values_of_constants(chance):
+    book = with_some_constant(chance, rulebook(chance, Fraction(1)))
+    compiled, oracle = compile_here(book, Fraction(1)), Oracle(book)
+    constants = book.vocabulary.constants
+    names = {n for x in (*book.rules, *book.axioms) for n in names_in(x.formula)}
+    for whole in traces(chance, Fraction(1))[:3]:
+        partial = steady(chance, whole, constants)
+        if any(
+            set(state) & set(constants) != set(partial.states[0]) & set(constants)
+            for state in partial.states
+        ):
+            continue
+        partial = with_unknown_constants(chance, partial, constants)
+        partial = blurred(chance, partial, names - set(constants), most=2)
+        if next(islice(completions(partial, book.vocabulary, NUMBERS), MOST, None), None):
+            continue
+        completed = CompletionOracle(oracle, partial, NUMBERS)
+        if completed.refused or not completed.answers:
+            continue
+        verdict = verify(partial, compiled)
+        assert list(verify_many([partial] * 4, compiled)) == [verdict] * 4
+        violated = {(x.rule, tuple(x.binding.values())) for x in verdict.violations}
+        doubtful = {(x.rule, tuple(x.binding.values())): x for x in verdict.open}
+        for rule in book.rules:
+            for objects, _, _ in Reading(book, partial).choices(rule):
+                key = rule.name, tuple(objects.values())
+                expected = completed.verdict(*key)
+                if key in doubtful and not doubtful[key].exact:
+                    continue
+                if isinstance(expected, Said):
+                    assert key in violated, (key, partial, rule, constants)
+                elif expected == "open":
+                    assert key in doubtful, (key, partial, rule, constants)
+                    on = doubtful[key].depends_on
+                    assert on == completed.smallest(*key), (key, partial, rule, constants)
+                else:
+                    assert key not in violated, (key, partial, rule, constants)
+                    assert key not in doubtful, (key, partial, rule, constants)
+
+
+BOOK = """\
+rulebook drive
+type car
+kind is one of a_car, a_truck, a_bus default a_car
+quantity mass in t default 1.5
+signal heavy(c: car) default false
+signal fast default false
+constant kind, mass, heavy
+hard rule truck { require always (a_truck implies not fast) }
+hard rule either { require (always not a_truck) or (always a_truck) }
+hard rule few { require always (count c: car (heavy(c)) <= 5) }
+"""
+
+
+def judged(*states, objects=None, present=None, rule="truck"):
+    trace = Trace("t", 1.0, objects or {}, states, present or {})
+    compiled = rulec.compile(rulec.parse_rulebook(BOOK))
+    (again, *_) = verify_many([trace] * 4, compiled)
+    verdict = verify(trace, compiled)
+    assert again == verdict
+    if any(x.rule == rule for x in verdict.violations):
+        return "violated", True
+    return next((("open", x.exact) for x in verdict.open if x.rule == rule), ("kept", True))
+
+
+def test_told_in_one_state_it_is_known_in_all():
+    assert judged({"kind": UNKNOWN, "fast": True}, {"kind": "a_truck"}) == ("violated", True)
+    assert judged({"fast": True}, {"kind": "a_truck"}) == ("violated", True)
+    assert judged({"kind": UNKNOWN, "fast": True}, {"kind": "a_bus"}) == ("kept", True)
+    assert judged({"kind": UNKNOWN, "fast": True}, {}) == ("open", True)
+    assert judged({"fast": True}, {}) == ("kept", True)
+
+
+def test_unknown_it_is_the_same_in_all_states():
+    assert judged({"kind": UNKNOWN}, {"kind": UNKNOWN}, rule="either") == ("kept", True)
+
+
+@pytest.mark.parametrize("number", [3, 6, 7])
+def test_in_counts_up_to_six_objects_are_gone_through(number):
+    objects = {f"c{n}": "car" for n in range(number)}
+    answer = judged({"heavy": dict.fromkeys(objects, UNKNOWN)}, objects=objects, rule="few")
+    assert answer == {3: ("kept", True), 6: ("open", True), 7: ("open", False)}[number]
+
+
+def test_of_who_comes_later_only_its_own_states_count():
+    objects, present = {f"c{n}": "car" for n in range(6)}, {"c5": (1, 1)}
+    first = {"heavy": {f"c{n}": True for n in range(5)}}
+    last = {"heavy": {**first["heavy"], "c5": UNKNOWN}}
+    answer = judged(first, last, objects=objects, present=present, rule="few")
+    assert answer == ("open", True)
+
+
+@pytest.mark.parametrize("values", [("a_car", "a_bus"), (UNKNOWN, "a_car", UNKNOWN, "a_bus")])
+def test_two_values_are_an_error_that_names_both_states(values):
+    trace = Trace("t", 1.0, {}, tuple({"kind": value} for value in values))
+    compiled = rulec.compile(rulec.parse_rulebook(BOOK))
+    with pytest.raises(RulecError) as caught:
+        verify(trace, compiled)
+    (problem,) = caught.value.diagnostics
+    assert problem.code == "R0503"
+    last = len(values) - 1
+    assert problem.message == (
+        "`kind` cannot change in a trace: "
+        f"state {last} says `a_bus`, state {last - len(values) // 2} says `a_car`"
+    )
+    for answer in verify_many([trace] * 4, compiled):
+        assert answer.error.diagnostics == (problem,)
