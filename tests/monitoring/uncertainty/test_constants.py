@@ -38,7 +38,7 @@ def with_some_constant(chance, book):
     return replace(book, vocabulary=Vocabulary("world", WORLD.types, declarations))
 
 
-def steady(chance, trace, constants):
+def steady(trace, constants):
     """The trace whose states that say something of a constant all say what the first one says."""
     said, states = {}, list(trace.states)
     for number, name, objects in places_of(trace):
@@ -83,14 +83,13 @@ def test_verdicts_are_those_of_all_values_of_constants(chance):
     constants = book.vocabulary.constants
     names = {n for x in (*book.rules, *book.axioms) for n in names_in(x.formula)}
     for whole in traces(chance, Fraction(1))[:3]:
-        partial = steady(chance, whole, constants)
+        partial = steady(blurred(chance, whole, names - set(constants), most=2), constants)
         if any(
             set(state) & set(constants) != set(partial.states[0]) & set(constants)
             for state in partial.states
         ):
             continue
         partial = with_unknown_constants(chance, partial, constants)
-        partial = blurred(chance, partial, names - set(constants), most=2)
         if next(islice(completions(partial, book.vocabulary, NUMBERS), MOST, None), None):
             continue
         completed = CompletionOracle(oracle, partial, NUMBERS)
