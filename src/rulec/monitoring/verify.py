@@ -14,7 +14,7 @@ from rulec.monitoring.bindings import bindings
 from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects
-from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
+from rulec.monitoring.uncertainty.uncertain_verdict import spelled_out, uncertain_verdict
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
@@ -40,7 +40,9 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     validator = StateValidator(rulebook.vocabulary, trace.objects)
     is_partial = validator.check(trace.states, "state {}".format, trace.place)
     if is_partial or trace.ends == "cut" or trace.told is not None:
-        return uncertain_verdict(with_constants(trace, rulebook.vocabulary), rulebook)
+        # What is unknown of everybody is so of each one of whom nothing is said elsewhere.
+        trace = with_constants(spelled_out(trace, rulebook.vocabulary), rulebook.vocabulary)
+        return uncertain_verdict(trace, rulebook)
     reader = letter_reader_of(trace, rulebook)
     check_counting_axioms(rulebook, len(trace.states), reader.view, "state {}".format, trace.place)
     violations = []
