@@ -83,7 +83,9 @@ def _bases(
         untold = tuple(name for name in read if name in unknown)
         lacking = uncertain_machine(rule, prefixes.get(rule.name)).untold(unknown)
         basis: Basis = "nothing" if lacking else "presumption" if presumed else "evidence"
-        yield RuleBasis(rule.name, rule.strength, basis, presumed, untold, lacking)
+        yield RuleBasis(
+            rule.name, rule.strength, basis, presumed=presumed, untold=untold, lacking=lacking
+        )
 
 
 def _names_read(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[str, ...]:
