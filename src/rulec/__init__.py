@@ -63,7 +63,10 @@ if TYPE_CHECKING:
     from rulec.monitoring.online.monitor_state import SoFar as SoFar
     from rulec.monitoring.online.monitor_state import VerdictChange as VerdictChange
     from rulec.monitoring.online.running_monitor import Monitor as Monitor
+    from rulec.monitoring.verdict import ConditionalOutcome as ConditionalOutcome
     from rulec.monitoring.verdict import NotJudged as NotJudged
+    from rulec.monitoring.verdict import OpenVerdict as OpenVerdict
+    from rulec.monitoring.verdict import RuleNotJudged as RuleNotJudged
     from rulec.monitoring.verdict import Verdict as Verdict
     from rulec.monitoring.verdict import Violation as Violation
     from rulec.partition import Cell as Cell
@@ -132,7 +135,9 @@ _HOME = {
     "rulec.monitoring.online.four_valued": "VerdictRange",
     "rulec.monitoring.online.monitor_state": "SoFar VerdictChange",
     "rulec.monitoring.online.running_monitor": "Monitor",
-    "rulec.monitoring.verdict": "NotJudged Verdict Violation",
+    "rulec.monitoring.verdict": (
+        "ConditionalOutcome NotJudged OpenVerdict RuleNotJudged Verdict Violation"
+    ),
     "rulec.partition": "Cell Envelope Layer NavigationGraph",
     "rulec.planning": "Maneuvers RankedManeuver RulePruning",
     "rulec.planning.probability.rule_probability": (

@@ -65,6 +65,9 @@ def values():
     probabilities = rulec.rule_probabilities(alternatives, alternatives.cheapest(1)[0])
     example = next(rule.examples[0] for rule in book.rules if rule.examples)
     (first,) = maneuvers.ranked(1)
+    audited = rulec.audit_source("de", "sumo")
+    ranged = rulec.VerdictRange("violated", "holds so far")
+    undecided = rulec.OpenVerdict("r", "hard", {"v": "1"}, ("not told",), ("p",))
     known = [
         *(rulec.Session(), mistake, mistake.place, error, rulec.explain("R0104")),
         *(rulec.Label(mistake.place, "here"), book.vocabulary, example, book.rules[0], book),
@@ -89,6 +92,9 @@ def values():
         next(iter(recording.participants[0].states.values())),
         rulec.PlanningProblem("1", 0, next(iter(recording.participants[0].states.values())), ()),
         rulec.PenaltyRank("soft", ("",)),
+        *(audited, audited.rules[0], rulec.Interval(1.0, 2.0), ranged),
+        *(rulec.Assumptions("cut", {"p": True}), rulec.RuleNotJudged("r", "hard", ("p",))),
+        *(rulec.ConditionalOutcome({"p": True}, "kept"), undecided),
         rulec.UncoveredEdge(0, 1, (), True),
         rulec.SettingPair("option", "limit", "1", "2"),
     ]
