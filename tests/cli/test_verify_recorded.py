@@ -26,6 +26,7 @@ soft rule distance (v: vehicle) {
 }
 """
 
+DEFAULTS = ("--assume", "defaults")
 MIRRORED = "mirrored    recorded where traffic keeps to the right, judged as if it kept to the left"
 
 
@@ -45,13 +46,15 @@ def verify(tmp_path, capsys):
 
 def test_a_table_of_rules_and_vehicles(verify):
     # 4 drives 50.4 km/h, and is 4 m behind 3, which gets 2 m/s nearer
-    status, out, err = verify("--explain", "0")
+    status, out, err = verify("--explain", "0", *DEFAULTS)
     assert (status, out.splitlines()) == (
         1,
         [
             "recording   DEU_Road-1_1_T-1: 3 drives in steps of 0.1 s",
             MIRRORED,
             "by default  built_up: the recording does not say",
+            "assumed     defaults, and that nothing comes after the recording's end",
+            "rules       2 rules: 2 judged",
             "",
             "violated              drives     first  by",
             "slow [Art. 1]  hard      1/3       0 s  4",
@@ -64,7 +67,7 @@ def test_a_table_of_rules_and_vehicles(verify):
 
 
 def test_the_first_violation_is_explained(verify):
-    _, out, _ = verify()
+    _, out, _ = verify(*DEFAULTS)
     assert "4: violated" in out.splitlines()
     assert "  hard rule slow [Art. 1]: cannot be kept any more after state 0" in out.splitlines()
     _, out, _ = verify("--as-recorded")
@@ -79,13 +82,16 @@ def test_what_is_assumed_is_not_missing(verify):
 
 
 def test_a_line_of_json_for_each_drive(verify):
-    status, out, _ = verify("--json", "--ego", "4", "--ego", "5")
+    status, out, _ = verify("--json", "--ego", "4", "--ego", "5", *DEFAULTS)
     first, second = map(json.loads, out.splitlines())
     assert status == 1
     assert {name: first[name] for name in first if name != "violations"} == {
         "version": 1,
         "trace": "4",
         "satisfied": False,
+        "open": [],
+        "not_judged": [],
+        "presumed": [],
         "recording": "DEU_Road-1_1_T-1",
         "mirrored": True,
         "start_s": 0.0,
@@ -106,7 +112,7 @@ def test_a_line_of_json_for_each_drive(verify):
 def test_a_threshold(verify):
     # 50.4 km/h is standing, if one likes
     for at, expected in (("50", ["slow", "distance"]), ("51", ["distance"])):
-        _, out, _ = verify("--json", "--ego", "4", "--threshold", f"standing_kmh={at}")
+        _, out, _ = verify("--json", "--ego", "4", "--threshold", f"standing_kmh={at}", *DEFAULTS)
         assert [one["rule"] for one in json.loads(out)["violations"]] == expected
 
 
@@ -114,7 +120,7 @@ def test_recordings_and_traces_together(verify, tmp_path):
     file = three_cars(tmp_path)
     traces = tmp_path / "traces.jsonl"
     traces.write_text('{"id": "t", "step_s": 0.1, "states": [{"speed": 20}]}\n')
-    status, out, _ = verify("--explain", "0", files=(str(traces), file))
+    status, out, _ = verify("--explain", "0", *DEFAULTS, files=(str(traces), file))
     assert status == 1
     assert out.splitlines()[-2:] == [
         "3 drives: 2 satisfied, 1 violated",
@@ -128,3 +134,31 @@ def test_what_is_no_recording(verify, tmp_path):
     status, out, err = verify("--json", files=(str(bad), three_cars(tmp_path)))
     assert (status, len(out.splitlines())) == (2, 3)
     assert "error[R0610]" in err
+
+
+def test_what_is_not_told_is_not_taken_for_its_default(verify):
+    # Nothing says whether the road is in a town, so nobody can be known to be too fast
+    status, out, _ = verify("--explain", "0")
+    assert status == 0
+    rules = "rules       2 rules: 1 judged, 1 cannot be judged from this recording (built_up)"
+    assert rules in out.splitlines()
+    assert out.splitlines()[-1] == "3 drives: 0 satisfied, 0 violated, 3 open"
+    _, out, _ = verify("--json", "--ego", "4")
+    (line,) = map(json.loads, out.splitlines())
+    assert line["satisfied"] is None
+    assert line["not_judged"] == [
+        {"rule": "slow", "strength": "hard", "untold": ["built_up"], "why": ""}
+    ]
+    (violation,) = line["violations"]
+    evidence = violation["evidence"]
+    assert (violation["rule"], evidence["measured"]) == ("distance", ["station", "lateral", "gap"])
+    assert (evidence["from_s"], evidence["place"]["lanelet"]) == (0.0, "1")
+
+
+def test_strictly_what_is_open_counts_as_violated(verify, tmp_path):
+    traces = tmp_path / "traces.jsonl"
+    traces.write_text('{"id": "t", "states": [{"speed": 50, "built_up": null}]}\n')
+    status, out, _ = verify(files=(str(traces),))
+    assert (status, out.splitlines()[0]) == (0, "t: open")
+    assert "depends on built_up: violated if not built_up, kept if built_up" in out
+    assert verify("--strict", files=(str(traces),))[0] == 1

@@ -39,7 +39,17 @@ def test_every_task_of_the_list_is_there(ready):
     result = run(ready)
     assert result.returncode == 2
     names = re.findall(r"^  \.ci/task (\w+)", result.stderr, re.MULTILINE)
-    assert names == ["check", "test", "long", "coverage", "bench", "docs", "regenerate", "lock"]
+    assert names == [
+        "check",
+        "test",
+        "long",
+        "coverage",
+        "bench",
+        "worlds",
+        "docs",
+        "regenerate",
+        "lock",
+    ]
     assert tools(ready) == []
 
 

@@ -7,10 +7,10 @@ handful of unknowns and of inequalities.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise, product
+from itertools import chain, pairwise, product
 from math import floor
 
 from rulec.logic.formula import Term
@@ -33,8 +33,10 @@ def solve(
     preferred: Mapping[Term, Fraction],
     whole: Set[Term] = frozenset(),
     near_bounds: Set[Term] = frozenset(),
+    *,
+    any_number: bool = False,
 ) -> dict[Term, Fraction] | None:
-    """Solve a system, by numbers with short decimals if it can be; None if it cannot be solved.
+    """Solve a system by numbers with short decimals, or by ``any_number``; None if there are none.
 
     The last of the ``unknowns`` is given its number first: the ``preferred`` one where it fits,
     else zero, which for those in ``near_bounds`` is no better than others, or one near a bound. The
@@ -57,12 +59,16 @@ def solve(
             ],
             key=lambda limit: limit[0] > 0,
         )
-        candidates = _candidates(
+        candidates: Iterable[Fraction] = _candidates(
             preferred.get(unknown),
             [rest / factor for factor, rest, _ in limits],
             whole=unknown in whole,
             zero_first=unknown not in near_bounds,
         )
+        if any_number:
+            ends = sorted([rest / factor for factor, rest, _ in limits])
+            middles = [(low + high) / 2 for low, high in pairwise(ends)]
+            candidates = chain(candidates, ends, middles)
         for number in candidates:
             if all(
                 factor * number < rest or (factor * number == rest and not strict)
@@ -114,7 +120,3 @@ def _candidates(
         for end in ends:
             for n in (0, 1, -1):
                 yield Fraction(floor(end * scale) + n, scale)
-    if not whole:
-        # What no short decimal is between has a middle.
-        yield from ends
-        yield from ((low + high) / 2 for low, high in pairwise(sorted(ends)))

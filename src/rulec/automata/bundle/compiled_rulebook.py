@@ -20,8 +20,6 @@ from rulec.vocabulary import Vocabulary
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
 
-NO_MULTIPLE = "R0407"
-
 
 @dataclass(frozen=True, slots=True)
 class CompiledRule:
@@ -137,9 +135,8 @@ class CompiledRulebook(Rows):
         """
         try:
             return (self.fitted_to(step_s),)
-        except RulecError as error:
-            misfits = all(problem.code == NO_MULTIPLE for problem in error.diagnostics)
-            if self.recompile is None or not misfits:
+        except RulecError:
+            if self.recompile is None:
                 raise
             return self.recompile.rounded(exact_step(step_s))
 

@@ -55,7 +55,7 @@ def sample_points(
 def _cells(
     within: list[LinearBound], planes: Sequence[LinearPlane], numbers: Sequence[Term]
 ) -> Iterator[Point]:
-    point = solve(within, numbers, {})
+    point = solve(within, numbers, {}, any_number=True)
     if point is None:
         return
     if not planes:
