@@ -81,7 +81,8 @@ def test_long_sets_the_profile(ready, arguments):
     run(ready, *arguments)
     call = ready.calls("pytest")[0]
     assert call["environment"]["RULEC_TEST_PROFILE"] == "long"
-    assert call["arguments"][2:] == [a for a in arguments if a != "--long"] or ["-n", "auto"]
+    own = [one for one in arguments if one != "--long"]
+    assert call["arguments"][2:] == (own or ["-n", "auto", "--dist", "worksteal"])
 
 
 def test_tests_see_no_modules_from_elsewhere(ready):

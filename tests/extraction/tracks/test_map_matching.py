@@ -6,7 +6,7 @@ from math import atan2, pi, radians
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
@@ -139,6 +139,7 @@ def noisy_drives(draw):
     return tuple(chain), Participant("7", "car", False, states, outlines)
 
 
+@settings(max_examples=settings().max_examples // 3)  # each goes through a whole grid
 @given(noisy_drives())
 def test_a_noisy_drive_through_a_grid_is_matched_to_its_chain(drive):
     chain, body = drive
