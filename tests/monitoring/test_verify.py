@@ -7,6 +7,7 @@ import pytest
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Atom, Constant, QuantityTerm, Unary, UnaryOperator
+from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.rulebook.rulebook_model import Rulebook
@@ -210,6 +211,17 @@ def test_what_does_not_fit_is_said(judged, code, words, way_out):
     assert "state 0" in diagnostic.message or "object" in diagnostic.message
     assert way_out in diagnostic.help
     assert diagnostic.place == SourceLocation("t.jsonl", 3)
+
+
+def test_what_is_told_is_declared():
+    with pytest.raises(RulecError) as caught:
+        verify(replace(trace("ggg"), told=frozenset({"p", "plase"})), RULES)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "R0502"
+    assert "`told` has `plase`" in diagnostic.message
+    assert "`place`" in diagnostic.help
+    with pytest.raises(RulecError, match="plase"):
+        Monitor(RULES, told=["plase"])
 
 
 def test_values_are_only_needed_where_a_rule_reads_them():

@@ -64,6 +64,7 @@ def test_blank_lines_a_bom_and_a_missing_last_line_end():
         (b'{"states": [{"v": -Infinity}]}', "JSON has no `NaN` and no infinity"),
         (b"{'states': [{}]}", "in JSON texts stand in double quotes"),
         (b'{"states": [{"p": True}]}', "in JSON texts stand in double quotes"),
+        (b'{"states": [{}], "ends": "never"}', '`"ends": "complete"` or `"ends": "cut"`'),
         (b'{"zebra": 1, "states": [{}]}', "a trace is a line such as"),
         (b"{", "write or copy the file again"),
         (b"[1]", "a trace is a line such as"),

@@ -18,6 +18,8 @@ _JSON_WORDS = {
     "jSON": "JSON",
     "`bool | float | str | object`": "true, false, a number, a string or an object",
     "`array`": "a list",
+    "`array | null`": "a list",
+    "invalid enum value": "there is no such value as",
     "`object`": "an object",
     "`str`": "a string",
     "`int | str`": "a string",

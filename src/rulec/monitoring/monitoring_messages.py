@@ -9,7 +9,8 @@ UNDECLARED_NAME = Code(
     "R0502",
     title="a state uses a name that the vocabulary does not know",
     why="The keys of a state are names of the rulebook's vocabulary. An unknown one is an error, "
-    "because a misspelt name would otherwise take its default, and be judged.",
+    "because a misspelt name would otherwise take its default, and be judged. So is one in the "
+    "list `told` of what a source tells.",
     bad='{"objects": {"v1": "vehicle"}, "states": [{"postion": {"v1": "b"}}]}\n',
     good=_GOOD,
     kind="trace",

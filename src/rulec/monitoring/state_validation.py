@@ -95,6 +95,19 @@ def check_objects(
             )
 
 
+def check_told(
+    told: Iterable[str] | None, vocabulary: Vocabulary, place: SourceLocation | None = None
+) -> None:
+    """Check that the vocabulary declares all names that are told. Raises RulecError R0502."""
+    for name in told or ():
+        if name not in vocabulary.declarations:
+            raise UNDECLARED_NAME.error(
+                place,
+                f"`told` has `{name}`, which vocabulary `{vocabulary.name}` does not know",
+                help=_unknown_name(name, vocabulary),
+            )
+
+
 def has_partial_values(state: Mapping[str, Any]) -> bool:
     """Tell whether a state has values that are unknown, or intervals."""
     return any(

@@ -13,7 +13,7 @@ from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import bindings
 from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.letter_reader import LetterReader
-from rulec.monitoring.state_validation import StateValidator, check_objects
+from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
 from rulec.monitoring.uncertainty.uncertain_verdict import spelled_out, uncertain_verdict
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
 from rulec.trace import Trace
@@ -37,6 +37,7 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
         if rule.step_s is not None:
             check_step(rule, exact_step(trace.step_s), "the trace", trace.place)
     check_objects(trace.objects, rulebook.vocabulary, trace.place)
+    check_told(trace.told, rulebook.vocabulary, trace.place)
     validator = StateValidator(rulebook.vocabulary, trace.objects)
     is_partial = validator.check(trace.states, "state {}".format, trace.place)
     if is_partial or trace.ends == "cut" or trace.told is not None:

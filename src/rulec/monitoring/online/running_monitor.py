@@ -23,7 +23,7 @@ from rulec.monitoring.online.monitor_state import (
 from rulec.monitoring.online.rule_group import MOST_CACHED, rule_groups
 from rulec.monitoring.online.snapshot import from_data, restored, to_data, with_source
 from rulec.monitoring.online.transition_cache import TransitionCache
-from rulec.monitoring.state_validation import check_objects
+from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.verdict import CarriedState, Violation
 from rulec.trace import State
 from rulec.trace.trace_messages import NOT_A_TRACE
@@ -72,6 +72,7 @@ class Monitor:
         self._rulebook = rulebook
         self._strengths = {rule.name: rule.strength for rule in rulebook.rules}
         self._told = None if told is None else frozenset(told)
+        check_told(self._told, rulebook.vocabulary)
         self._cut = cut
         machines = None
         if self._told is not None or cut:

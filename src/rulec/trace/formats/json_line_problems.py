@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Generic, TypeVar
+from typing import Generic, TypeVar, get_args, get_type_hints
 
 import msgspec
 
@@ -21,6 +21,7 @@ _MOST_SEARCHED = 1 << 24
 """Of a longer line nobody is told in which state it ends."""
 
 _UNKNOWN_FIELD = re.compile(r"unknown field `(.*?)`(?! - at)", re.DOTALL)
+_UNKNOWN_CHOICE = re.compile(r"nvalid enum value '.*' - at `\$\.(\w+)`", re.DOTALL)
 _REFUSED_BYTE = re.compile(r" \(byte ([0-9]+)\)")
 _MARK = re.compile(rb'\\.|["{}\[\],]', re.DOTALL)
 _CALLED = re.compile(rb'\s*:\s*([0-9]+\b|"[^"\\]{1,100}")')
@@ -83,6 +84,10 @@ class Kind(Generic[Record]):
         unknown = _UNKNOWN_FIELD.search(str(problem))
         if unknown is not None:
             help_text = did_you_mean(unknown[1], self.structure.__struct_fields__) or help_text
+        choice = _UNKNOWN_CHOICE.search(str(problem))
+        if choice is not None:
+            choices = get_args(get_type_hints(self.structure)[choice[1]])
+            help_text = " or ".join(f'`"{choice[1]}": "{value}"`' for value in choices)
         return self.bad(f"{what}: {words}", place, help_text)
 
 
