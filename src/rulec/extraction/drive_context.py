@@ -72,6 +72,14 @@ class DriveContext:
         return lane
 
     @cached_property
+    def limit_mps(self) -> Floats:
+        """The limit of the lane of ego's middle by state, infinity if the map has none there."""
+        pieces = self.road.piece(self.ego_extents.s[0]).tolist()
+        at = zip(pieces, self.ego_lane.tolist(), strict=True)
+        limits = [self.road.lanelet(piece, lane).limit_mps for piece, lane in at]
+        return np.array([np.inf if limit is None else limit for limit in limits])
+
+    @cached_property
     def existing_lanes(self) -> Flags:
         """Flags of the lanes (second axis) that exist beside ego, by state."""
         return self.road.lanes.existing_at(self.ego_extents.s[0])

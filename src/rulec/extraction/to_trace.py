@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import count
 from typing import Any, NamedTuple
 
@@ -253,7 +253,7 @@ def _projected(
                 about[name] = column
                 suits = [is_about(declaration, own, vocabulary) for own in own_types]
                 only[name] = np.array(suits, dtype=bool) & only.get(name, True)
-    return SignalColumns(world, about, signals.unknown, only)
+    return replace(signals, world=world, about=about, only=only)
 
 
 def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -> SignalColumn:

@@ -7,6 +7,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.signal_columns import SignalColumns, named_values, rounded
 from rulec.extraction.tracks.tracks import Flags, Floats
 
@@ -27,30 +28,30 @@ def ego_signals(context: DriveContext) -> SignalColumns:
     limits = context.thresholds
     count, own = context.states, context.ego_extents
     (participant,) = context.ego.participants
-    speed = rounded(context.zero_if_standing(context.ego.speed[0] * KMH))
-    gained = context.ego.acceleration[0]
-    existing = context.existing_lanes
-    known = context.tolerances
+    speed, error = own_speed(context)
+    gained, wrong = context.ego.acceleration[0], context.ego.acceleration_error[0]
+    existing, slow = context.existing_lanes, limits.stops_at_once_kmh / KMH
     straddling, unsure = _straddling(context)
     return SignalColumns(
         {
             "ego_type": np.full(count, _EGO_TYPES.get(participant.type, "ego_car")),
             "ego_length": rounded(np.full(count, np.nanmedian(own.s_max - own.s_min))),
-            "speed": speed,
+            "speed": rounded(speed * KMH),
             "accelerating": gained > limits.accelerating_mps2,
             "braking_hard": gained < -limits.braking_hard_mps2,
-            "can_stop_at_once": speed <= limits.stops_at_once_kmh,
+            "can_stop_at_once": speed <= slow,
             "lane": named_values(_from_kerb(context), _LANES),
             "lanes": named_values(np.clip(existing.sum(axis=1) - 1, 0, 2), _COUNTS),
             "straddling": straddling,
             "lane_position": named_values(_place_in_lane(context), _PLACES),
         },
         unknown={
-            "accelerating": abs(gained - limits.accelerating_mps2) < known.acceleration_mps2,
-            "braking_hard": abs(gained + limits.braking_hard_mps2) < known.acceleration_mps2,
-            "can_stop_at_once": abs(speed - limits.stops_at_once_kmh) < known.speed_mps * KMH,
+            "accelerating": abs(gained - limits.accelerating_mps2) < wrong,
+            "braking_hard": abs(gained + limits.braking_hard_mps2) < wrong,
+            "can_stop_at_once": abs(speed - slow) < error,
             "straddling": unsure,
         },
+        bounds={"speed": speed_bounds(context)},
     )
 
 

@@ -6,12 +6,17 @@ import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.measured_numbers import (
+    LONGEST_S,
+    bounds_to_others,
+    moves,
+    own_speed,
+    safe_distance,
+    safe_distance_error,
+)
 from rulec.extraction.signals.signal_columns import SignalColumns, named_values, rounded
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.partition.cells.regions import LATERALS, STATIONS
-
-LONGEST_S = 1000.0
-"""The longest headway (s), also that of an ego that stands."""
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
@@ -24,6 +29,7 @@ def participant_signals(context: DriveContext) -> SignalColumns:
     speeds = context.zero_if_standing(context.extents.along * KMH)
     follows = _follows(station, lateral)
     short = safe_distance(context) - gap
+    wrong = np.hypot(safe_distance_error(context), context.tolerances.place_m)
     return SignalColumns(
         about={
             "position": relations.position(context),
@@ -42,7 +48,8 @@ def participant_signals(context: DriveContext) -> SignalColumns:
             "in_the_road": context.tracks.on_lane,
         },
         only={"in_the_road": context.tracks.of_type("vulnerable_user")},
-        unknown={"safe_gap": follows & (np.abs(short) < context.tolerances.place_m)},
+        unknown={"safe_gap": follows & (np.abs(short) < wrong)},
+        bounds=bounds_to_others(context),
     )
 
 
@@ -59,22 +66,9 @@ def gap_beside_safe_distance(context: DriveContext) -> tuple[Floats, Floats]:
 
 def _headway(context: DriveContext, gap: Floats) -> Floats:
     # The speed that the word `speed` says
-    moves = context.ego.speed * KMH >= context.thresholds.standing_kmh
-    seconds = gap / np.where(moves, context.ego.speed, 1.0)
-    return np.where(moves, np.minimum(seconds, LONGEST_S), LONGEST_S)
-
-
-def safe_distance(context: DriveContext) -> Floats:
-    """The distance (m) for ego to stop behind a participant braking fully.
-
-    Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS (Shalev-Shwartz,
-    Shammah, Shashua 2017). An oncoming participant counts as standing.
-    """
-    limits = context.thresholds
-    own = np.maximum(context.ego_extents.along, 0.0)
-    other = np.maximum(context.extents.along, 0.0)
-    distance: Floats = limits.reaction_s * own + (own**2 - other**2) / (2 * limits.braking_mps2)
-    return distance
+    (speed, _), drives = own_speed(context), moves(context)
+    seconds = gap / np.where(drives, speed, 1.0)
+    return np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
 
 
 def is_oncoming(context: DriveContext) -> Flags:

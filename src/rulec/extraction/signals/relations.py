@@ -58,14 +58,26 @@ def _lane_bounds(context: DriveContext) -> tuple[Floats, Floats]:
 
 def gap(context: DriveContext) -> Floats:
     """The distance (m) along the road between bodies, 0 beside each other."""
+    return np.maximum(way_along(context), 0.0)
+
+
+def way_along(context: DriveContext) -> Floats:
+    """The same, less than 0 beside each other."""
     ego, others = context.ego_extents, context.extents
-    return np.maximum(np.maximum(others.s_min - ego.s_max, ego.s_min - others.s_max), 0.0)
+    way: Floats = np.maximum(others.s_min - ego.s_max, ego.s_min - others.s_max)
+    return way
 
 
 def lateral_gap(context: DriveContext) -> Floats:
     """The distance (m) across the road between bodies, 0 behind each other."""
+    return np.maximum(way_across(context), 0.0)
+
+
+def way_across(context: DriveContext) -> Floats:
+    """The same, less than 0 behind each other."""
     ego, others = context.ego_extents, context.extents
-    return np.maximum(np.maximum(others.d_min - ego.d_max, ego.d_min - others.d_max), 0.0)
+    way: Floats = np.maximum(others.d_min - ego.d_max, ego.d_min - others.d_max)
+    return way
 
 
 def position(context: DriveContext) -> NDArray[np.str_]:

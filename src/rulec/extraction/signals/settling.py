@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 from math import ceil
 
@@ -23,7 +24,7 @@ def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float)
         {name: without_blips(column, own.get(name, 1)) for name, column in columns.items()}
         for columns in (signals.world, signals.about)
     )
-    return SignalColumns(world, about, signals.unknown, signals.only)
+    return replace(signals, world=world, about=about)
 
 
 def without_blips(column: SignalColumn, least: int) -> SignalColumn:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rulec.extraction.tracks.tracks import Flags
 
 SignalColumn = NDArray[Any]
+Bounds: TypeAlias = tuple[SignalColumn, SignalColumn]
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,13 +21,15 @@ class SignalColumns:
 
     ``world``: a value for each state. ``about``: a row of values for each participant.
     ``unknown``: where a signal has no value, in the shape of its own array. ``only``: the
-    participants that a signal about objects applies to.
+    participants that a signal about objects applies to. ``bounds``: the least and the greatest that
+    a measured number may be, by the tolerances of its source, in the shape of its own array.
     """
 
     world: Mapping[str, SignalColumn] = field(default_factory=dict)
     about: Mapping[str, SignalColumn] = field(default_factory=dict)
     unknown: Mapping[str, Flags] = field(default_factory=dict)
     only: Mapping[str, Flags] = field(default_factory=dict)
+    bounds: Mapping[str, Bounds] = field(default_factory=dict)
 
     def __or__(self, other: SignalColumns) -> SignalColumns:
         names = [field.name for field in fields(self)]
@@ -41,3 +44,11 @@ def named_values(codes: SignalColumn, names: Sequence[str]) -> SignalColumn:
 def rounded(values: SignalColumn) -> SignalColumn:
     """Round numbers to a hundredth, no better being known, without negative zeros."""
     return np.round(values, 2) + 0.0
+
+
+def rounded_outward(low: SignalColumn, high: SignalColumn) -> Bounds:
+    """Round bounds to a hundredth, so that what lies between them still does."""
+    return np.floor(low * 100 + _HAIR) / 100 + 0.0, np.ceil(high * 100 - _HAIR) / 100 + 0.0
+
+
+_HAIR = 1e-6

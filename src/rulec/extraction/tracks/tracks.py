@@ -14,6 +14,8 @@ import shapely
 from numpy import bool_, float64
 from numpy.typing import NDArray
 
+from rulec.extraction.source_tolerances import tolerances_of
+from rulec.extraction.tracks.motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.recording import Lanelet, Participant, Points, Recording
 from rulec.scenario.recorded.route import is_lane, lanelet_area
@@ -27,7 +29,7 @@ class Tracks:
     """Arrays of participants by steps, NaN where one is not present.
 
     ``x`` and ``y`` are centres (m), ``heading`` is in rad. Velocities (m/s) and accelerations
-    (m/s²) are differences of places, since what files say of speeds may not agree with them.
+    (m/s²) are those of ``motion_of``, with their errors.
     ``on_lane`` and ``on_crosswalk``: is the middle of a vulnerable road user on a lane, of any
     direction, or on a pedestrian crossing of the map?
     """
@@ -41,7 +43,9 @@ class Tracks:
     vx: Floats
     vy: Floats
     speed: Floats
+    speed_error: Floats
     acceleration: Floats
+    acceleration_error: Floats
     on_lane: Flags
     on_crosswalk: Flags
 
@@ -78,16 +82,10 @@ class Tracks:
 
 
 _STEERED = frozenset({"vehicle", "light_rider"})
-_LEAST_PART = 0.7
-"""Whose motion is less along its heading than at 45° has a heading that says nothing."""
 
 
 def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
-    """The tracks of the participants of a recording that occupy something.
-
-    Velocities are central differences over ``smoothing_s``, one-sided where a track begins or ends;
-    the speed of what steers is the part of it along its heading.
-    """
+    """The tracks of the participants of a recording that occupy something."""
     bodies = tuple(body for body in recording.participants if body.outlines)
     steps = [step for body in bodies if not body.standing for step in body.outlines]
     first, last = min(steps, default=0), max(steps, default=0)
@@ -101,25 +99,13 @@ def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
         at = np.fromiter(poses, dtype=int, count=len(poses)) - first
         x[row, at], y[row, at], heading[row, at], stated[row, at] = np.array([*poses.values()]).T
     present = ~np.isnan(x)
-    reach = max(1, round(thresholds.smoothing_s / 2 / recording.step_s))
-    duration, before, after = _windows(present, reach)
-    rows = np.arange(shape[0])[:, None]
-    seconds = np.where(duration > 0, duration, np.nan) * recording.step_s
-    vx = (x[rows, after] - x[rows, before]) / seconds
-    vy = (y[rows, after] - y[rows, before]) / seconds
-    # A single moment has no displacement: there the stated speed counts
-    single = present & (duration == 0)
-    vx = np.where(single, stated * np.cos(heading), vx)
-    vy = np.where(single, stated * np.sin(heading), vy)
-    speed = np.hypot(vx, vy)
-    # A vehicle moves along its heading: a simulated change of lanes in one step is no speed
-    along = np.abs(vx * np.cos(heading) + vy * np.sin(heading))
-    steers = np.array(
-        [bool(_STEERED.intersection(body.object_types)) for body in bodies], dtype=bool
+    steers = np.array([bool(_STEERED.intersection(body.object_types)) for body in bodies], bool)
+    motion = motion_of(
+        Poses(x, y, heading, stated, steers),
+        thresholds.smoothing_s,
+        recording.step_s,
+        tolerances_of(recording),
     )
-    steers &= np.nansum(along * speed, axis=1) >= _LEAST_PART * np.nansum(speed**2, axis=1)
-    speed = np.where(steers[:, None], along, speed)
-    gained = (speed[rows, after] - speed[rows, before]) / seconds
     vulnerable = np.array(["vulnerable_user" in body.object_types for body in bodies], dtype=bool)
     users = present & vulnerable[:, None]
     lanelets = recording.lanelets.values()
@@ -131,10 +117,7 @@ def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
         x=x,
         y=y,
         heading=heading,
-        vx=vx,
-        vy=vy,
-        speed=speed,
-        acceleration=np.where(present, np.nan_to_num(gained), np.nan),
+        **{field.name: getattr(motion, field.name) for field in fields(motion)},
         on_lane=_inside(users, x, y, filter(is_lane, lanelets)),
         on_crosswalk=_inside(users, x, y, crosswalks),
     )
@@ -161,15 +144,3 @@ def _poses(body: Participant) -> dict[int, tuple[float, float, float, float]]:
         else:
             poses[step] = state.x, state.y, state.heading, state.speed
     return poses
-
-
-def _windows(present: Flags, reach: int) -> tuple[NDArray[np.intp], ...]:
-    """The lengths (steps), firsts and lasts of unbroken windows around moments."""
-    columns = np.arange(present.shape[1])
-    absent = np.where(present, -1, columns)
-    since = np.maximum.accumulate(absent, axis=1) + 1
-    absent = np.where(present, len(columns), columns)
-    until = np.minimum.accumulate(absent[:, ::-1], axis=1)[:, ::-1] - 1
-    before = np.where(present, np.maximum(columns - reach, since), columns)
-    after = np.where(present, np.minimum(columns + reach, until), columns)
-    return after - before, before, after

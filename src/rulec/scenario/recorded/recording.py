@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from numpy import float64
 from numpy.typing import NDArray
@@ -173,6 +173,13 @@ class Weather:
     visibility_m: float | None = None
 
 
+class Rounding(NamedTuple):
+    """The units of the last decimals in which places (m) and speeds (m/s) are written."""
+
+    place_m: float
+    speed_mps: float
+
+
 @dataclass(frozen=True, slots=True)
 class Recording:
     """A file: one time step takes ``step_s`` seconds.
@@ -180,7 +187,7 @@ class Recording:
     ``form`` is what such a file is called, ``side`` the one on which traffic keeps, None if the
     file does not say, ``country`` its code (ISO 3166) or empty. ``complete`` names kinds of things,
     signs for one, that the file would have if they were there. ``remarks``: what the file leaves
-    open, and is taken to be.
+    open, and is taken to be. ``rounding`` is that of a file that is exact otherwise.
     """
 
     __repr__ = short_repr
@@ -196,3 +203,4 @@ class Recording:
     country: str = ""
     complete: frozenset[str] = frozenset()
     weather: Weather = Weather()
+    rounding: Rounding | None = None

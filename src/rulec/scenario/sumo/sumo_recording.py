@@ -12,7 +12,13 @@ from numpy import float64, int64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
-from rulec.scenario.recorded.recording import Lamp, Lanelet, Participant, Recording
+from rulec.scenario.recorded.recording import (
+    Lamp,
+    Lanelet,
+    Participant,
+    Recording,
+    Rounding,
+)
 from rulec.scenario.recorded.track import Track, TrackOutlines, TrackStates
 from rulec.scenario.scenario_messages import OTHER_NET
 from rulec.scenario.sumo.fcd import (
@@ -90,7 +96,30 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         side=net.side,
         remarks=tuple(_remarks(unknown, net)),
         complete=COMPLETE,
+        rounding=_rounding(data),
     )
+
+
+_MOST_DECIMALS = 6
+_HAIR = 1e-3
+_MANY = 100
+"""In so few numbers it may be chance that none has a second decimal, which SUMO writes."""
+
+
+def _rounding(data: FloatingCarData) -> Rounding:
+    """The rounding of places and speeds, by the decimals that all of them have."""
+    rows = np.concatenate([np.array(track.rows, dtype=float) for track in data.tracks.values()])
+    x, y, _, speed = rows.reshape(-1, 4).T
+    return Rounding(_unit(np.concatenate((x, y))), _unit(speed))
+
+
+def _unit(numbers: NDArray[float64]) -> float:
+    fewest = 0 if len(numbers) >= _MANY else 2
+    for decimals in range(fewest, _MOST_DECIMALS):
+        scaled = numbers * 10.0**decimals
+        if np.abs(scaled - np.round(scaled)).max() < _HAIR:
+            return float(10.0**-decimals)
+    return float(10.0**-_MOST_DECIMALS)
 
 
 def _participants(

@@ -6,7 +6,12 @@ import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.map.junction_signals import stop_line
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, rounded
+from rulec.extraction.signals.signal_columns import (
+    SignalColumn,
+    SignalColumns,
+    rounded,
+    rounded_outward,
+)
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.recording import Lanelet
 
@@ -37,9 +42,7 @@ def map_signals(context: DriveContext) -> SignalColumns:
     }
     unknown: dict[str, Flags] = {}
     if any(lanelet.limit_mps is not None for lanelet in context.recording.lanelets.values()):
-        limits = [lanelet.limit_mps for lanelet in lanelets]
-        known = [NO_LIMIT_KMH if limit is None else limit * KMH for limit in limits]
-        world["limit"] = rounded(np.array(known))
+        world["limit"] = rounded(np.minimum(context.limit_mps * KMH, NO_LIMIT_KMH))
     classes = [
         next((_CLASSES[kind] for kind in lanelet.types if kind in _CLASSES), "")
         for lanelet in lanelets
@@ -52,7 +55,10 @@ def map_signals(context: DriveContext) -> SignalColumns:
         if drawn or sign in context.recording.complete:
             here = np.array([sign in lanelet.signs for lanelet in lanelets])
             world[name] = _holds_to_line(context, sign) if at_line else here
-    return SignalColumns(world, unknown=unknown)
+    place = context.tolerances.place_m
+    nearer, farther = (_to_crossing(context, way * place) for way in (-1, 1))
+    bounds = {"distance_to_crossing": rounded_outward(nearer, farther)}
+    return SignalColumns(world, unknown=unknown, bounds=bounds)
 
 
 def _holds_to_line(context: DriveContext, sign: str) -> Flags:
@@ -82,8 +88,12 @@ def _lanelets_at(context: DriveContext, s: Floats) -> list[Lanelet]:
 
 def distance_to_crossing(context: DriveContext) -> Floats:
     """The distance (m) from ego's front to the next pedestrian crossing, 0 on it."""
+    return _to_crossing(context, 0.0)
+
+
+def _to_crossing(context: DriveContext, more_m: float) -> Floats:
     start, _ = next_crossing(context)
-    distance: Floats = np.clip(start - context.ego_extents.s_max[0], 0.0, NO_CROSSING_M)
+    distance: Floats = np.clip(start - context.ego_extents.s_max[0] + more_m, 0.0, NO_CROSSING_M)
     return distance
 
 

@@ -1,0 +1,102 @@
+"""Measured numbers with the bounds that their source's tolerances leave them.
+
+Bounds of quotients are those of their parts (interval arithmetic), of sums those of errors that
+have nothing to do with each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals import relations
+from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
+from rulec.extraction.tracks.tracks import Flags, Floats
+
+LONGEST_S = 1000.0
+"""The longest headway (s), also that of an ego that stands."""
+
+_AT_LIMIT_MPS = 0.01
+"""Limits are written to a hundredth: a simulated speed so near to one is at it."""
+
+
+def moves(context: DriveContext) -> Flags:
+    """Flags of states in which ego moves."""
+    drives: Flags = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
+    return drives
+
+
+def own_speed(context: DriveContext) -> tuple[Floats, Floats]:
+    """Ego's speed (m/s), 0 if it stands, and how far it may be wrong.
+
+    A simulated driver keeps to a limit exactly, but for what is rounded away of both.
+    """
+    speed, error = context.ego.speed[0], context.ego.speed_error[0]
+    if context.tolerances.stated_mps is not None:
+        at_limit = np.abs(speed - context.limit_mps) <= _AT_LIMIT_MPS
+        speed, error = np.where(at_limit, context.limit_mps, speed), np.where(at_limit, 0.0, error)
+    return np.where(moves(context), (speed, error), 0.0)  # type: ignore[return-value]
+
+
+def speed_bounds(context: DriveContext) -> Bounds:
+    """The bounds of ego's speed (km/h); it may stand if it may be so slow."""
+    speed, error = own_speed(context)
+    low = (speed - error) * KMH
+    may_stand = (low < context.thresholds.standing_kmh) & (error > 0)
+    return rounded_outward(np.where(may_stand, 0.0, low), (speed + error) * KMH)
+
+
+def bounds_to_others(context: DriveContext) -> Mapping[str, Bounds]:
+    """The bounds of gaps (m), headways (s) and differences of speed (km/h)."""
+    place = context.tolerances.place_m
+    along, across = relations.way_along(context), relations.way_across(context)
+    near, far = (np.maximum(along + way * place, 0.0) for way in (-1, 1))
+    speed, error = own_speed(context)
+    drives = moves(context)
+    least = np.where(drives, speed - error, 1.0)
+    longest = np.where(least > 0, far / np.maximum(least, _AT_LIMIT_MPS), LONGEST_S)
+    shortest = near / np.where(drives, speed + error, 1.0)
+    headway = [
+        np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
+        for seconds in (shortest, longest)
+    ]
+    theirs = context.extents.along * KMH
+    stands = context.zero_if_standing(theirs) == 0
+    difference = context.ego_extents.along * KMH - context.zero_if_standing(theirs)
+    their_error = np.where(stands, 0.0, context.tracks.speed_error)
+    wrong = np.hypot(context.ego.speed_error, their_error) * KMH
+    return {
+        "gap": rounded_outward(near, far),
+        "time_headway": rounded_outward(headway[0], headway[1]),
+        "lateral_gap": rounded_outward(
+            np.maximum(across - place, 0.0), np.maximum(across + place, 0.0)
+        ),
+        "speed_difference": rounded_outward(difference - wrong, difference + wrong),
+    }
+
+
+def safe_distance(context: DriveContext) -> Floats:
+    """The distance (m) for ego to stop behind a participant braking fully.
+
+    Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS (Shalev-Shwartz,
+    Shammah, Shashua 2017). An oncoming participant counts as standing.
+    """
+    limits = context.thresholds
+    own, other = _ahead(context)
+    distance: Floats = limits.reaction_s * own + (own**2 - other**2) / (2 * limits.braking_mps2)
+    return distance
+
+
+def safe_distance_error(context: DriveContext) -> Floats:
+    """How far the safe distance (m) may be wrong, as speeds are."""
+    limits = context.thresholds
+    own, other = _ahead(context)
+    of_own = (limits.reaction_s + own / limits.braking_mps2) * context.ego.speed_error
+    error: Floats = np.hypot(of_own, other / limits.braking_mps2 * context.tracks.speed_error)
+    return error
+
+
+def _ahead(context: DriveContext) -> tuple[Floats, Floats]:
+    return np.maximum(context.ego_extents.along, 0.0), np.maximum(context.extents.along, 0.0)

@@ -1,0 +1,112 @@
+"""Velocities and accelerations from places, and how far they may be wrong."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import bool_, float64, intp
+from numpy.typing import NDArray
+
+from rulec.extraction.source_tolerances import Tolerances
+
+_LEAST_PART = 0.7
+"""Whose motion is less along its heading than at 45° has a heading that says nothing."""
+
+_AGREES, _STANDS_MPS = 0.05, 0.1
+"""Stated speeds count if they make the way that places do, to a twentieth, or so much in the mean.
+"""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Motion:
+    """Velocity (m/s), its length or part along the heading, and acceleration (m/s²).
+
+    A row for each participant, a column for each step; the errors are how far they may be wrong.
+    """
+
+    vx: NDArray[float64]
+    vy: NDArray[float64]
+    speed: NDArray[float64]
+    speed_error: NDArray[float64]
+    acceleration: NDArray[float64]
+    acceleration_error: NDArray[float64]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Poses:
+    """Places (m), headings (rad) and stated speeds (m/s) by step; NaN where nobody is.
+
+    ``steers``: does it move along its heading, as a vehicle does?
+    """
+
+    x: NDArray[float64]
+    y: NDArray[float64]
+    heading: NDArray[float64]
+    stated: NDArray[float64]
+    steers: NDArray[bool_]
+
+
+def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances) -> Motion:
+    """Central differences over ``smoothing_s``, one-sided where a track begins or ends.
+
+    The speed of what steers is the part along its heading, or what the file states if its stated
+    speeds are ``known`` better and agree with its places.
+    """
+    present = ~np.isnan(poses.x)
+    duration, before, after = _windows(present, max(1, round(smoothing_s / 2 / step_s)))
+    rows = np.arange(len(present))[:, None]
+    seconds = np.where(duration > 0, duration, np.nan) * step_s
+    vx = (poses.x[rows, after] - poses.x[rows, before]) / seconds
+    vy = (poses.y[rows, after] - poses.y[rows, before]) / seconds
+    # A single moment has no displacement: there the stated speed counts
+    cos, sin, stated = np.cos(poses.heading), np.sin(poses.heading), poses.stated
+    single = present & (duration == 0)
+    vx, vy = np.where(single, stated * cos, vx), np.where(single, stated * sin, vy)
+    speed = np.hypot(vx, vy)
+    # A vehicle moves along its heading: a simulated change of lanes in one step is no speed
+    along = np.abs(vx * cos + vy * sin)
+    steers = poses.steers & (
+        np.nansum(along * speed, axis=1) >= _LEAST_PART * np.nansum(speed**2, axis=1)
+    )
+    speed = np.where(steers[:, None], along, speed)
+    own = np.zeros(len(present), dtype=bool)
+    if known.stated_mps is not None:
+        own = poses.steers & _agree(speed, stated)
+        vx, vy = np.where(own[:, None], (stated * cos, stated * sin), (vx, vy))
+        speed = np.where(own[:, None], stated, speed)
+    gained = (speed[rows, after] - speed[rows, before]) / seconds
+    # At a track's ends the mean is of the time beside the state
+    beside = np.abs((before + after) / 2 - np.arange(present.shape[1])) * step_s
+    error = known.speed_mps / np.where(single, 1.0, seconds)
+    error += np.nan_to_num(np.abs(gained) * beside)
+    error = np.where(own[:, None], known.stated_mps or 0.0, error)
+    gained_error = np.hypot(error[rows, after], error[rows, before]) / seconds
+    return Motion(
+        vx=vx,
+        vy=vy,
+        speed=speed,
+        speed_error=error,
+        acceleration=np.where(present, np.nan_to_num(gained), np.nan),
+        acceleration_error=np.nan_to_num(gained_error),
+    )
+
+
+def _agree(speed: NDArray[float64], stated: NDArray[float64]) -> NDArray[bool_]:
+    """Flags of participants whose stated speeds make the way that their places do."""
+    way, told = np.nansum(speed, axis=1), np.nansum(stated, axis=1)
+    count = np.sum(~np.isnan(stated), axis=1)
+    agree: NDArray[bool_] = np.abs(way - told) <= np.maximum(_AGREES * told, _STANDS_MPS * count)
+    return agree
+
+
+def _windows(present: NDArray[bool_], reach: int) -> tuple[NDArray[intp], ...]:
+    """The lengths (steps), firsts and lasts of unbroken windows around moments."""
+    columns = np.arange(present.shape[1])
+    absent = np.where(present, -1, columns)
+    since = np.maximum.accumulate(absent, axis=1) + 1
+    absent = np.where(present, len(columns), columns)
+    until = np.minimum.accumulate(absent[:, ::-1], axis=1)[:, ::-1] - 1
+    before = np.where(present, np.maximum(columns - reach, since), columns)
+    after = np.where(present, np.minimum(columns + reach, until), columns)
+    return after - before, before, after

@@ -1,0 +1,102 @@
+"""The bounds of measured numbers, by the tolerances of their source."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals.measured_numbers import LONGEST_S
+from rulec.extraction.signals.participant_signals import participant_signals
+from support.builders.drive_contexts import context_of, steady
+from support.builders.recordings import recording, vehicle
+from support.generators.random_recordings import lanes
+
+NGSIM, SUMO = {"name": "USA_US101"}, {"form": "SUMO data"}
+
+
+def seen(*bodies, source=NGSIM, limit_mps=None):
+    """The context of the first of the bodies on a road of two lanes, from a source."""
+    found = recording(lanes(2, limit_mps=limit_mps), bodies)
+    return context_of(replace(found, **source))
+
+
+def speeds(mps, **more):
+    """The bounds of the speed of a vehicle at constant speed, by state."""
+    low, high = ego_signals(seen(steady(7, 0, 0, mps), **more)).bounds["speed"]
+    return list(zip(low.tolist(), high.tolist(), strict=True))
+
+
+def to_other(name, *, mps=10.0, x=30, y=0):
+    """The bounds of a number about one that stands, in the second state."""
+    bounds = participant_signals(seen(steady(7, 0, 0, mps), steady(8, x + mps / 2, y, 0))).bounds
+    return tuple(float(end[0, 1]) for end in bounds[name])
+
+
+def test_speeds_are_means_over_a_second_or_over_half_a_one_at_the_ends():
+    # 0.3 m/s are 1.08 km/h; over half a second they are known half as well
+    inside, at_ends = (34.92, 37.08), (33.84, 38.16)
+    assert speeds(10) == [at_ends, inside, inside, at_ends]
+
+
+def test_at_the_ends_a_change_of_speed_shows_half_a_window_later():
+    # 4 m/s² from 10 m/s on: the mean of the first half second is 11 m/s. 0.6 m/s are its error,
+    # and 4 m/s² for a quarter of a second 1 m/s.
+    ego = vehicle(7, {k: (10 * t + 2 * t * t, 0) for k in range(5) for t in [k / 2]})
+    low, high = ego_signals(seen(ego)).bounds["speed"]
+    assert low[0] <= 36.0 <= high[0]
+    assert low[2] == pytest.approx((14 - 0.3) * 3.6, abs=0.011)
+
+
+def test_who_is_slower_than_the_threshold_stands_and_who_is_hardly_faster_may():
+    assert speeds(0.2)[1] == (0.0, 0.0)
+    assert speeds(0.4)[1] == (0.0, 2.52)
+    assert speeds(1.0)[1] == (2.52, 4.68)
+
+
+def test_a_simulation_is_known_up_to_its_rounding():
+    # 13.92 m/s stand for 13.915 to 13.925, 50.094 to 50.13 km/h
+    assert speeds(13.92, source=SUMO) == [(50.09, 50.13)] * 4
+    assert speeds(13.92, source=SUMO, limit_mps=50 / 3.6) == [(50.09, 50.13)] * 4
+
+
+def test_a_simulated_driver_at_the_limit_is_at_it():
+    # Nets write 13.89 m/s for 50 km/h
+    assert speeds(13.89, source=SUMO, limit_mps=50 / 3.6) == [(50.0, 50.0)] * 4
+    assert speeds(13.89, source=SUMO)[0] == (49.98, 50.03)
+    assert speeds(13.89, limit_mps=50 / 3.6)[1] != (50.0, 50.0)
+
+
+def test_distances_are_known_as_far_as_places_are():
+    assert to_other("gap", x=30) == (25.7, 26.3)
+    assert to_other("lateral_gap", y=4) == (1.7, 2.3)
+    # Bodies that surely overlap along the road have no gap; that may touch, perhaps
+    assert to_other("gap", x=2) == (0.0, 0.0)
+    assert to_other("gap", x=4.1) == (0.0, 0.4)
+
+
+def test_headways_are_quotients_of_what_gaps_and_speeds_may_be():
+    # 25.7 m at 10.3 m/s, 26.3 m at 9.7 m/s
+    assert to_other("time_headway") == (2.49, 2.72)
+    assert to_other("time_headway", mps=0.1) == (LONGEST_S, LONGEST_S)
+
+
+def test_errors_of_two_speeds_add_up_as_squares():
+    bounds = participant_signals(seen(steady(7, 0, 0, 10), steady(8, 30, 0, 5))).bounds
+    low, high = (end[0, 1] for end in bounds["speed_difference"])
+    wrong = 1.08 * np.sqrt(2)
+    assert (low, high) == pytest.approx((18 - wrong, 18 + wrong), abs=0.011)
+    # Who stands does so exactly
+    assert to_other("speed_difference") == (34.92, 37.08)
+
+
+@given(st.floats(0, 40), st.floats(-60, 60), st.floats(-6, 6), st.sampled_from([NGSIM, SUMO, {}]))
+def test_what_is_measured_lies_within_its_bounds(mps, x, y, source):
+    context = seen(steady(7, 0, 0, mps), steady(8, x, y, 8), source=source)
+    found = ego_signals(context) | participant_signals(context)
+    for name, (low, high) in found.bounds.items():
+        measured = (found.world | found.about)[name]
+        assert (low - 0.006 <= measured).all(), name
+        assert (measured <= high + 0.006).all(), name

@@ -1,0 +1,65 @@
+"""Speeds from places, or as stated where the file knows better, and their errors."""
+
+import numpy as np
+import pytest
+
+from rulec.extraction.source_tolerances import OTHERS, Tolerances
+from rulec.extraction.tracks.motion import Poses, motion_of
+
+EXACT = Tolerances(0.01, 0.01, 0.005)
+
+
+def motion(x, stated, known=EXACT, steers=True, step_s=0.1):
+    """The motion of somebody along the x axis."""
+    x = np.array([x], dtype=float)
+    stated = np.broadcast_to(np.array(stated, dtype=float), x.shape)
+    zero = np.zeros_like(x)
+    return motion_of(Poses(x, zero, zero, stated, np.array([steers])), 1.0, step_s, known)
+
+
+def braking(count=30, step_s=0.1):
+    """Places and speeds, from 20 m/s with 5 m/s²."""
+    t = np.arange(count) * step_s
+    return 20 * t - 2.5 * t * t, 20 - 5 * t
+
+
+def test_stated_speeds_that_agree_with_places_are_taken():
+    x, v = braking()
+    found = motion(x, v)
+    assert found.speed[0] == pytest.approx(v)
+    assert found.vx[0] == pytest.approx(v)
+    assert (found.speed_error == 0.005).all()
+    # From places alone the first speed would be that of a quarter of a second later
+    assert motion(x, v, known=OTHERS).speed[0, 0] == pytest.approx(20 - 1.25)
+
+
+def test_stated_speeds_that_make_another_way_are_not():
+    x, v = braking()
+    assert motion(x, v * 1.1).speed[0, 15] == pytest.approx(v[15])
+    assert motion(x, 0.0).speed[0, 15] == pytest.approx(v[15])
+    assert motion(x, v * 1.1).speed_error[0, 15] == pytest.approx(0.01)
+
+
+def test_who_does_not_steer_has_the_speed_of_its_places():
+    x, v = braking()
+    assert motion(x, v, steers=False).speed[0, 0] == pytest.approx(20 - 1.25)
+
+
+def test_errors_grow_as_windows_shrink():
+    x = 10 * np.arange(30) * 0.1
+    error = motion(x, 0.0, known=OTHERS).speed_error[0]
+    assert error[15] == pytest.approx(0.1)
+    assert error[[0, -1]] == pytest.approx([0.2, 0.2])
+    assert error[2] == pytest.approx(0.1 / 0.7)
+
+
+def test_an_acceleration_is_the_difference_of_two_speeds():
+    x = 10 * np.arange(40) * 0.1
+    found = motion(x, 0.0, known=OTHERS)
+    assert found.acceleration_error[0, 20] == pytest.approx(0.1 * np.sqrt(2))
+
+
+def test_in_a_single_moment_there_is_what_is_stated():
+    found = motion([np.nan, 3, np.nan], 7.0, known=OTHERS)
+    assert found.speed[0, 1] == 7.0
+    assert found.speed_error[0, 1] == 0.1
