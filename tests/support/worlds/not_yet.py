@@ -5,10 +5,8 @@ mended is taken out; nothing is added.
 """
 
 STORED = {
-    "grid": {"speed_limit"},
     "priority": {"give_way_sign"},
     "all_way_stop": {"stop_sign"},
-    "motorway": {"speed_limit"},
 }
 """Rules under which somebody is accused falsely, or a violation counts as kept."""
 

@@ -15,7 +15,7 @@ from numpy import bool_, float64
 from numpy.typing import NDArray
 
 from rulec.extraction.source_tolerances import tolerances_of
-from rulec.extraction.tracks.motion import Poses, motion_of
+from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.recording import Lanelet, Participant, Points, Recording
 from rulec.scenario.recorded.route import is_lane, lanelet_area
