@@ -116,6 +116,12 @@ def has_partial_values(state: Mapping[str, Any]) -> bool:
     )
 
 
+def partial_names(states: Iterable[Mapping[str, Any]]) -> set[str]:
+    """The names of which some state has a value that is unknown, or an interval."""
+    given = {(name, id(value)): value for state in states for name, value in state.items()}
+    return {name for (name, _), value in given.items() if has_partial_values({name: value})}
+
+
 def check_state(
     state: State,
     objects: Mapping[str, str],

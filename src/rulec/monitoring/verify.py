@@ -14,7 +14,8 @@ from rulec.monitoring.bindings import bindings
 from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
-from rulec.monitoring.uncertainty.uncertain_verdict import spelled_out, uncertain_verdict
+from rulec.monitoring.uncertainty.suppositions import spelled_out
+from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace

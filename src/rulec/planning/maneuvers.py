@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain, islice, starmap
@@ -12,10 +12,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import stutter_invariant
 from rulec.logic.free_names import names_in
-from rulec.monitoring.verdict import Violation
+from rulec.monitoring.state_validation import partial_names
+from rulec.monitoring.uncertainty.possible_letters import untold_names
+from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
+from rulec.monitoring.verdict import CarriedState, RuleNotJudged, Verdict, Violation
 from rulec.planning.product.graph_instances import HARD, SOFT, violations
 from rulec.planning.product.graph_product import Joint, Product, count_paths, explore
 from rulec.planning.product.node_transformers import NodeTransformers, node_transformers
+from rulec.planning.product.possible_instances import not_judged
 from rulec.planning.ranking.cell_tracks import CellTracks, cell_tracks
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_classes, variants
@@ -24,6 +28,7 @@ from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
 from rulec.planning.ranking.pruning import Blaming, RulePruning, violating, violating_alone
 from rulec.planning.rule_instances import bind_rules, in_rule_words, past_for
 from rulec.trace import TraceGraph
+from rulec.trace.trace_model import trace_of
 from rulec.value_display import Rows, short_count
 
 if TYPE_CHECKING:
@@ -41,8 +46,11 @@ class Maneuvers(Rows):
     """Maneuvers of a scenario, evaluated by a rulebook.
 
     ``rules`` have judged them, by machines for the graph's step. ``paths`` is the graph in terms of
-    their vocabulary. ``after`` is the past, None if there was none. ``violated_before`` are
+    their vocabulary. ``hard`` and ``product`` are about what is kept for sure, ``perhaps`` and
+    ``possible`` about what is not violated for sure; where all is known they are the same.
+    ``after`` is the past, None if there was none. ``violated_before`` are
     the hard rules that it has violated for good; nothing of that counts against a maneuver.
+    ``not_judged`` are rules that no maneuver can be known to violate.
     """
 
     graph: NavigationGraph
@@ -51,8 +59,11 @@ class Maneuvers(Rows):
     traces: int
     hard: NodeTransformers
     product: Product[Joint]
+    perhaps: NodeTransformers
+    possible: Product[Joint]
     after: Before | None = None
     violated_before: tuple[Violation, ...] | None = None
+    not_judged: tuple[RuleNotJudged, ...] = ()
 
     def __repr__(self) -> str:
         counts = f"{short_count(self.satisfying)} of {short_count(self.traces)}"
@@ -60,19 +71,53 @@ class Maneuvers(Rows):
 
     @property
     def satisfying(self) -> int:
-        """Number of maneuvers that keep every hard rule."""
+        """Number of maneuvers that keep every hard rule, whatever is unknown."""
         return self.product.accepted
+
+    @property
+    def open(self) -> int:
+        """Number of further maneuvers of which no hard rule is known to be violated."""
+        return self.possible.accepted - self.product.accepted
+
+    @property
+    def exact(self) -> bool:
+        """Whether what is open is so; else more has been taken to be possible than is."""
+        readings = [instance.readings for instance in self.hard.instances]
+        return all(reading is None or reading.exact for reading in readings)
+
+    @cached_property
+    def unknown(self) -> tuple[str, ...]:
+        """Names that rules read and of which not all is known."""
+        partial = partial_names(state for layer in self.paths.states for state in layer)
+        partial |= untold_names(self.rules.vocabulary, self.paths.told)
+        return self._read(partial)
 
     @property
     def by_default(self) -> tuple[str, ...]:
         """Names that rules read and the scenario leaves at their defaults."""
         supplied = {name for layer in self.paths.states for state in layer for name in state}
-        read = {name for rule in self.rules.rules for name in names_in(rule.formula)}
-        return tuple(name for name in self.rules.vocabulary.declarations if name in read - supplied)
+        return self._read(self.rules.vocabulary.declarations.keys() - supplied - {*self.unknown})
 
-    def cheapest(self, n: int) -> list[Maneuver]:
-        """The ``n`` cheapest satisfying maneuvers, or all if there are fewer."""
-        return _first(n, cheapest(self.product))
+    def _read(self, names: Collection[str]) -> tuple[str, ...]:
+        """Those of these names that rules read, in the vocabulary's order."""
+        read = {name for rule in self.rules.rules for name in names_in(rule.formula)}
+        read.intersection_update(names)
+        return tuple(name for name in self.rules.vocabulary.declarations if name in read)
+
+    def cheapest(self, n: int, *, perhaps: bool = False) -> list[Maneuver]:
+        """The ``n`` cheapest satisfying maneuvers, or all if there are fewer.
+
+        With ``perhaps`` those that are open are among them.
+        """
+        return _first(n, cheapest(self.possible if perhaps else self.product))
+
+    def verdict(self, maneuver: Maneuver) -> Verdict:
+        """What a maneuver violates and what is open. Raises RulecError as ``best`` does."""
+        if not self.unknown:
+            name = self.graph.scenario.name
+            return Verdict(name, violations(self._every.instances, maneuver.nodes))
+        trace = trace_of(self.paths, maneuver.nodes, self.graph.scenario.name)
+        return uncertain_verdict(trace, self.rules, self._past)
 
     def best(self, n: int = MOST_BEST) -> list[RankedManeuver]:
         """The least violating maneuvers: for each lowest penalty one of the cheapest.
@@ -123,6 +168,10 @@ class Maneuvers(Rows):
     @cached_property
     def _ranks(self) -> PenaltyOrder:
         return ranks_of(self.rules)
+
+    @cached_property
+    def _past(self) -> CarriedState:
+        return past_for(self.graph, self.paths, self.rules, (*HARD, *SOFT), self.after)
 
     @cached_property
     def _every(self) -> NodeTransformers:
@@ -181,14 +230,22 @@ def evaluate(
     rules = rules.fitted_to(graph.step)
     paths = in_rule_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary)
     past = past_for(graph, paths, rules, HARD, after)
-    hard = node_transformers(paths, bind_rules(graph, paths, rules, HARD, past))
+    bound = bind_rules(graph, paths, rules, HARD, past)
+    hard = perhaps = node_transformers(paths, bound)
+    product = possible = explore(hard)
+    if any(instance.readings for instance in bound):
+        perhaps = node_transformers(paths, bound, perhaps=True)
+        possible = explore(perhaps)
     return Maneuvers(
         graph=graph,
         rules=rules,
         paths=paths,
         traces=count_paths(paths),
         hard=hard,
-        product=explore(hard),
+        product=product,
+        perhaps=perhaps,
+        possible=possible,
         after=after,
         violated_before=None if after is None else past.violations,
+        not_judged=tuple(not_judged(paths, rules, past)),
     )

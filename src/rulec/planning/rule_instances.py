@@ -11,7 +11,8 @@ from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verdict import NO_PAST, CarriedState
 from rulec.planning.planning_messages import TWO_PARTITIONS
-from rulec.planning.product.graph_instances import GraphInstance, instances
+from rulec.planning.product.graph_instance import GraphInstance
+from rulec.planning.product.graph_instances import instances
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph
 from rulec.trace.vocabulary_projection import project_graph

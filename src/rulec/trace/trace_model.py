@@ -52,7 +52,8 @@ class TraceGraph:
     ``states[p][i]`` is the state of node ``i`` of layer ``p``; ``successors[p][i]`` are the indices
     in layer ``p + 1`` of its followers, ascending, ``weights[p][i]`` the whole-number costs of
     these edges, in the unit ``cost_unit`` (1/s), and ``margins[p][i]`` their time margins in layers
-    (None for staying). ``objects`` and ``present`` are as in a trace, counted in layers.
+    (None for staying). ``objects``, ``present`` (in layers) and ``told`` are as in a trace. All
+    nodes say the same of a constant.
     """
 
     __repr__ = short_repr
@@ -67,6 +68,7 @@ class TraceGraph:
     cost_unit: Fraction
     start: int
     goals: tuple[int, ...]
+    told: frozenset[str] | None = None
 
 
 def paths(graph: TraceGraph) -> Iterator[tuple[int, ...]]:
@@ -119,7 +121,7 @@ def all_traces(graph: TraceGraph, name: str, limit: int) -> Iterator[Trace]:
 def trace_of(graph: TraceGraph, path: Sequence[int], name: str) -> Trace:
     """The trace along a path."""
     states = tuple(states[node] for states, node in zip(graph.states, path, strict=True))
-    return Trace(name, graph.step_s, graph.objects, states, graph.present)
+    return Trace(name, graph.step_s, graph.objects, states, graph.present, told=graph.told)
 
 
 def check_trace(trace: Trace) -> None:

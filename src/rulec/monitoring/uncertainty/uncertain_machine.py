@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
 from math import prod
 from typing import TypeAlias
@@ -55,20 +55,23 @@ class Answer:
 
 
 class UncertainMachine:
-    """Answers of one rule's machine, remembered."""
+    """Answers of one rule's machine, remembered.
+
+    ``monitor`` runs it on the ``classes`` of possible letters.
+    """
 
     def __init__(self, rule: CompiledRule, machine: OutcomeMachine) -> None:
         self._reads = machine.reads
         self._machine = machine
-        self._monitor = SetMonitor(machine)
-        self._classes = LetterClasses(machine)
+        self.monitor = SetMonitor(machine)
+        self.classes = LetterClasses(machine)
         self._answers: dict[object, Answer] = {}
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
         self._rule = rule
 
     def impossible_at(self, word: PossibleWord) -> int | None:
         """The index of a state that has no possible letter."""
-        classes = self._classes
+        classes = self.classes
         return next((n for n, letters in enumerate(word.states) if not classes.of(letters)), None)
 
     def answer(
@@ -121,7 +124,7 @@ class UncertainMachine:
         names = [name for name in order if any(name in own for own in (*unknown, varying))]
         if len(self._machine.starts) > 1:
             names.append(BEFORE)
-        dependence = Dependence(self._monitor, self._classes, alternatives, unknown)
+        dependence = Dependence(self.monitor, self.classes, alternatives, unknown)
         found = dependence.smallest(names)
         on = names if found is None else found
         told: tuple[Reason, ...] = ("not told",) if any(on) else ()
@@ -139,7 +142,7 @@ class UncertainMachine:
         )
 
     def _run(self, word: _Word) -> tuple[int, int, int | None]:
-        return self._monitor.run([self._classes.of(letters) for letters in word])
+        return self.monitor.run([self.classes.of(letters) for letters in word])
 
     def _outcomes(
         self,
@@ -222,7 +225,7 @@ class UncertainMachine:
                 ]
                 if all(masks):
                     cubes.append(tuple(masks))
-            if not cubes or not self._classes.of(tuple(cubes)):
+            if not cubes or not self.classes.of(tuple(cubes)):
                 return None
             narrowed.append(tuple(cubes))
         return narrowed
@@ -263,10 +266,10 @@ class UncertainMachine:
             sum(1 << symbol for symbol in set(row) - {IMPOSSIBLE})
             for row in np.unique(rows, axis=0).tolist()
         }
-        reached = {self._monitor.start}
-        for here in (waiting := [self._monitor.start]):
+        reached = {self.monitor.start}
+        for here in (waiting := [self.monitor.start]):
             for classes in masks - {0}:
-                step = self._monitor.step(here, classes)
+                step = self.monitor.step(here, classes)
                 if step.best == VIOLATED:
                     return True
                 if step.states not in reached:
@@ -298,18 +301,24 @@ def _side(read: NumberRead, digit: int) -> str:
     return " and ".join(texts)
 
 
-_PREPARED: dict[int, tuple[object, UncertainMachine]] = {}
+_PREPARED: dict[tuple[int, frozenset[int]], tuple[object, UncertainMachine]] = {}
 _MOST_PREPARED = 1 << 10
 
 
-def uncertain_machine(rule: CompiledRule, outcomes: OutcomeMachine | None) -> UncertainMachine:
-    """The rule's machine for uncertain words; ``outcomes`` is that for prefixes, if any."""
+def uncertain_machine(
+    rule: CompiledRule, outcomes: OutcomeMachine | None, starts: Iterable[int] = (0,)
+) -> UncertainMachine:
+    """The rule's machine for uncertain words; ``outcomes`` is that for prefixes, if any.
+
+    Without one a run begins in any of the ``starts``.
+    """
     source: object = rule.machine if outcomes is None else outcomes
-    known = _PREPARED.get(id(source))
+    key = id(source), frozenset(starts)
+    known = _PREPARED.get(key)
     if known is None or known[0] is not source:
         if len(_PREPARED) >= _MOST_PREPARED:
             _PREPARED.clear()
-        machine = of_complete_words(rule.machine) if outcomes is None else outcomes
+        machine = outcomes or replace(of_complete_words(rule.machine), starts=key[1])
         known = source, UncertainMachine(rule, machine)
-        _PREPARED[id(source)] = known
+        _PREPARED[key] = known
     return known[1]

@@ -3,47 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from fractions import Fraction
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, bindings
 from rulec.monitoring.letter_reader import LetterReader, present_in
-from rulec.monitoring.monitoring_messages import UNFITTING_VALUE
-from rulec.monitoring.state_validation import StateValidator, check_objects, has_partial_values
+from rulec.monitoring.state_validation import StateValidator, check_objects
+from rulec.monitoring.uncertainty.possible_letters import untold_names, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
 from rulec.monitoring.verify import run
+from rulec.planning.product.graph_instance import GraphInstance
+from rulec.planning.product.possible_instances import PossibleNodes
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph
 
 HARD: tuple[Strength, ...] = ("hard",)
 SOFT: tuple[Strength, ...] = ("soft",)
-
-
-@dataclass(frozen=True, slots=True)
-class GraphInstance:
-    """A rule with objects bound, and the letter class of every node.
-
-    ``letters[p]`` are those of layer ``first + p``'s nodes. ``start`` is the state in which the
-    machine waits for them. ``bindings`` are all those of the rule for which all this is the same.
-    """
-
-    rule: CompiledRule
-    bindings: tuple[Binding, ...]
-    letters: tuple[tuple[int, ...], ...]
-    start: int = 0
-
-    @property
-    def first(self) -> int:
-        """The first layer in which all objects are there."""
-        return self.bindings[0].first
-
-    @property
-    def last(self) -> int:
-        """The last layer in which all objects are there."""
-        return self.bindings[0].last
 
 
 def instances(
@@ -57,10 +35,14 @@ def instances(
 
     ``step_s`` is the graph's step where that is no decimal, a third of a second for one. Bindings
     of a rule that every node is the same to are one instance. Those that were settled in the
-    ``past`` are left out, the others go on where they stood. Raises RulecError: R0502 to R0505 if
-    the graph does not supply what the rules read or a value is not known, R0507 if one of these
+    ``past`` are left out, the others go on where they stood; so are rules that cannot be judged,
+    for want of what the graph does not tell. Raises RulecError: R0502 to R0505 if
+    the graph does not supply what the rules read, R0507 if one of these
     rules was compiled for another step, R0508 if a state contradicts a fact.
     """
+    if graph.told is not None:
+        untold = untold_names(rulebook.vocabulary, graph.told)
+        rulebook = replace(rulebook, vocabulary=with_untold(rulebook.vocabulary, untold))
     vocabulary = rulebook.vocabulary
     rules = [rule for rule in rulebook.rules if rule.strength in strengths]
     for rule in rules:
@@ -68,12 +50,10 @@ def instances(
     check_objects(graph.objects, vocabulary)
     validator = StateValidator(vocabulary, graph.objects)
     places = [f"a cell of layer {layer}".format for layer in range(len(graph.states))]
-    for states, where in zip(graph.states, places, strict=True):
-        if validator.check(states, where):
-            some = next(n for n, state in enumerate(states) if has_partial_values(state))
-            message = f"{where(some)} has a value that is unknown or an interval"
-            way_out = "paths through a graph are judged only where all values are known"
-            raise UNFITTING_VALUE.error(None, message, help=way_out)
+    partial = [validator.check(*layer) for layer in zip(graph.states, places, strict=True)]
+    possible = None
+    if any(partial) or graph.told is not None:
+        possible = PossibleNodes(graph, rulebook, places)
     columns = [
         LetterReader(
             states,
@@ -87,6 +67,9 @@ def instances(
         check_counting_axioms(rulebook, len(states), read.view, where, None)
     result: list[GraphInstance] = []
     for rule in rules:
+        if possible is not None and possible.concern(rule):
+            result += possible.instances(rule, past)
+            continue
         alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
         for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states)):
             letters = tuple(

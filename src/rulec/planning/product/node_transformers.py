@@ -11,8 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
-from rulec.automata.mealy_monitor import MealyMonitor
-from rulec.planning.product.graph_instances import GraphInstance
+from rulec.planning.product.graph_instance import GraphInstance, Machine
 from rulec.trace import TraceGraph
 from rulec.trace.interned import Interned
 
@@ -68,13 +67,20 @@ class NodeTransformers:
         )
 
 
-def node_transformers(graph: TraceGraph, instances: Sequence[GraphInstance]) -> NodeTransformers:
-    """Transformer of every instance by every node between start and goals."""
+def node_transformers(
+    graph: TraceGraph, instances: Sequence[GraphInstance], *, perhaps: bool = False
+) -> NodeTransformers:
+    """Transformer of every instance by every node between start and goals.
+
+    What is lost is what is not kept for sure, or not even ``perhaps``.
+    """
     on_the_way, steps = _trimmed(graph)
     result = [
         (instance, layers)
         for instance in instances
-        if _can_be_lost(instance) and (layers := _merged(instance, steps, on_the_way)) is not None
+        for machine in (instance.machine(perhaps=perhaps),)
+        if _can_be_lost(instance, machine)
+        and (layers := _merged(instance, machine, steps, on_the_way)) is not None
     ]
     nodes = []
     known: dict[object, tuple[tuple[Effect, ...], ...]] = {}
@@ -124,9 +130,8 @@ def _trimmed(
     return tuple(on_the_way), tuple(steps)
 
 
-def _can_be_lost(instance: GraphInstance) -> bool:
+def _can_be_lost(instance: GraphInstance, machine: Machine) -> bool:
     """Test whether the monitor rejects some word of the letters that occur."""
-    machine = instance.rule.machine
     symbols = set().union(*instance.letters)
     reached, new = {instance.start}, [instance.start]
     while new:
@@ -141,6 +146,7 @@ def _can_be_lost(instance: GraphInstance) -> bool:
 
 def _merged(
     instance: GraphInstance,
+    machine: Machine,
     steps: Sequence[tuple[tuple[Step, ...], ...]],
     on_the_way: Sequence[tuple[bool, ...]],
 ) -> list[tuple[Effect, ...]] | None:
@@ -148,7 +154,6 @@ def _merged(
 
     None if no path loses the instance: then it does not matter.
     """
-    machine = instance.rule.machine
     n_states = len(machine.successors)
     # The machine waits until its objects are there. With their last layer it gives its verdict.
     waiting, over = [(instance.start,) * n_states], [(SAFE,) * n_states]
@@ -196,7 +201,7 @@ def _merged(
     return None
 
 
-def _columns(machine: MealyMonitor, *, final: bool) -> list[Effect]:
+def _columns(machine: Machine, *, final: bool) -> list[Effect]:
     classes = range(len(machine.successors[0]))
     if final:
         return [tuple([SAFE if row[s] else LOST for row in machine.outputs]) for s in classes]

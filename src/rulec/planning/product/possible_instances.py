@@ -1,0 +1,214 @@
+"""Rules bound to a graph's objects, where the letters of some nodes are not known.
+
+Paths are judged as traces are in ``rulec.monitoring.uncertainty``: a node has a set of letters, and
+the machine steps on sets of states, one for each way to choose what never changes. These steps are
+made a machine of their own, so that paths can be counted by it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TypeAlias
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
+from rulec.logic.free_names import names_in
+from rulec.monitoring.bindings import Binding, bindings
+from rulec.monitoring.letter_reader import present_in
+from rulec.monitoring.state_validation import partial_names
+from rulec.monitoring.uncertainty.possible_letters import (
+    PossibleLetters,
+    untold_names,
+    with_untold,
+)
+from rulec.monitoring.uncertainty.suppositions import (
+    Suppositions,
+    spelled_out,
+    with_supposed,
+)
+from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
+from rulec.monitoring.verdict import CarriedState, RuleNotJudged
+from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine
+from rulec.trace import Trace, TraceGraph, Value
+
+MOST_SETS = 1 << 10
+"""So many sets of states are told apart; of further ones anything is taken to be possible."""
+
+_NOBODY = -1
+"""In place of a set of states: facts exclude this choice of constants."""
+
+_Word: TypeAlias = tuple[tuple[int, ...], ...]
+"""For each node of each layer the classes of its possible letters, as bits."""
+
+_Subject: TypeAlias = tuple[str, tuple[str, ...]]
+
+
+class PossibleNodes:
+    """The letters that nodes may have, of a checked graph of which not all is known."""
+
+    def __init__(
+        self,
+        graph: TraceGraph,
+        rulebook: CompiledRulebook,
+        places: Sequence[Callable[[int], str]],
+    ) -> None:
+        self._graph = graph
+        self._rulebook = rulebook
+        self._places = places
+        self._untold = untold_names(rulebook.vocabulary, graph.told)
+        self._vocabulary = with_untold(rulebook.vocabulary, self._untold)
+        self._layers = [
+            spelled_out(
+                Trace(
+                    "", graph.step_s, present_in(layer, graph.objects, graph.present), tuple(states)
+                ),
+                rulebook.vocabulary,
+            )
+            for layer, states in enumerate(graph.states)
+        ]
+        self._partial = self._untold.union(*(partial_names(layer.states) for layer in self._layers))
+        some = tuple(layer.states[0] if layer.states else {} for layer in self._layers)
+        path = Trace("", graph.step_s, graph.objects, some, graph.present)
+        self._suppositions = Suppositions(path, rulebook, self._vocabulary)
+        self._letters: dict[tuple[object, ...], list[PossibleLetters]] = {}
+        self._machines: dict[object, tuple[Sequence[tuple[int, ...]], Readings]] = {}
+
+    def concern(self, rule: CompiledRule) -> bool:
+        """Whether a rule reads something of which not all is known."""
+        return not self._partial.isdisjoint(names_in(rule.formula))
+
+    def untold(self, rule: CompiledRule, past: CarriedState) -> tuple[str, ...]:
+        """Untold names for want of which no path can be known to violate a rule."""
+        if any(state for (name, _), state in past.states.items() if name == rule.name):
+            return ()
+        return uncertain_machine(rule, None).untold(self._untold)
+
+    def instances(self, rule: CompiledRule, past: CarriedState) -> list[GraphInstance]:
+        """Bind a rule to the graph's objects; none if it cannot be judged.
+
+        Raises RulecError R0504 if a value without default is missing, R0508 if a state cannot be.
+        """
+        if self.untold(rule, past):
+            return []
+        graph, machine = self._graph, uncertain_machine(rule, None)
+        n_layers = len(graph.states)
+        alike: dict[tuple[object, ...], tuple[tuple[_Word, ...], bool, list[Binding]]] = {}
+        for binding in bindings(rule, self._vocabulary, graph.objects, graph.present, n_layers):
+            about = (rule.name, tuple(binding.objects.values()))
+            if binding.first == 0 and about in past.settled:
+                continue
+            start = past.states.get(about, 0) if binding.first == 0 else 0
+            words, is_exact = self._words(rule, machine, binding)
+            key = binding.first, start, words, is_exact
+            alike.setdefault(key, (words, is_exact, []))[2].append(binding)
+        return [
+            self._instance(rule, machine, start, (words, is_exact), tuple(bound))
+            for (_, start, *_), (words, is_exact, bound) in alike.items()
+            if isinstance(start, int)
+        ]
+
+    def _words(
+        self, rule: CompiledRule, machine: UncertainMachine, binding: Binding
+    ) -> tuple[tuple[_Word, ...], bool]:
+        """The letters of every node, one word for each choice of constants that differs."""
+        supposed, is_exact = self._suppositions.of(rule, binding)
+        words: dict[_Word, None] = {}
+        layers = range(binding.first, binding.last + 1)
+        for values in supposed:
+            letters = self._letters_where(values)
+            word = []
+            for layer in layers:
+                last = len(self._graph.states[layer]) - 1
+                possible = letters[layer].word(rule, binding.objects, 0, last)
+                is_exact = is_exact and possible.exact
+                word.append(tuple([machine.classes.of(each) for each in possible.states]))
+            words[tuple(word)] = None
+        for layer, columns in zip(layers, zip(*words, strict=True), strict=True):
+            for node, classes in enumerate(zip(*columns, strict=True)):
+                if not any(classes):
+                    here = self._letters_where({})[layer]
+                    raise here.impossible(rule, binding.objects, node)
+        return tuple(words), is_exact
+
+    def _letters_where(self, values: Mapping[_Subject, Value]) -> list[PossibleLetters]:
+        key = tuple(values.items())
+        if key not in self._letters:
+            self._letters[key] = [
+                PossibleLetters(with_supposed(layer, values), self._rulebook, self._vocabulary, at)
+                for layer, at in zip(self._layers, self._places, strict=True)
+            ]
+        return self._letters[key]
+
+    def _instance(
+        self,
+        rule: CompiledRule,
+        machine: UncertainMachine,
+        start: int,
+        found: tuple[tuple[_Word, ...], bool],
+        bound: tuple[Binding, ...],
+    ) -> GraphInstance:
+        words, is_exact = found
+        symbols = [
+            list(zip(*columns, strict=True)) for columns in zip(*words, strict=True)
+        ]  # by layer and node: the classes for each choice of constants
+        every = {symbol for layer in symbols for symbol in layer}
+        if all(len(symbol) == 1 and not symbol[0] & (symbol[0] - 1) for symbol in every):
+            letters = tuple([tuple([x.bit_length() - 1 for (x,) in layer]) for layer in symbols])
+            return GraphInstance(rule, bound, letters, start)
+        order = tuple(sorted(every))
+        key = rule.name, start, order
+        if key not in self._machines:
+            starts = (machine.monitor.number(start),) * len(words)
+            self._machines[key] = order, readings(machine.monitor, starts, order)
+        place = {symbol: number for number, symbol in enumerate(order)}
+        letters = tuple([tuple([place[symbol] for symbol in layer]) for layer in symbols])
+        own = self._machines[key][1]
+        return GraphInstance(rule, bound, letters, 0, replace(own, exact=own.exact and is_exact))
+
+
+def not_judged(
+    graph: TraceGraph, rulebook: CompiledRulebook, past: CarriedState
+) -> Iterator[RuleNotJudged]:
+    """Rules that no path can be known to violate, for want of what the graph does not tell."""
+    if graph.told is not None:
+        possible = PossibleNodes(replace(graph, states=()), rulebook, [])
+        for rule in rulebook.rules:
+            if untold := possible.untold(rule, past):
+                yield RuleNotJudged(rule.name, rule.strength, untold)
+
+
+def readings(
+    monitor: SetMonitor, starts: tuple[int, ...], symbols: Sequence[tuple[int, ...]]
+) -> Readings:
+    """The machines for words of ``symbols``, from these sets of states.
+
+    A symbol has classes, as bits, for each way to choose what never changes; a start has a set.
+    """
+    anything = ()
+    places: dict[tuple[int, ...], int] = {starts: 0}
+    successors, surely, perhaps = [], [], []
+    is_exact = True
+    for sets in (waiting := [starts]):
+        row, kept, not_lost = [], [], []
+        for symbol in symbols:
+            steps = [
+                None if here == _NOBODY or not classes else monitor.step(here, classes)
+                for here, classes in zip(sets, symbol, strict=bool(sets))
+            ]
+            known = [step for step in steps if step is not None]
+            target = tuple([_NOBODY if step is None else step.states for step in steps])
+            if target not in places and len(places) > MOST_SETS:
+                is_exact, target = False, anything
+            if target not in places:
+                places[target] = len(places)
+                waiting.append(target)
+            row.append(places[target])
+            # No set stands for anything; a way on which facts exclude every choice is not kept.
+            kept.append(bool(known) and max(step.worst for step in known) == KEPT)
+            best = min((step.best for step in known), default=VIOLATED)
+            not_lost.append(sets == anything or best == KEPT)
+        successors.append(row)
+        surely.append(kept)
+        perhaps.append(not_lost)
+    return Readings(SetMachine(successors, surely), SetMachine(successors, perhaps), is_exact)
