@@ -525,3 +525,56 @@ def test_the_extent(tmp_path, capsys):
     assert beside[0]["d_left"][0][1] == pytest.approx(2.1)
     _, out, _ = answer(capsys, *book[:-1], "--extent", "body")
     assert "partition fine, adjacency touch, extent body" in out
+
+
+DARK = """
+[road]
+s = [-30.0, 60.0]
+lanes = [-1.75, 1.75, 5.25]
+[ego]
+s = 0.0
+d = 3.5
+[[obstacle]]
+id = "van"
+type = "vehicle"
+length = 6.0
+width = 2.2
+s = 14.0
+d = 3.5
+speed = 4.0
+[signals]
+CONGESTED = "?"
+"""
+
+
+def test_what_is_not_known_is_said_of_each_maneuver(tmp_path, capsys):
+    file = tmp_path / "dark.toml"
+    file.write_text(DARK, encoding="utf-8")
+    about = [str(file), "-r", "esterle2019", "--horizon", "2"]
+    status, out, _ = answer(capsys, *about, "--list", "9")
+    lines = out.splitlines()
+    assert (status, lines[3:6]) == (
+        0,
+        [
+            "satisfying  4 by esterle2019 (R1, R2, R3)",
+            "open        1 more",
+            "unknown     CONGESTED: not, or not exactly, known",
+        ],
+    )
+    (place,) = [number for number, line in enumerate(lines) if line.endswith("; open")]
+    assert lines[place + 1].endswith("violated if not CONGESTED, kept if CONGESTED")
+    found = json.loads(answer(capsys, *about, "--list", "9", "--json")[1])
+    assert (found["satisfying"], found["open"], found["unknown"]) == (4, 1, ["CONGESTED"])
+    doubts = [maneuver["open"] for maneuver in found["maneuvers"]]
+    assert [len(doubt) for doubt in doubts] == [0, 0, 0, 0, 1]
+    assert doubts[-1][0]["depends_on"] == ["CONGESTED"]
+
+
+def test_strict_wants_a_maneuver_that_keeps_every_rule_for_sure(tmp_path, capsys):
+    rules = tmp_path / "flow.rules"
+    rules.write_text("rulebook flow\nuse paper\nhard rule flow { require CONGESTED }\n")
+    file = tmp_path / "dark.toml"
+    file.write_text(DARK, encoding="utf-8")
+    about = [str(file), "-r", str(rules)]
+    assert answer(capsys, *about)[0] == 0
+    assert answer(capsys, *about, "--strict")[0] == 1

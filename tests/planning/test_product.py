@@ -2,18 +2,15 @@
 
 from fractions import Fraction
 
-import pytest
 from hypothesis import given
 
 from rulec.automata.compiler import compile_rulebook
-from rulec.diagnostics import RulecError
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.trace import TraceGraph
 from rulec.trace.trace_model import paths
-from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.rulebooks import (
     P,
     Q,
@@ -107,21 +104,3 @@ def test_a_layer_may_be_empty():
     explored = explore(node_transformers(graph, instances(graph, RULES)))
     assert explored.accepted == 0
     assert list(cheapest(explored)) == []
-
-
-def test_a_graph_whose_values_are_not_all_known_is_refused():
-    graph = TraceGraph(
-        step_s=1.0,
-        objects={},
-        present={},
-        states=(({"p": UNKNOWN},),),
-        successors=(),
-        weights=(),
-        margins=(),
-        cost_unit=Fraction(1),
-        start=0,
-        goals=(0,),
-    )
-    with pytest.raises(RulecError, match="cell of layer 0 has a value that is unknown") as refused:
-        instances(graph, compile_rulebook(book(rule("A", P))))
-    assert [one.code for one in refused.value.diagnostics] == ["R0503"]

@@ -2,16 +2,21 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import islice
+from itertools import islice, pairwise, product
 
+import pytest
 from hypothesis import Phase, given, settings
 
+import rulec
+from rulec.automata.compiler import compile_rulebook
 from rulec.logic.free_names import names_in
 from rulec.planning.maneuvers import evaluate
-from rulec.trace import Trace
+from rulec.trace import Trace, TraceGraph
 from rulec.trace.trace_model import trace_of
+from rulec.vocabulary import Quantity, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.full_vocabulary import WORLD
-from support.builders.rulebooks import compile_here
+from support.builders.rulebooks import P, Q, always, book, compile_here, implies, no, rule
 from support.generators.blurred_traces import blurred, telling_numbers
 from support.generators.random_maneuvers import Given, scene
 from support.generators.random_traces import only
@@ -27,68 +32,261 @@ MOST_COMPLETIONS = 200
 MOST_PATHS = 12
 
 
+def with_states(graph, states):
+    """The graph with other states of its nodes, given one after the other."""
+    states = iter(states)
+    return replace(graph, states=tuple(tuple(islice(states, len(row))) for row in graph.states))
+
+
+def nodes_of(graph):
+    return [state for layer in graph.states for state in layer]
+
+
 def with_unknown(chance, graph, names):
-    """The graph with some values of some nodes unknown, the same dictionary for the same state."""
-    nodes = [state for layer in graph.states for state in layer]
-    whole = Trace("", graph.step_s, graph.objects, tuple(nodes))
-    partial = iter(blurred(chance, whole, names, most=4).states)
-    return replace(graph, states=tuple(tuple(islice(partial, len(row))) for row in graph.states))
+    """The graph with some values of some nodes unknown, mostly of these names."""
+    whole = Trace("", graph.step_s, graph.objects, tuple(nodes_of(graph)))
+    return with_states(graph, blurred(chance, whole, names, most=4).states)
+
+
+def untold(chance, graph, names):
+    """The graph whose source cannot tell a name, and the one that says that it is unknown."""
+    (dark,) = chance.sample(sorted(names), 1)
+    without = [
+        {name: value for name, value in state.items() if name != dark} for state in nodes_of(graph)
+    ]
+    each = unknown_of_each(WORLD.declarations[dark].parameters, graph.objects)
+    said = [{**state, dark: each} for state in without]
+    told = frozenset(WORLD.declarations) - {dark}
+    return replace(with_states(graph, without), told=told), with_states(graph, said)
+
+
+def unknown_of_each(kinds, objects):
+    if not kinds:
+        return UNKNOWN
+    fitting = [name for name, own in objects.items() if WORLD.is_subtype(own, kinds[0])]
+    return {name: unknown_of_each(kinds[1:], objects) for name in fitting}
+
+
+def with_unknown_constants(chance, graph, names):
+    """The graph all of whose nodes say the same of these names, of most that it is unknown."""
+    first = nodes_of(graph)[0]
+    said = {name: value for name, value in first.items() if name in names}
+    for name in chance.sample(sorted(names), chance.randint(1, len(names))):
+        said[name] = unknown_of_each(WORLD.declarations[name].parameters, graph.objects)
+    others = [
+        {name: value for name, value in state.items() if name not in names}
+        for state in nodes_of(graph)
+    ]
+    return with_states(graph, [{**state, **said} for state in others])
 
 
 def journey(graph, path):
-    trace = trace_of(graph, path, "")
+    """The trace along a path, of those who are there."""
+    trace = replace(trace_of(graph, path, ""), told=None)
     states = tuple(only(state, there(trace, n)) for n, state in enumerate(trace.states))
     return replace(trace, states=states)
 
 
-def outcomes(book, completed, trace, rules):
-    """By rule and objects: ``kept``, ``open`` or ``violated``."""
+def outcomes(book, shown, path):
+    """By rule and objects: kept, open or violated; None if there are too many completions."""
+    trace = journey(shown, path)
+    many = islice(completions(trace, book.vocabulary, NUMBERS), MOST_COMPLETIONS, None)
+    if next(many, None):
+        return None
+    completed = CompletionOracle(Oracle(book), trace, NUMBERS)
+    assert not completed.refused
     found = {}
-    for rule in rules:
-        for objects, _, _ in Reading(book, trace).choices(rule):
-            said = completed.verdict(rule.name, tuple(objects.values()))
-            found[rule.name, tuple(objects.values())] = (
-                "violated" if isinstance(said, Said) else said
-            )
+    for one in book.rules:
+        for objects, _, _ in Reading(book, trace).choices(one):
+            said = completed.verdict(one.name, tuple(objects.values()))
+            word = "violated" if isinstance(said, Said) else said
+            found[one.name, tuple(objects.values())] = word
     return found
+
+
+def check(graph, shown, book):
+    """Compare counts, lists and outcomes; ``shown`` is what ``graph`` is for who completes it."""
+    every = [*islice(every_path(graph), MOST_PATHS + 1)]
+    if len(every) > MOST_PATHS:
+        return
+    expected = {path: outcomes(book, shown, path) for path in every}
+    if None in expected.values():
+        return
+    found = evaluate(Given(graph), compile_here(book, Fraction(1, 2)))
+    dark = {one.rule for one in found.not_judged}
+    hard = {one.name for one in book.rules if one.strength == "hard"}
+    for path in every:
+        expected[path] = {key: said for key, said in expected[path].items() if key[0] not in dark}
+
+    def said_of(path):
+        return {said for (name, _), said in expected[path].items() if name in hard}
+
+    sure = [path for path in every if said_of(path) <= {"kept"}]
+    perhaps = [path for path in every if "violated" not in said_of(path)]
+    assert found.traces == len(every)
+    listed = found.cheapest(MOST_PATHS, perhaps=True)
+    known = {one.nodes for one in found.cheapest(MOST_PATHS)}
+    if not found.exact:
+        assert {*known} <= {*sure}
+        assert {one.nodes for one in listed} >= {*perhaps}
+        return
+    assert found.satisfying == len(sure), (graph, book.rules)
+    assert found.open == len(perhaps) - len(sure), (graph, book.rules)
+    assert known == {*sure}
+    assert {one.nodes for one in listed} == {*perhaps}
+    for maneuver in listed:
+        verdict = found.verdict(maneuver)
+        if all(one.exact for one in verdict.open):
+            said = {key_of(one): "violated" for one in verdict.violations}
+            said |= {key_of(one): "open" for one in verdict.open}
+            wanted = {key: x for key, x in expected[maneuver.nodes].items() if x != "kept"}
+            assert said == wanted, (graph, maneuver)
+
+
+def key_of(found):
+    return found.rule, tuple(found.binding.values())
 
 
 @given(seeds)
 @settings(phases=[Phase.generate])
 def test_counts_and_outcomes_are_those_of_all_paths_and_completions(chance):
-    graph, book, _ = scene(chance, False)
-    every = [*islice(every_path(graph), MOST_PATHS + 1)]
-    if len(every) > MOST_PATHS:
-        return
-    names = {name for rule in book.rules for name in names_in(rule.formula)}
+    graph, rules, _ = scene(chance, False)
+    names = {name for one in rules.rules for name in names_in(one.formula)}
     partial = with_unknown(chance, graph, names)
-    oracle = Oracle(book)
-    expected = {}
-    for path in every:
-        trace = journey(partial, path)
-        if next(islice(completions(trace, WORLD, NUMBERS), MOST_COMPLETIONS, None), None):
-            return
-        completed = CompletionOracle(oracle, trace, NUMBERS)
-        assert not completed.refused
-        expected[path] = outcomes(book, completed, trace, book.rules)
-    found = evaluate(Given(partial), compile_here(book, Fraction(1, 2)))
-    hard = {rule.name for rule in book.rules if rule.strength == "hard"}
+    check(partial, partial, rules)
 
-    def said_of(path):
-        return {said for (rule, _), said in expected[path].items() if rule in hard}
 
-    sure = [path for path in every if said_of(path) <= {"kept"}]
-    perhaps = [path for path in every if "violated" not in said_of(path)]
-    assert found.traces == len(every)
-    assert found.satisfying == len(sure), (partial, book.rules)
-    assert found.open == len(perhaps) - len(sure), (partial, book.rules)
-    assert found.exact
-    listed = found.cheapest(MOST_PATHS, perhaps=True)
-    assert sorted(maneuver.nodes for maneuver in listed) == sorted(perhaps)
-    assert sorted(one.nodes for one in found.cheapest(MOST_PATHS)) == sorted(sure)
-    for maneuver in listed:
-        verdict = found.verdict(maneuver)
-        said = {(one.rule, tuple(one.binding.values())): "violated" for one in verdict.violations}
-        said |= {(one.rule, tuple(one.binding.values())): "open" for one in verdict.open}
-        wanted = {key: x for key, x in expected[maneuver.nodes].items() if x != "kept"}
-        assert said == wanted, (partial, maneuver)
+@given(seeds)
+@settings(phases=[Phase.generate])
+def test_what_the_source_cannot_tell_is_unknown(chance):
+    graph, rules, _ = scene(chance, False)
+    names = {name for one in rules.rules for name in names_in(one.formula)}
+    numbers = {name for name in names if isinstance(WORLD.declarations[name], Quantity)}
+    if names - numbers:
+        check(*untold(chance, graph, names - numbers), rules)
+
+
+@given(seeds)
+@settings(phases=[Phase.generate])
+def test_constants_are_unknown_once_for_a_maneuver(chance):
+    graph, rules, _ = scene(chance, False)
+    names = {name for one in rules.rules for name in names_in(one.formula)}
+    numbers = {name for name in names if isinstance(WORLD.declarations[name], Quantity)}
+    if not names - numbers:
+        return
+    constants = set(chance.sample(sorted(names - numbers), 1))
+    declarations = {
+        name: replace(item, constant=name in constants) for name, item in WORLD.declarations.items()
+    }
+    rules = replace(rules, vocabulary=Vocabulary("world", WORLD.types, declarations))
+    partial = with_unknown_constants(chance, graph, constants)
+    check(partial, partial, rules)
+
+
+def ladder(*layers):
+    """Any node of a layer is followed by any of the next."""
+    edges = tuple(((*range(len(after)),),) * len(before) for before, after in pairwise(layers))
+    return TraceGraph(
+        step_s=0.5,
+        objects={},
+        present={},
+        states=layers,
+        successors=edges,
+        weights=edges,
+        margins=edges,
+        cost_unit=Fraction(1),
+        start=0,
+        goals=(*range(len(layers[-1])),),
+    )
+
+
+def test_counts_of_a_ladder_of_which_some_rungs_are_dark():
+    """Sixty times a choice of three: of p it is known that it is, that it is not, or neither."""
+    yes, dark, unsaid = ({"p": p, "q": True} for p in (True, UNKNOWN, False))
+    graph = ladder((yes,), *[(yes, dark, unsaid)] * 60)
+    found = evaluate(Given(graph), compile_rulebook(book(rule("p", always(P)))))
+    assert (found.traces, found.satisfying, found.open) == (3**60, 1, 2**60 - 1)
+    assert found.unknown == ("p",)
+    (sure, first) = found.cheapest(2, perhaps=True)
+    assert (found.verdict(sure).open, found.verdict(sure).violations) == ((), ())
+    (doubt,) = found.verdict(first).open
+    assert (doubt.rule, doubt.depends_on) == ("p", ("p",))
+
+
+def test_what_nothing_depends_on_is_kept():
+    dark = {"p": UNKNOWN, "q": True}
+    graph = ladder((dark,), (dark, dark))
+    rules = compile_rulebook(book(rule("either", always(implies(P, Q))), rule("not", no(no(Q)))))
+    found = evaluate(Given(graph), rules)
+    assert (found.traces, found.satisfying, found.open, found.exact) == (2, 2, 0, True)
+
+
+def test_ranks_suppose_the_worst_and_say_what_is_sure():
+    states = [{"p": p, "q": q} for p, q in product((False, UNKNOWN, True), (False, True))]
+    rules = book(rule("p", always(P), strength="soft"), rule("q", always(Q), strength="soft"))
+    graph = ladder(({"p": True, "q": True},), tuple(states))
+    found = evaluate(Given(graph), compile_rulebook(rules))
+    ranked = found.ranked(10)
+    sums = [(sum(one.at_least.values()), sum(one.penalty.values())) for one in ranked]
+    assert sums == [(0, 0), (1, 1), (0, 1), (1, 1), (2, 2), (1, 2)]
+    prunings = {one.rule.name: (one.violating, one.open) for one in found.prunings()}
+    assert prunings == {"p": (2, 2), "q": (3, 0)}
+
+
+PASSING = """
+[road]
+s = [-30.0, 60.0]
+lanes = [-1.75, 1.75, 5.25]
+[ego]
+s = 0.0
+d = 3.5
+[[obstacle]]
+id = "van"
+type = "vehicle"
+length = 6.0
+width = 2.2
+s = 14.0
+d = 3.5
+[[obstacle.prediction]]
+weight = 0.7
+speed = 4.0
+[[obstacle.prediction]]
+weight = 0.3
+speed = 12.0
+[signals]
+CONGESTED = {}
+"""
+
+
+@pytest.fixture
+def passing(tmp_path):
+    def found(congested):
+        path = tmp_path / "passing.toml"
+        path.write_text(PASSING.format(congested), encoding="utf-8")
+        return rulec.find_maneuvers(path, "esterle2019", horizon_s=2)
+
+    return found
+
+
+def test_counts_lie_between_those_of_both_values(passing):
+    """R1 asks whether traffic is congested in the first state alone: one of the two is the case."""
+    dark, yes, no_ = passing('"?"'), passing("true"), passing("false")
+    assert (dark.traces, dark.open > 0, dark.unknown) == (yes.traces, True, ("CONGESTED",))
+    assert (dark.satisfying, dark.open) == (no_.satisfying, yes.satisfying - no_.satisfying)
+    worlds = [rulec.alternative_counts(found) for found in (dark, yes, no_)]
+    for one, other, third in zip(*worlds, strict=True):
+        assert (one.satisfying, one.open) == (third.satisfying, other.satisfying - third.satisfying)
+    assert dark.classes().open == yes.classes().satisfying - no_.classes().satisfying
+
+
+def test_probabilities_have_the_bounds_of_both_values(passing):
+    dark, yes, no_ = passing('"?"'), passing("true"), passing("false")
+    differing = 0
+    for maneuver in dark.cheapest(100, perhaps=True):
+        least, most = (rulec.rule_probabilities(found, maneuver) for found in (no_, yes))
+        found = rulec.rule_probabilities(dark, maneuver)
+        assert (found.clear, found.hard, found.hard_at_most) == (least.clear, least.hard, most.hard)
+        for one, other, third in zip(found.rules, least.rules, most.rules, strict=True):
+            assert (one.kept, one.at_most) == (other.kept, third.kept)
+            differing += one.kept != one.at_most
+    assert differing

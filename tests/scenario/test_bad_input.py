@@ -99,6 +99,16 @@ FIELDS = [
     ("lateral_speed = 1.0\n", "", "R0603", "stands still", "walking_direction = 90"),
     ("lateral_speed = 1.0", "signals = 3", "R0604", "signals is 3", "a table"),
     ("width = 0.5", "width = 0.5\nsignals = { a = [1] }", "R0604", "a is a list", "true, false"),
+    *(
+        ("width = 0.5", f"width = 0.5\nsignals = {{ a = {given} }}", "R0604", "a is a table", '"?"')
+        for given in (
+            "{ from = 4, to = 3 }",
+            "{ from = 4 }",
+            "{ from = 1, to = 2, or = 3 }",
+            '{ from = "?", to = 2 }',
+            "{ from = true, to = 2 }",
+        )
+    ),
     (
         "width = 0.5",
         "width = 0.5\nsignals = { lateral = 1 }",

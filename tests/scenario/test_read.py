@@ -16,6 +16,7 @@ from rulec.scenario import (
     available_scenarios,
     load_scenario,
 )
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 EVERYTHING = """
 name = "all"
@@ -52,7 +53,7 @@ speed = 8.0
 acceleration = -1.0
 lateral_speed = 1.0
 until_d = 3.5
-signals = { braking = true, gap = 3 }
+signals = { braking = true, gap = 3, loud = "?" }
 
 [[obstacle]]
 id = "p"
@@ -65,6 +66,8 @@ trajectory = [[0.0, 62.0, -6.0], [4.0, 62.0, 0.0]]
 [signals]
 CONGESTED = true
 limit = 50.0
+pace = { from = 3, to = 4.5 }
+ice = "?"
 weather = "rain"
 
 [goal]
@@ -92,7 +95,7 @@ def test_everything_a_file_can_say(tmp_path):
                 2.5,
                 ConstantAcceleration(30.0, 0.0, 8.0, -1.0, 1.0, 3.5),
                 None,
-                {"braking": True, "gap": 3.0},
+                {"braking": True, "gap": 3.0, "loud": UNKNOWN},
             ),
             Obstacle(
                 "p",
@@ -103,7 +106,13 @@ def test_everything_a_file_can_say(tmp_path):
                 90.0,
             ),
         ),
-        {"CONGESTED": True, "limit": 50.0, "weather": "rain"},
+        {
+            "CONGESTED": True,
+            "limit": 50.0,
+            "pace": Interval(3.0, 4.5),
+            "ice": UNKNOWN,
+            "weather": "rain",
+        },
         Box(100.0, 200.0, -5.25, 5.25),
         6.0,
         0.5,

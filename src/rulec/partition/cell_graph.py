@@ -13,8 +13,9 @@ from rulec.partition.cells.cell_model import Cell, Layer
 from rulec.partition.cells.occupancy import Predicted
 from rulec.partition.cells.regions import LATERAL_OF, STATION_OF, ExtentName, PartitionName
 from rulec.scenario import Obstacle, Scenario
-from rulec.trace import State, TraceGraph, Value
+from rulec.trace import State, TraceGraph
 from rulec.value_display import short_repr
+from rulec.vocabulary.partial_values import PartialValue
 
 if TYPE_CHECKING:
     import networkx
@@ -114,7 +115,7 @@ class NavigationGraph:
 
     def signals_of(self, objects: Mapping[str, Obstacle]) -> State:
         """Signals of the scenario and of some objects, constant over time."""
-        signals: dict[str, dict[str, Value]] = {}
+        signals: dict[str, dict[str, PartialValue]] = {}
         for name, obstacle in objects.items():
             for signal, value in obstacle.signals.items():
                 signals.setdefault(signal, {})[name] = value

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, islice, starmap
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -123,7 +123,8 @@ class Maneuvers(Rows):
         """The least violating maneuvers: for each lowest penalty one of the cheapest.
 
         There are several if levels are not comparable; of many, the first ``n``. If there are
-        satisfying maneuvers, these are satisfying and violate soft rules least. Raises RulecError
+        satisfying maneuvers, these are satisfying and violate soft rules least. Where not all is
+        known the worst counts. Raises RulecError
         as ``evaluate`` does, for soft rules too.
         """
         return [
@@ -142,15 +143,28 @@ class Maneuvers(Rows):
 
     def prunings(self) -> list[RulePruning]:
         """Effect of every rule on the number of maneuvers. Raises RulecError as ``best`` does."""
-        every, alone = violating(self._every), violating_alone(self.hard)
-        return [
+        every, alone = violating(self._every_perhaps), violating_alone(self.perhaps)
+        result = [
             self._pruning(rule, every.get(rule.name), alone.get(rule.name))
             for rule in self.rules.rules
+        ]
+        if self._every is self._every_perhaps:
+            return result
+        doubtful = violating(self._every)
+        return [
+            replace(one, open=doubtful[one.rule.name].accepted - one.violating)
+            if one.rule.name in doubtful
+            else one
+            for one in result
         ]
 
     def classes(self) -> HomotopyClasses:
         """Exact number of homotopy classes, by their members' verdicts."""
-        return count_classes(self.hard, self._places)
+        surely = count_classes(self.hard, self._places)
+        if self.perhaps is self.hard:
+            return surely
+        perhaps = count_classes(self.perhaps, self._places)
+        return replace(surely, open=perhaps.satisfying - surely.satisfying)
 
     def variants(self, n: int) -> list[Variant]:
         """Cheapest satisfying maneuver of each of the ``n`` cheapest classes."""
@@ -179,20 +193,35 @@ class Maneuvers(Rows):
         soft = bind_rules(self.graph, self.paths, self.rules, SOFT, past)
         return node_transformers(self.paths, [*self.hard.instances, *soft])
 
+    @cached_property
+    def _every_perhaps(self) -> NodeTransformers:
+        every = self._every.instances
+        if not any(instance.readings for instance in every):
+            return self._every
+        return node_transformers(self.paths, every, perhaps=True)
+
     def _of_penalty(self, place: int, penalty: Penalty) -> Iterator[RankedManeuver]:
         product = with_penalty(self._every, self._ranks, penalty)
-        weights = zip(self._ranks.ranks, self._ranks.weights(penalty), strict=True)
-        by_rank = {rank: weight for rank, weight in weights if weight}
+        ranks = self._ranks
         for maneuver in cheapest(product):
-            lost = violations(self._every.instances, maneuver.nodes)
-            yield RankedManeuver(place, by_rank, product.accepted, maneuver, lost)
+            verdict = self.verdict(maneuver)
+            least = ranks.of_violations(verdict.violations, self.rules)
+            yield RankedManeuver(
+                place,
+                ranks.by_rank(penalty),
+                product.accepted,
+                maneuver,
+                verdict.violations,
+                open=verdict.open,
+                at_least=ranks.by_rank(least),
+            )
 
     def _pruning(
         self, rule: CompiledRule, every: Product[Blaming] | None, alone: Product[Blaming] | None
     ) -> RulePruning:
         rejected = alone or every
         example = next(cheapest(rejected)) if rejected else None
-        lost = violations(self._every.instances, example.nodes) if example else ()
+        lost = self.verdict(example).violations if example else ()
         return RulePruning(
             rule,
             every.accepted if every else 0,

@@ -14,12 +14,14 @@ from typing import Literal, get_args
 
 from rulec.scenario.geometry import Box, centred
 from rulec.value_display import short_repr
+from rulec.vocabulary.partial_values import PartialValue
 
 Surface = Literal["carriageway", "crossing"]
 SURFACES: tuple[Surface, ...] = get_args(Surface)
 
 Interval = tuple[float, float]
-SignalValue = bool | float | str
+SignalValue = PartialValue
+"""A value, an interval, or that it is unknown."""
 
 PEDESTRIAN = "pedestrian"
 

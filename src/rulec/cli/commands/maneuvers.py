@@ -47,6 +47,9 @@ from rulec.report.text.console import print_result
     "--after",
     "What was before: a file with one trace, or a monitor that was saved (.json).",
 )
+@click.option(
+    "--strict", is_flag=True, help="Exit with 1 if no maneuver keeps every hard rule for sure."
+)
 @shared.json_option
 @shared.at_option
 def command(
@@ -58,6 +61,7 @@ def command(
     n_classes: int | None,
     worlds: bool,
     after: Path | None,
+    strict: bool,
     json_output: bool,
     at: str,
     **options: Any,
@@ -69,7 +73,11 @@ def command(
     With --after they go on where a past has ended: its last state comes one step before the
     scenario begins. What was violated for good by then is said, and not counted against them.
 
-    Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
+    Where not all is known, those that keep them whatever that may be are satisfying, and those that
+    may keep them open; the list has both, and ranks suppose the worst.
+
+    Exit status: 0 there is a satisfying or an open maneuver, 1 there is none, 2 it could not be
+    answered.
     """
     # Maneuvers, 130 ms: not for --help.
     from rulec.planning.probability.rule_probability import alternative_counts, rule_probabilities
@@ -81,9 +89,10 @@ def command(
     past = None if after is None else read_past(after)
     scene = read_scene(scenario, options)
     maneuvers = rulec.find_maneuvers(scene, rules, after=past, **options)
-    listed = None if n_listed is None else maneuvers.cheapest(n_listed)
+    listed = None if n_listed is None else maneuvers.cheapest(n_listed, perhaps=True)
     best = None
-    if not maneuvers.satisfying and n_ranked is None:
+    legal = maneuvers.satisfying + maneuvers.open
+    if not legal and n_ranked is None:
         with errors_told():
             best = maneuvers.best()
     ranked = None if n_ranked is None else maneuvers.ranked(n_ranked)
@@ -95,6 +104,9 @@ def command(
         ranked=ranked,
         chances={maneuver.nodes: rule_probabilities(maneuvers, maneuver) for maneuver in shown}
         if uncertain
+        else {},
+        verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or ()}
+        if maneuvers.unknown
         else {},
         worlds=alternative_counts(maneuvers) if worlds else None,
         prunings=maneuvers.prunings() if why else None,
@@ -108,4 +120,5 @@ def command(
         print_result(as_json(maneuvers, answers, seconds))
     else:
         print_result(as_text(maneuvers, answers, seconds))
-    return ExitStatus.OK if maneuvers.satisfying else ExitStatus.VIOLATED
+    kept = maneuvers.satisfying if strict else legal
+    return ExitStatus.OK if kept else ExitStatus.VIOLATED

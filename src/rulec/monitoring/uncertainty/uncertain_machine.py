@@ -103,6 +103,10 @@ class UncertainMachine:
             self._answers[key] = answer
         return answer
 
+    def outcomes(self, words: Sequence[PossibleWord]) -> tuple[int, int]:
+        """The best and the worst outcome of completions, as of ``answer``."""
+        return _range_of([self._run(word.states) for word in words])
+
     def _answer(
         self,
         alternatives: Sequence[PossibleAlternative],
@@ -110,7 +114,7 @@ class UncertainMachine:
         order: Sequence[str],
     ) -> Answer:
         runs = [self._run(x.letters) for x in alternatives]
-        best, worst = min(x[0] for x in runs), max(x[1] for x in runs)
+        best, worst = _range_of(runs)
         steps = [step for _, _, step in runs]
         if best == worst and best != PENDING:
             known = [step for step in steps if step is not None]
@@ -276,6 +280,10 @@ class UncertainMachine:
                     reached.add(step.states)
                     waiting.append(step.states)
         return False
+
+
+def _range_of(runs: Sequence[tuple[int, int, int | None]]) -> tuple[int, int]:
+    return min(best for best, _, _ in runs), max(worst for _, worst, _ in runs)
 
 
 def _is_open(letters: Letters, read: int) -> bool:

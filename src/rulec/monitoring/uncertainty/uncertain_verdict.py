@@ -43,13 +43,15 @@ def uncertain_verdict(
     Raises RulecError R0504 if a value without default is missing, R0508 if a state contradicts a
     fact, R0403 if the trace is cut and Spot, which its machines take, is not installed.
     """
-    return _UncertainRun(trace, rulebook, past).verdict()
+    return UncertainRun(trace, rulebook, past).verdict()
 
 
-class _UncertainRun:
-    """The judgement of one trace, with what its rules share."""
+class UncertainRun:
+    """The judgement of one checked trace, with what its rules share."""
 
-    def __init__(self, trace: Trace, rulebook: CompiledRulebook, past: CarriedState) -> None:
+    def __init__(
+        self, trace: Trace, rulebook: CompiledRulebook, past: CarriedState = NO_PAST
+    ) -> None:
         self.trace = spelled_out(trace, rulebook.vocabulary)
         self.rulebook = rulebook
         self.past = past
@@ -59,6 +61,7 @@ class _UncertainRun:
         self._letters: dict[tuple[object, ...], PossibleLetters] = {}
 
     def verdict(self) -> Verdict:
+        """The verdict of all rules."""
         trace, rules = self.trace, self.rulebook.rules
         violations: list[Violation] = []
         doubtful: list[OpenVerdict] = []
@@ -91,6 +94,11 @@ class _UncertainRun:
             if item.presumed and name in read and name not in said
         )
         return Verdict(trace.id, tuple(violations), tuple(doubtful), tuple(not_judged), presumed)
+
+    def outcomes(self, rule: CompiledRule, binding: Binding, start: int) -> tuple[int, int]:
+        """The best and the worst outcome of a complete trace, from a state of the machine on."""
+        machine = uncertain_machine(rule, None, (start,))
+        return machine.outcomes(self._words(rule, machine, binding)[0])
 
     def _answers(
         self, rule: CompiledRule, machine: UncertainMachine

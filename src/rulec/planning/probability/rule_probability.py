@@ -6,7 +6,7 @@ same cells. It keeps a rule for some objects if its trace does and none of these
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -25,15 +25,19 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True)
 class ForObjects:
-    """The probability that a rule is kept for these objects, the scenario's."""
+    """The probability that a rule is kept for these objects, the scenario's.
+
+    Where not all is known it is ``kept`` for sure, and kept perhaps with the one ``at_most``.
+    """
 
     binding: Mapping[str, str]
     kept: Fraction
+    at_most: Fraction
 
 
 @dataclass(frozen=True, slots=True)
 class RuleProbability:
-    """Probability that a rule is kept, and by bindings below 1.
+    """Probability that a rule is kept, and by bindings below 1, with bounds as there.
 
     None if the rule counts objects, and these can do more together than can be looked at.
     """
@@ -43,47 +47,76 @@ class RuleProbability:
     rule: CompiledRule
     kept: Fraction | None
     bindings: tuple[ForObjects, ...]
+    at_most: Fraction | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class RuleProbabilities:
-    """Probabilities of no collision, of all hard rules (None if unknown), of each rule."""
+    """Probabilities of no collision, of all hard rules (None if unknown), of each rule judged."""
 
     __repr__ = short_repr
 
     clear: Fraction
     hard: Fraction | None
     rules: tuple[RuleProbability, ...]
+    hard_at_most: Fraction | None = None
 
 
 def rule_probabilities(maneuvers: Maneuvers, maneuver: Maneuver) -> RuleProbabilities:
-    """Exact probabilities of one maneuver. Raises RulecError as ``best`` does."""
+    """Exact probabilities of one maneuver. Raises RulecError as ``best`` does.
+
+    Where not all is known they are bounds: of the worlds in which a rule is kept for sure, and of
+    those in which it is not violated for sure.
+    """
     path = predicted_path(maneuvers.graph, maneuver.nodes)
-    judge = ViolationEvents(maneuvers, path)
-    hard: set[Event] | None = set(judge.hits)
-    rules = []
+    surely = perhaps = ViolationEvents(maneuvers, path)
+    if maneuvers.unknown:
+        perhaps = ViolationEvents(maneuvers, path, perhaps=True)
+    not_judged = {rule.rule for rule in maneuvers.not_judged}
+    rules, hard = [], []
     for rule in maneuvers.rules.rules:
-        lost = judge.events(rule)
-        rules.append(_of_rule(rule, lost, path.weights))
+        if rule.name in not_judged:
+            continue
+        lost = surely.events(rule)
+        lost_for_sure = lost if perhaps is surely else perhaps.events(rule)
+        rules.append(_of_rule(rule, lost, lost_for_sure, path.weights))
         if rule.strength == "hard":
-            hard = None if lost is None or hard is None else hard.union(*lost.values())
-    return RuleProbabilities(
-        none_of(judge.hits, path.weights),
-        None if hard is None else none_of(hard, path.weights),
-        tuple(rules),
+            hard.append((lost, lost_for_sure))
+    kept, at_most = (
+        _of_all(surely.hits, [each[reading] for each in hard], path.weights) for reading in (0, 1)
     )
+    return RuleProbabilities(none_of(surely.hits, path.weights), kept, tuple(rules), at_most)
 
 
-def _of_rule(rule: CompiledRule, lost: Lost | None, weights: Weights) -> RuleProbability:
-    if lost is None:
+def _of_all(hits: set[Event], lost: Iterable[Lost | None], weights: Weights) -> Fraction | None:
+    """The probability that nobody hits ego and none of these events comes about."""
+    events = set(hits)
+    for each in lost:
+        if each is None:
+            return None
+        events.update(*each.values())
+    return none_of(events, weights)
+
+
+def _of_rule(
+    rule: CompiledRule, lost: Lost | None, lost_for_sure: Lost | None, weights: Weights
+) -> RuleProbability:
+    if lost is None or lost_for_sure is None:
         return RuleProbability(rule, None, ())
     names = [variable.name for variable in rule.variables]
     bindings = tuple(
-        ForObjects(dict(zip(names, objects, strict=True)), none_of(events, weights))
+        ForObjects(
+            dict(zip(names, objects, strict=True)),
+            none_of(events, weights),
+            none_of(lost_for_sure.get(objects, ()), weights),
+        )
         for objects, events in lost.items()
         if objects
     )
-    return RuleProbability(rule, none_of(set().union(*lost.values()), weights), bindings)
+    kept, at_most = (
+        none_of(set().union(*each.values()), weights) for each in (lost, lost_for_sure)
+    )
+    return RuleProbability(rule, kept, bindings, at_most)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +124,8 @@ class AlternativeCounts:
     """Numbers of maneuvers if prediction ``number`` of an obstacle comes true.
 
     All others do what is likeliest. On so many ``traces`` nobody hits ego; those that are
-    ``satisfying`` also keep every hard rule then.
+    ``satisfying`` also keep every hard rule then, and on ``open`` more it depends on what is
+    unknown.
     """
 
     __repr__ = short_repr
@@ -101,6 +135,7 @@ class AlternativeCounts:
     weight: Fraction
     traces: int
     satisfying: int
+    open: int = 0
 
 
 def alternative_counts(maneuvers: Maneuvers) -> list[AlternativeCounts]:
@@ -114,13 +149,17 @@ def alternative_counts(maneuvers: Maneuvers) -> list[AlternativeCounts]:
     ]
 
 
-def _counts(maneuvers: Maneuvers, obstacle: str, number: int) -> tuple[int, int]:
+def _counts(maneuvers: Maneuvers, obstacle: str, number: int) -> tuple[int, int, int]:
     graph, rules = maneuvers.graph, maneuvers.rules
     world = {obstacle: number}
     traces = world_graph(graph, world)
     if traces is None:
-        return 0, 0
+        return 0, 0, 0
     paths = in_rule_words(graph, traces, named_in(graph, world), rules.vocabulary)
     past = past_for(graph, paths, rules, HARD, maneuvers.after)
-    hard = node_transformers(paths, bind_rules(graph, paths, rules, HARD, past))
-    return count_paths(paths), explore(hard).accepted
+    bound = bind_rules(graph, paths, rules, HARD, past)
+    kept = explore(node_transformers(paths, bound)).accepted
+    doubtful = 0
+    if any(instance.readings for instance in bound):
+        doubtful = explore(node_transformers(paths, bound, perhaps=True)).accepted - kept
+    return count_paths(paths), kept, doubtful

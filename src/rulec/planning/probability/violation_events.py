@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import cache
 from itertools import product
 from math import prod
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.automata.outcome_machine import KEPT
 from rulec.logic.formula import Count, Formula
-from rulec.logic.free_names import variables_of
+from rulec.logic.free_names import names_in, variables_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.bindings import Binding, bindings
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.verify import run
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event
 from rulec.planning.product.graph_instances import HARD, SOFT
 from rulec.planning.rule_instances import in_rule_words, past_for
-from rulec.trace import TraceGraph
+from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.object_universe import counts_in
 
@@ -33,10 +36,15 @@ Lost = dict[tuple[str, ...], set[Event]]
 
 
 class ViolationEvents:
-    """Events in which rules are violated on one path."""
+    """Events in which rules are violated on one path.
 
-    def __init__(self, maneuvers: Maneuvers, path: PredictedPath) -> None:
+    Where not all is known, those in which they are not kept for sure, or not even ``perhaps``.
+    """
+
+    def __init__(self, maneuvers: Maneuvers, path: PredictedPath, *, perhaps: bool = False) -> None:
         self._book = maneuvers.rules
+        self._unknown = frozenset(maneuvers.unknown)
+        self._perhaps = perhaps
         self._path = path
         obstacles = {name: predicted.obstacle for name, predicted in path.predicted.items()}
         self._words = in_rule_words(
@@ -69,7 +77,10 @@ class ViolationEvents:
 
         Only what they do differently in the rule's eyes makes a world of its own.
         """
-        alike = PredictionClasses(rule, self._path, self._words, self._book.vocabulary)
+        in_doubt = self._is_in_doubt(rule)
+        alike = PredictionClasses(
+            rule, self._path, self._words, self._book.vocabulary, told_apart=in_doubt
+        )
         matters = [name for name in self._words.objects if self._concerns(rule, name)]
         hitting = [name for name in matters if name in self._path.hit]
         left = MOST_WORLDS
@@ -127,14 +138,23 @@ class ViolationEvents:
     def _of(self, names: Iterable[str]) -> tuple[str, ...]:
         return tuple([self._path.predicted[name].of for name in names])
 
-    def _columns(self, objects: Mapping[str, str]) -> LetterReader:
-        return LetterReader(
+    def _columns(self, objects: Mapping[str, str]) -> _Columns:
+        known = LetterReader(
             self._states,
             self._book,
             "the maneuver's cell of layer {}".format,
             objects=objects,
             present=self._words.present,
         )
+        if not self._unknown:
+            return _Columns(known)
+        words = self._words
+        there = {name: span for name, span in words.present.items() if name in objects}
+        trace = Trace("", words.step_s, objects, tuple(self._states), there, told=words.told)
+        return _Columns(known, UncertainRun(trace, self._book))
+
+    def _is_in_doubt(self, rule: CompiledRule) -> bool:
+        return not self._unknown.isdisjoint(names_in(rule.formula))
 
     def _bindings(self, rule: CompiledRule) -> Iterator[Binding]:
         """Bindings whose objects' predictions can come true together."""
@@ -145,7 +165,7 @@ class ViolationEvents:
             if len({of for of, _ in chosen}) == len(chosen):
                 yield binding
 
-    def _keeps(self, rule: CompiledRule, binding: Binding, columns: LetterReader) -> bool:
+    def _keeps(self, rule: CompiledRule, binding: Binding, columns: _Columns) -> bool:
         names = binding.objects.values()
         about = (rule.name, self._of(names))
         goes_on = binding.first == 0
@@ -153,17 +173,38 @@ class ViolationEvents:
             return True
         if not self._path.hit.isdisjoint(names):
             return False
-        word = columns.word(rule, binding.objects, binding.first, binding.last)
         start = self._past.states.get(about, 0) if goes_on else 0
+        if columns.uncertain is not None and self._is_in_doubt(rule):
+            best, worst = columns.uncertain.outcomes(rule, binding, start)
+            return (best if self._perhaps else worst) == KEPT
+        word = columns.known.word(rule, binding.objects, binding.first, binding.last)
         return run(rule.machine, word, start)[0]
 
 
+@dataclass(frozen=True, slots=True)
+class _Columns:
+    """Readers of a path's states, about some objects; the second one where not all is known."""
+
+    known: LetterReader
+    uncertain: UncertainRun | None = None
+
+
 class PredictionClasses:
-    """Predictions of an obstacle that a counting rule cannot tell apart, on one path."""
+    """Predictions of an obstacle that a counting rule cannot tell apart, on one path.
+
+    If all are ``told_apart`` none are alike: where not all is known.
+    """
 
     def __init__(
-        self, rule: CompiledRule, path: PredictedPath, words: TraceGraph, vocabulary: Vocabulary
+        self,
+        rule: CompiledRule,
+        path: PredictedPath,
+        words: TraceGraph,
+        vocabulary: Vocabulary,
+        *,
+        told_apart: bool = False,
     ) -> None:
+        self._told_apart = told_apart
         self._terms = list(dict.fromkeys(counts_in(rule.formula)))
         self._path = path
         self._moments = [StateView(state, words.objects, vocabulary) for (state,) in words.states]
@@ -187,7 +228,7 @@ class PredictionClasses:
         return list(result.values())
 
     def _counted(self, names: list[str], number: int, binding: Binding) -> object:
-        if any(counts(term.body) for term in self._terms):
+        if self._told_apart or any(counts(term.body) for term in self._terms):
             # What it makes of others is not known without them
             return number
         layers = range(binding.first, binding.last + 1)

@@ -38,11 +38,15 @@ _Ways = dict[int, _Way]
 
 @dataclass(frozen=True, slots=True)
 class HomotopyClasses:
-    """Numbers of homotopy classes by their members' verdicts."""
+    """Numbers of homotopy classes by their members' verdicts.
+
+    Of those that are ``rejected`` so many are ``open``: some member violates nothing for sure.
+    """
 
     accepted: int
     rejected: int
     divided: int
+    open: int = 0
 
     @property
     def total(self) -> int:

@@ -8,13 +8,13 @@ first, so those that violate much are not touched while there are better ones.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import count
 from operator import add, getitem, gt
 
-from rulec.monitoring.verdict import Violation
+from rulec.monitoring.verdict import OpenVerdict, Violation
 from rulec.planning.product import graph_product
 from rulec.planning.product.node_transformers import LOST, SAFE, Effect, NodeTransformers
 from rulec.planning.ranking.cheapest import Maneuver
@@ -35,7 +35,8 @@ class RankedManeuver:
 
     ``place`` is 1 if no maneuver violates less, else 1 more than the last place of those that do.
     ``penalty`` are the weights of what it violates, summed up by rank, ranks without any left out.
-    So many ``members`` have this penalty; of them this is one of the cheapest.
+    So many ``members`` have this penalty; of them this is one of the cheapest. Where not all is
+    known what is ``open`` counts as violated; ``at_least`` is the penalty without it.
     """
 
     __repr__ = short_repr
@@ -45,6 +46,8 @@ class RankedManeuver:
     members: int
     maneuver: Maneuver
     violations: tuple[Violation, ...]
+    open: tuple[OpenVerdict, ...] = ()
+    at_least: Mapping[PenaltyRank, Fraction] = field(default_factory=dict)
 
 
 def front(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:

@@ -6,11 +6,13 @@ Rulebooks" (ICRA 2019), over the levels of a rulebook, with every hard rule abov
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.monitoring.verdict import Violation
 from rulec.rulebook.rulebook_model import Strength
 
 Penalty = tuple[int, ...]
@@ -61,9 +63,18 @@ class PenaltyOrder:
             if left[index] > right[index]
         )
 
-    def weights(self, penalty: Penalty) -> tuple[Fraction, ...]:
-        """The penalty as sums of weights."""
-        return tuple([part * self.unit for part in penalty])
+    def by_rank(self, penalty: Penalty) -> dict[PenaltyRank, Fraction]:
+        """The penalty as sums of weights; ranks without any are left out."""
+        parts = zip(self.ranks, penalty, strict=True)
+        return {rank: part * self.unit for rank, part in parts if part}
+
+    def of_violations(self, violations: Iterable[Violation], rules: CompiledRulebook) -> Penalty:
+        """The penalty of what is violated by one maneuver."""
+        by_name = {rule.name: rule for rule in rules.rules}
+        due = [0] * len(self.ranks)
+        for rule in (by_name[violation.rule] for violation in violations):
+            due[self.of(rule)] += self.weight(rule)
+        return tuple(due)
 
 
 def ranks_of(rulebook: CompiledRulebook) -> PenaltyOrder:

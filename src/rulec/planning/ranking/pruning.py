@@ -24,9 +24,11 @@ Blaming = tuple[Joint, int]
 class RulePruning:
     """Numbers of maneuvers that violate a rule, and that rule alone.
 
-    The latter is None for a soft rule: it rejects nothing. The example is one of the cheapest of
-    the latter, if there are any, else of the former; None if there are none of these either. The
-    violations are those of the rule by the example.
+    ``alone`` violated is a rule if no other hard one is known to be; None for a soft rule, which
+    rejects nothing. On ``open`` more maneuvers it is not known whether the rule is kept. The
+    example is one of the cheapest that violate the rule alone, if there are any, else of those that
+    violate it; None if there are none of these either. The violations are those of the rule by the
+    example.
     """
 
     __repr__ = short_repr
@@ -36,6 +38,7 @@ class RulePruning:
     alone: int | None
     example: Maneuver | None
     violations: tuple[Violation, ...]
+    open: int = 0
 
 
 def violating(transformers: NodeTransformers) -> dict[str, Product[Blaming]]:

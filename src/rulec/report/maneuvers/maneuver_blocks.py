@@ -8,13 +8,15 @@ from itertools import groupby
 from operator import itemgetter
 
 from rulec.logic.printing import number_in_words
-from rulec.monitoring.verdict import Violation
+from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
 from rulec.planning.probability.violation_events import MOST_WORLDS
 from rulec.planning.ranking.cheapest import Maneuver
+from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.text.terminal_text import shown_count, table_lines, visible
+from rulec.report.verdicts.verdict_report import open_in_words
 
 # So many are shown in text; JSON has them all.
 MOST_BINDINGS = 3
@@ -47,29 +49,65 @@ def maneuver_block(
     return ["", head, *details, *table_lines(rows, indent="   ")]
 
 
+def listed_block(
+    maneuvers: Maneuvers,
+    number: int,
+    maneuver: Maneuver,
+    verdicts: Mapping[tuple[int, ...], Verdict],
+) -> list[str]:
+    """A maneuver of a list, with what is open of it."""
+    verdict = verdicts.get(maneuver.nodes)
+    doubtful = () if verdict is None else verdict.open
+    remark = "; open" if any(one.strength == "hard" for one in doubtful) else ""
+    details = _open_lines(maneuvers, doubtful)
+    return maneuver_block(maneuvers.graph, number, maneuver, remark, details)
+
+
+def _open_lines(maneuvers: Maneuvers, doubtful: Sequence[OpenVerdict]) -> list[str]:
+    lines = [
+        f"   {visible(f'{_rule_title(maneuvers, one)}: {open_in_words(one)}')}"
+        for one in doubtful[:MOST_VIOLATIONS]
+    ]
+    if len(doubtful) > MOST_VIOLATIONS:
+        lines.append(f"   and {len(doubtful) - MOST_VIOLATIONS} more open")
+    return lines
+
+
 def ranked_block(maneuvers: Maneuvers, ranked: RankedManeuver) -> list[str]:
     """A maneuver at its place, with what it violates."""
     same = f"; {shown_count(ranked.members)} violate the same" if ranked.members > 1 else ""
-    penalty = ", ".join(
-        f"{rank.strength} {' = '.join(level or '(no level)' for level in rank.levels)} "
-        f"{number_in_words(weight)}"
-        for rank, weight in ranked.penalty.items()
-    )
-    details = [f"   violates {penalty or 'no rule'}"]
+    penalty = _penalty(ranked.penalty)
+    if ranked.open:
+        penalty = f"at most {penalty}, at least {_penalty(ranked.at_least)}"
+    details = [f"   violates {penalty}"]
     details += [
         f"     {_violation_line(maneuvers, violation)}"
         for violation in ranked.violations[:MOST_VIOLATIONS]
     ]
     if len(ranked.violations) > MOST_VIOLATIONS:
         details.append(f"     and {len(ranked.violations) - MOST_VIOLATIONS} more")
+    details += [f"  {line}" for line in _open_lines(maneuvers, ranked.open)]
     return maneuver_block(maneuvers.graph, ranked.place, ranked.maneuver, same, details)
 
 
+def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> str:
+    parts = [
+        f"{rank.strength} {' = '.join(level or '(no level)' for level in rank.levels)} "
+        f"{number_in_words(weight)}"
+        for rank, weight in penalty.items()
+    ]
+    return ", ".join(parts) or "no rule"
+
+
 def _violation_line(maneuvers: Maneuvers, violation: Violation) -> str:
-    rule = next(rule for rule in maneuvers.rules.rules if rule.name == violation.rule)
+    return f"{_rule_title(maneuvers, violation)}: {_when_lost(maneuvers, violation)}"
+
+
+def _rule_title(maneuvers: Maneuvers, found: Violation | OpenVerdict) -> str:
+    rule = next(rule for rule in maneuvers.rules.rules if rule.name == found.rule)
     cite = f" [{rule.cite}]" if rule.cite else ""
-    bound = f" for {bound_objects(violation.binding)}" if violation.binding else ""
-    return f"{rule.strength} rule {rule.name}{cite}{bound}: {_when_lost(maneuvers, violation)}"
+    bound = f" for {bound_objects(found.binding)}" if found.binding else ""
+    return f"{rule.strength} rule {rule.name}{cite}{bound}"
 
 
 def bound_objects(binding: Mapping[str, str]) -> str:
@@ -88,7 +126,7 @@ def chance_lines(chances: RuleProbabilities) -> list[str]:
     """The probabilities that are below 1, a line each."""
     rows = [
         ("nobody hits ego", shown_chance(chances.clear)),
-        ("every hard rule", shown_chance(chances.hard)),
+        ("every hard rule", shown_chance(chances.hard, chances.hard_at_most)),
     ]
     rows += [(rule.rule.name, _of_rule(rule)) for rule in chances.rules if rule.kept != 1]
     return table_lines(rows, indent="   ")
@@ -99,34 +137,45 @@ def _of_rule(rule_probability: RuleProbability) -> str:
         return f"not known: more than {MOST_WORLDS:,} worlds make a difference"
     bindings = rule_probability.bindings
     parts = [
-        f"{shown_chance(binding.kept)} for {bound_objects(binding.binding)}"
+        f"{shown_chance(binding.kept, binding.at_most)} for {bound_objects(binding.binding)}"
         for binding in bindings[:MOST_BINDINGS]
     ]
     if len(bindings) > MOST_BINDINGS:
         parts.append(f"and for {len(bindings) - MOST_BINDINGS:,} more")
-    return "; ".join([shown_chance(rule_probability.kept), *parts])
+    return "; ".join([shown_chance(rule_probability.kept, rule_probability.at_most), *parts])
 
 
-def shown_chance(number: Fraction | None) -> str:
-    """A probability in text."""
-    return "not known" if number is None else f"{float(number):.4g}"
+def shown_chance(number: Fraction | None, at_most: Fraction | None = None) -> str:
+    """A probability in text, or its bounds."""
+    if number is None:
+        return "not known"
+    above = "" if at_most in (None, number) else f" … {float(at_most or 0):.4g}"
+    return f"{float(number):.4g}{above}"
 
 
 def pruning_lines(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
     """A table of the rules that prune maneuvers, and the names of the others."""
-    rows = [("rule", "violated by", "alone by", "for example")]
+    some_open = any(pruning.open for pruning in prunings)
+    rows = [("rule", "violated by", "alone by", *(["open"] if some_open else []), "for example")]
     rows += [
         (
             pruning.rule.name,
             shown_count(pruning.violating),
             "soft" if pruning.alone is None else shown_count(pruning.alone),
-            _example(maneuvers, pruning),
+            *([shown_count(pruning.open)] if some_open else []),
+            _example(maneuvers, pruning) if pruning.example else "",
         )
         for pruning in prunings
-        if pruning.violating
+        if pruning.violating or pruning.open
     ]
-    lines = table_lines(rows, right=(1, 2)) if len(rows) > 1 else []
-    idle = [pruning.rule.name for pruning in prunings if not pruning.violating]
+    right = (1, 2, 3) if some_open else (1, 2)
+    lines = table_lines(rows, right=right) if len(rows) > 1 else []
+    not_judged = {rule.rule for rule in maneuvers.not_judged}
+    idle = [
+        pruning.rule.name
+        for pruning in prunings
+        if not (pruning.violating or pruning.open or pruning.rule.name in not_judged)
+    ]
     return [*lines, f"violated by none: {', '.join(idle)}"] if idle else lines
 
 

@@ -9,15 +9,17 @@ from typing import Any, TypeVar
 
 from msgspec import UNSET, UnsetType
 
-from rulec.monitoring.verdict import Violation
+from rulec.monitoring.verdict import Verdict, Violation
 from rulec.partition import AdjacencyName, ExtentName, NavigationGraph, PartitionName, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.rule_probability import AlternativeCounts
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
+from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.maneuvers import maneuver_report
 from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
+from rulec.report.verdicts.verdict_json import NotJudgedRule, OpenData, open_data
 from rulec.rulebook.rulebook_model import Strength
 from rulec.scenario import Account
 from rulec.scenario.scenario_model import Surface
@@ -83,19 +85,24 @@ class EnvelopeData(JsonPart, frozen=True, kw_only=True):
 
 
 class BindingProbability(JsonPart, frozen=True, kw_only=True):
-    """The probability that a rule is kept for some objects."""
+    """The probability that a rule is kept for some objects, or its bounds."""
 
     binding: Mapping[str, str]
     kept: float
+    kept_at_most: float | UnsetType = UNSET
 
 
 class RuleProbabilityData(JsonPart, frozen=True, kw_only=True):
-    """The probability that a rule is kept, null if unknown."""
+    """The probability that a rule is kept, null if unknown.
+
+    If there is a ``kept_at_most`` both are bounds, since it depends on unknown values.
+    """
 
     rule: str
     strength: Strength
     kept: float | None
     bindings: Sequence[BindingProbability]
+    kept_at_most: float | UnsetType = UNSET
 
 
 class ChancesData(JsonPart, frozen=True, kw_only=True):
@@ -104,19 +111,23 @@ class ChancesData(JsonPart, frozen=True, kw_only=True):
     clear: float
     every_hard_rule: float | None
     rules: Sequence[RuleProbabilityData]
+    every_hard_rule_at_most: float | UnsetType = UNSET
 
 
 class ManeuverData(JsonPart, frozen=True, kw_only=True):
     """A maneuver: cost (1/s), margin, cells and bounds in time.
 
     One that is ranked has ``place``, ``penalty``, ``members`` with this penalty and ``violations``;
-    a class's has ``members``, an example of a pruning ``violations``.
+    a class's has ``members``, an example of a pruning ``violations``. Where not all is known
+    ``open`` is what depends on it; it is in the ``penalty``, and not in the one ``at_least``.
     """
 
     place: int | UnsetType = UNSET
     penalty: Sequence[LevelPenalty] | UnsetType = UNSET
     members: int | UnsetType = UNSET
+    at_least: Sequence[LevelPenalty] | UnsetType = UNSET
     violations: Sequence[ManeuverViolation] | UnsetType = UNSET
+    open: Sequence[OpenData] | UnsetType = UNSET
     cost: float
     margin_s: float | None
     cells: Sequence[CellData]
@@ -140,30 +151,43 @@ class WorldData(JsonPart, frozen=True, kw_only=True):
     weight: float
     traces: int
     satisfying: int
+    open: int
 
 
 class PruningData(JsonPart, frozen=True, kw_only=True):
-    """Counts of maneuvers violating a rule, and no other hard one (``alone``)."""
+    """Counts of maneuvers violating a rule, and no other hard one (``alone``).
+
+    On ``open`` more it depends on what is unknown.
+    """
 
     rule: str
     strength: Strength
     violating: int
     alone: int | None
+    open: int
     example: ManeuverData | None
 
 
 class ClassesData(JsonPart, frozen=True, kw_only=True):
-    """The counts of homotopy classes, and the cheapest satisfying members of some."""
+    """The counts of homotopy classes, and the cheapest satisfying members of some.
+
+    So many more are ``open``.
+    """
 
     total: int
     satisfying: int
     divided: int
+    open: int
     counting_steps: Sequence[str]
     representatives: Sequence[ManeuverData]
 
 
 class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
-    """The counts of maneuvers in a scenario, and further answers asked for."""
+    """The counts of maneuvers in a scenario, and further answers asked for.
+
+    On ``open`` more than those ``satisfying`` it depends on what is ``unknown``; ``exact`` is false
+    if there was too much to look at, and some may be known after all.
+    """
 
     scenario: str
     rulebook: str
@@ -176,6 +200,10 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     edges: int
     traces: int
     satisfying: int
+    open: int
+    exact: bool
+    unknown: Sequence[str]
+    not_judged: Sequence[NotJudgedRule]
     by_default: Sequence[str]
     seconds: float
     scene: SceneData | UnsetType = UNSET
@@ -202,6 +230,10 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             horizon_s=maneuver_report.horizon_s(graph),
             traces=maneuvers.traces,
             satisfying=maneuvers.satisfying,
+            open=maneuvers.open,
+            exact=maneuvers.exact,
+            unknown=maneuvers.unknown,
+            not_judged=[filled(NotJudgedRule, rule) for rule in maneuvers.not_judged],
             by_default=maneuvers.by_default,
             seconds=round(seconds, 6),
             scene=UNSET if scenario.account is None else _scene(maneuvers, scenario.account),
@@ -210,7 +242,12 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             ranked=_each(answers.ranked, partial(_ranked, maneuvers, answers)),
             maneuvers=_each(
                 answers.listed,
-                lambda maneuver: _maneuver(graph, maneuver, chances=_chances(answers, maneuver)),
+                lambda maneuver: _maneuver(
+                    graph,
+                    maneuver,
+                    open=_open(answers.verdicts.get(maneuver.nodes)),
+                    chances=_chances(answers, maneuver),
+                ),
             ),
             likeliest=maneuver_report.likeliest(scenario) if several else UNSET,
             worlds=_each(answers.worlds, _world),
@@ -242,20 +279,29 @@ def _scene(maneuvers: Maneuvers, account: Account) -> SceneData:
 
 
 def _ranked(maneuvers: Maneuvers, answers: ManeuverAnswers, ranked: RankedManeuver) -> ManeuverData:
+    in_doubt = bool(maneuvers.unknown)
     return _maneuver(
         maneuvers.graph,
         ranked.maneuver,
         place=ranked.place,
-        penalty=[
-            filled(
-                LevelPenalty, rank, levels=[level or None for level in rank.levels], weight=weight
-            )
-            for rank, weight in ranked.penalty.items()
-        ],
+        penalty=_penalty(ranked.penalty),
+        at_least=_penalty(ranked.at_least) if in_doubt else UNSET,
         members=ranked.members,
         violations=_violations(maneuvers, ranked.violations),
+        open=open_data(ranked.open) if in_doubt else UNSET,
         chances=_chances(answers, ranked.maneuver),
     )
+
+
+def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> list[LevelPenalty]:
+    return [
+        filled(LevelPenalty, rank, levels=[level or None for level in rank.levels], weight=weight)
+        for rank, weight in penalty.items()
+    ]
+
+
+def _open(verdict: Verdict | None) -> list[OpenData] | UnsetType:
+    return UNSET if verdict is None else open_data(verdict.open)
 
 
 def _maneuver(graph: NavigationGraph, maneuver: Maneuver, **details: Any) -> ManeuverData:
@@ -294,14 +340,24 @@ def _chances(answers: ManeuverAnswers, maneuver: Maneuver) -> ChancesData | Unse
             strength=rule.rule.strength,
             kept=_float(rule.kept),
             bindings=[
-                BindingProbability(binding=binding.binding, kept=float(binding.kept))
+                BindingProbability(
+                    binding=binding.binding,
+                    kept=float(binding.kept),
+                    kept_at_most=_above(binding.kept, binding.at_most),
+                )
                 for binding in rule.bindings
             ],
+            kept_at_most=_above(rule.kept, rule.at_most),
         )
         for rule in chances.rules
     ]
     hard = _float(chances.hard)
-    return ChancesData(clear=float(chances.clear), every_hard_rule=hard, rules=rules)
+    return ChancesData(
+        clear=float(chances.clear),
+        every_hard_rule=hard,
+        rules=rules,
+        every_hard_rule_at_most=_above(chances.hard, chances.hard_at_most),
+    )
 
 
 def _pruning(maneuvers: Maneuvers, pruning: RulePruning) -> PruningData:
@@ -328,6 +384,11 @@ def _classes(
             for variant in variants
         ],
     )
+
+
+def _above(least: Fraction | None, greatest: Fraction | None) -> float | UnsetType:
+    """The greater bound; nothing if it is the lesser one."""
+    return UNSET if greatest is None or greatest == least else float(greatest)
 
 
 def _float(probability: Fraction | None) -> float | None:

@@ -9,7 +9,7 @@ from math import prod
 from typing import Any
 
 from rulec.diagnostics import named
-from rulec.monitoring.verdict import Violation
+from rulec.monitoring.verdict import Verdict, Violation
 from rulec.partition import NavigationGraph
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
@@ -31,7 +31,8 @@ class ManeuverAnswers:
     """Answers to further questions about maneuvers, None where not asked.
 
     ``best`` are the least violating maneuvers, where none satisfies every hard rule and there is no
-    longer list of them in ``ranked``. ``chances`` are those of maneuvers, given by their nodes.
+    longer list of them in ``ranked``. ``chances`` and ``verdicts`` are those of maneuvers, given by
+    their nodes; the latter where not all is known.
     """
 
     listed: Sequence[Maneuver] | None = None
@@ -40,6 +41,7 @@ class ManeuverAnswers:
     prunings: Sequence[RulePruning] | None = None
     classes: tuple[HomotopyClasses, Sequence[Variant]] | None = None
     chances: Mapping[tuple[int, ...], RuleProbabilities] = field(default_factory=dict)
+    verdicts: Mapping[tuple[int, ...], Verdict] = field(default_factory=dict)
     worlds: Sequence[AlternativeCounts] | None = None
 
 
@@ -80,6 +82,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         f"maneuvers   {shown_count(maneuvers.traces)}",
         *_shut_in(maneuvers),
         f"satisfying  {styled(shown_count(maneuvers.satisfying), 'bold')} by {by}",
+        *_doubts(maneuvers),
         *_violated_before(maneuvers.violated_before or ()),
         *([visible(by_default)] if maneuvers.by_default else []),
         *_predictions(graph.scenario),
@@ -89,7 +92,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         lines += _class_counts(maneuvers, answers.classes[0])
     lines.append(f"computed in {seconds:.3f} s")
     for number, maneuver in enumerate(answers.listed or (), 1):
-        lines += maneuver_blocks.maneuver_block(graph, number, maneuver)
+        lines += maneuver_blocks.listed_block(maneuvers, number, maneuver, answers.verdicts)
         lines += _chances(answers, maneuver)
     if answers.best:
         lines += ["", "Every maneuver violates a hard rule. No other violates less than:"]
@@ -104,6 +107,18 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             remark = f"; class of {'1 member' if variant.members == 1 else members}"
             lines += maneuver_blocks.maneuver_block(graph, number, variant.cheapest, remark)
     return "\n".join(lines)
+
+
+def _doubts(maneuvers: Maneuvers) -> Iterator[str]:
+    """What not all being known comes to."""
+    if maneuvers.unknown:
+        more = "" if maneuvers.exact else ", or fewer: there was too much to look at"
+        yield f"open        {styled(shown_count(maneuvers.open), 'bold')} more{more}"
+        names = first_of(maneuvers.unknown, MOST_DEFAULTS)
+        yield visible(f"unknown     {names}: not, or not exactly, known")
+    if maneuvers.not_judged:
+        rules = first_of([rule.rule for rule in maneuvers.not_judged], MOST_DEFAULTS)
+        yield visible(f"not judged  {rules}: nothing tells what they read")
 
 
 def _scene(maneuvers: Maneuvers) -> Iterator[str]:
@@ -162,12 +177,14 @@ def _world(world: AlternativeCounts) -> str:
         f"otherwise   {world.obstacle}, prediction {world.number + 1} "
         f"({maneuver_blocks.shown_chance(world.weight)}): {shown_count(world.traces)} maneuvers, "
         f"{shown_count(world.satisfying)} satisfying"
+        + (f", {shown_count(world.open)} open" if world.open else "")
     )
 
 
 def _class_counts(maneuvers: Maneuvers, classes: HomotopyClasses) -> Iterator[str]:
     satisfying, total = shown_count(classes.satisfying), shown_count(classes.total)
-    yield f"classes     {satisfying} of {total} satisfying"
+    doubtful = f", {shown_count(classes.open)} more open" if classes.open else ""
+    yield f"classes     {satisfying} of {total} satisfying{doubtful}"
     if classes.divided:
         counting = [rule.name for rule in maneuvers.counting_steps()]
         why = f": {named(counting)} {'counts' if len(counting) == 1 else 'count'} steps"

@@ -11,7 +11,7 @@ from msgspec import UNSET, UnsetType
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.explain.explanation import Explanation
-from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.verdicts.violation_table import repaired_states
 
@@ -191,17 +191,20 @@ def as_json(
 def doubts(verdict: Verdict) -> dict[str, Any]:
     """The fields on what is open, not judged, and presumed."""
     return {
-        "open": [
-            filled(
-                OpenData,
-                rule,
-                outcomes=[filled(ConditionalData, outcome) for outcome in rule.outcomes],
-            )
-            for rule in verdict.open
-        ],
+        "open": open_data(verdict.open),
         "not_judged": [filled(NotJudgedRule, rule) for rule in verdict.not_judged],
         "presumed": verdict.presumed,
     }
+
+
+def open_data(doubtful: Sequence[OpenVerdict]) -> list[OpenData]:
+    """What is open."""
+    return [
+        filled(
+            OpenData, rule, outcomes=[filled(ConditionalData, outcome) for outcome in rule.outcomes]
+        )
+        for rule in doubtful
+    ]
 
 
 def not_judged_as_json(answer: NotJudged) -> str:

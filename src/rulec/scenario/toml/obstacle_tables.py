@@ -15,6 +15,7 @@ from rulec.scenario.motion import stands_forever
 from rulec.scenario.scenario_messages import MISSING_OR_UNKNOWN_FIELD, UNFITTING_FIELD
 from rulec.scenario.toml.schema import MOST_OBSTACLES, RawObstacle, RawPrediction
 from rulec.scenario.toml.toml_tables import TomlFile, TomlTable, quoted, shown
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 LocatedObstacle = tuple[model.Obstacle, TomlTable]
 
@@ -88,18 +89,38 @@ def read_signals(raw: Mapping[str, object], table: TomlTable) -> dict[str, model
                 name,
                 way_out="leave it out, or call the signal something else",
             )
-        elif isinstance(value, (bool, str)):
-            signals[name] = value
-        elif isinstance(value, (int, float)) and abs(value) < 1e300 and isfinite(value):
-            signals[name] = float(value)
+        elif (given := _signal(value)) is not None:
+            signals[name] = given
         else:
             table.add(
                 f"{table.words}: {quoted(name)} is {shown(value)}",
                 name,
-                expected="true, false, a finite number, or a value's name in quotes",
+                expected="true, false, a finite number, a value's name in quotes, "
+                '`"?"` for what is not known, or `{ from = 30, to = 50 }` for a number in between',
                 code=UNFITTING_FIELD,
             )
     return signals
+
+
+def _signal(value: object) -> model.SignalValue | None:
+    """What a signal is said to be; None if it does not fit."""
+    match value:
+        case "?":
+            return UNKNOWN
+        case bool() | str():
+            return value
+        case {"from": first, "to": last, **others} if not others:
+            low, high = _number(first), _number(last)
+            if low is None or high is None or low > high:
+                return None
+            return Interval(low, high)
+    return _number(value)
+
+
+def _number(value: object) -> float | None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    return float(value) if abs(value) < 1e300 and isfinite(value) else None
 
 
 def _predictions(
