@@ -143,11 +143,17 @@ def _length(outlines: object, states: object) -> float:
 
 
 def junction_passages(recording: Recording, tracks: Tracks) -> JunctionPassages:
-    """The passages of everybody who moves."""
+    """The passages of everybody who moves, and does so on wheels."""
     junctions = junctions_of(recording)
     of_row: dict[int, list[Passage]] = defaultdict(list)
     through: dict[int, list[Passage]] = defaultdict(list)
-    moving = np.array([not body.standing for body in tracks.participants], dtype=bool)
+    moving = np.array(
+        [
+            not body.standing and "pedestrian" not in body.object_types
+            for body in tracks.participants
+        ],
+        dtype=bool,
+    )
     rows, columns = np.nonzero(tracks.present & moving[:, None])
     if junctions and len(rows):
         points = shapely.points(tracks.x[rows, columns], tracks.y[rows, columns])

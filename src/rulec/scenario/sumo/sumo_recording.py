@@ -37,8 +37,10 @@ from rulec.scenario.sumo.vehicle_types import VehicleType, read_vehicle_types, v
 from rulec.scenario.xml_element import short
 
 COMPLETE = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
-COMPLETE |= {"officer"}
-"""A net has every sign, light and track that its traffic obeys, and no officer at all."""
+COMPLETE |= {"officer", "arrivals"}
+"""A net has every sign, light and track that its traffic obeys, and no officer at all.
+
+Who is in the data no longer has arrived where it was going."""
 
 NEAR_M = 1000.0
 """Nobody in the data is farther from the net than this."""

@@ -15,27 +15,33 @@ import numpy as np
 import shapely
 
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.map.oncoming_priority import gives_way_to, turns_far
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import Junction, approaches
 from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.reference_line import turn
 
-_ONCOMING = "conflict_oncoming"
+_ONCOMING = "in_way_of_oncoming"
 _SIDES = ("conflict_from_left", "conflict_from_right", _ONCOMING)
 _RING, _RAIL = "conflict_on_roundabout", "conflict_with_rail"
 _CONFLICTS = (*_SIDES, _RING, _RAIL)
+
+_SLOWEST_MPS = 1.0
+"""Who stands in a junction at the end of its track drives on so fast."""
 
 
 @dataclass(frozen=True, slots=True)
 class Encounter:
     """Another one whose way crosses ego's, and from when to when the two are in conflict.
 
-    Columns of the drive; ``known`` is False if the recording ends before it is clear.
+    Columns of the drive; from ``enters`` on ego is in its way. ``known`` is False if the recording
+    ends before it is clear.
     """
 
     kinds: tuple[str, ...]
     first: int
+    enters: int
     last: int
     known: bool
     other: Passage
@@ -53,20 +59,21 @@ def priority_signals(context: DriveContext) -> SignalColumns:
         for met in _encounters(context, passage):
             span = slice(met.first, met.last + 1)
             for kind in met.kinds:
-                (conflicts if met.known else unknown)[kind][span] = True
+                from_then = slice(met.enters, met.last + 1) if kind == _ONCOMING else span
+                (conflicts if met.known else unknown)[kind][from_then] = True
             together[span] |= met.together
             entered = met.other.first - _shift(context)
             other_inside[max(met.first, entered) : met.last + 1] = True
         for side in filter(None, _might_come(context, passage)):
-            unknown[side][_approach(context, passage)] = True
+            if side != _ONCOMING or turns_far(context, passage):
+                unknown[side][_approach(context, passage)] = True
         if not passage.sure:
             for name in _CONFLICTS:
                 unknown[name][_approach(context, passage)] = True
-    told = {name: conflicts[name] for name in _CONFLICTS if name != _ONCOMING}
-    world: dict[str, SignalColumn] = {**roads, **told}
+    world: dict[str, SignalColumn] = {**roads, **conflicts}
     world |= {"arrived_together": together, "other_in_junction": other_inside}
     either: Flags = np.any([unknown[name] & ~conflicts[name] for name in _SIDES], axis=0)
-    not_told |= {name: unknown[name] & ~conflicts[name] for name in told}
+    not_told |= {name: unknown[name] & ~conflicts[name] for name in _CONFLICTS}
     not_told |= {"arrived_together": either, "other_in_junction": either}
     return SignalColumns(world, unknown=not_told)
 
@@ -158,8 +165,11 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
         if met is None:
             continue
         enters, leaves = passages.occupied(own, met[0])
-        comes, _ = passages.occupied(other, met[1])
+        comes, passed = passages.occupied(other, met[1])
         if enters is None or (comes is not None and comes < enters):
+            continue
+        # Who waits a little too far ahead lets others pass all the same
+        if passed is not None and (leaves is None or passed < leaves):
             continue
         verdict = _held_up(context, (enters, leaves), other, comes)
         if verdict is None:
@@ -172,6 +182,7 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
         yield Encounter(
             kinds=kinds,
             first=first,
+            enters=max(enters - shift, 0),
             last=min(last, context.states - 1),
             known=known and own.sure and other.sure,
             other=other,
@@ -215,7 +226,8 @@ def _kinds(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ..
         return (_RAIL,)
     way = passages.way(other)
     angle = float(np.degrees(turn(own.heading, passages.tracks.heading[other.row, other.first])))
-    if not (side := _side(angle)):
+    side = _side(angle)
+    if not side or (side == _ONCOMING and not gives_way_to(context, own, other)):
         return ()
     ring = bool(way.entries & context.surroundings.ring(context.side))
     return (side, _RING) if ring else (side,)
@@ -229,25 +241,44 @@ def _side(angle: float) -> str:
 
 
 def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
-    """The sides from which somebody might still come whose track ends before the junction."""
+    """The sides from which somebody might still come whose track ends before the junction.
+
+    In a simulation who is gone before the end has arrived somewhere.
+    """
     passages, shift = context.surroundings.passages, _shift(context)
-    tracks, limits = passages.tracks, context.thresholds
+    tracks, step_s = passages.tracks, context.recording.step_s
     area = passages.junctions[own.junction].area
     through = {x.row for x in passages.through[own.junction]}
+    latest = _leaves_at_latest(context, own) + context.thresholds.yielding_s / step_s
+    simulated = "arrivals" in context.recording.complete
     for row, body in enumerate(tracks.participants):
         if body.standing or row in through or "pedestrian" in body.object_types:
             continue
         end = int(np.flatnonzero(tracks.present[row])[-1])
+        if end < shift or (simulated and end + 1 < tracks.present.shape[1]):
+            continue
         x, y = float(tracks.x[row, end]), float(tracks.y[row, end])
-        speed = float(tracks.speed[row, end])
         place = shapely.Point(x, y)
         away = float(shapely.distance(area, place))
-        arrives = end + away / max(speed, 0.1) / context.recording.step_s
-        latest = own.last + limits.yielding_s / context.recording.step_s
-        if end < own.first or arrives > latest or end < shift:
+        arrives = end + away / max(float(tracks.speed[row, end]), 0.1) / step_s
+        if not own.first <= arrives <= latest:
             continue
         near = shapely.shortest_line(place, area).coords[-1]
         towards = float(np.arctan2(near[1] - y, near[0] - x))
         heading = float(tracks.heading[row, end])
         if abs(turn(towards, heading)) < np.pi / 3:
             yield _side(float(np.degrees(turn(own.heading, heading))))
+
+
+def _leaves_at_latest(context: DriveContext, own: Passage) -> float:
+    """The column in which ego leaves a junction; as it drives on if its track ends before."""
+    passages = context.surroundings.passages
+    tracks = passages.tracks
+    column = own.last
+    if column + 1 < tracks.present.shape[1] and tracks.present[own.row, column + 1]:
+        return column
+    line = passages.way(own).line
+    place = shapely.Point(tracks.x[own.row, column], tracks.y[own.row, column])
+    left = line.length - line.project(place) + float(passages.lengths[own.row]) / 2
+    speed = max(float(tracks.speed[own.row, column]), _SLOWEST_MPS)
+    return column + left / speed / context.recording.step_s

@@ -1,0 +1,201 @@
+"""Ego turns across the way of one that comes towards it, which signs and lights may stop.
+
+Ego comes from the west in the lane y = -2 and turns left into the road to the north at x = 2; the
+other one comes from the east in the lane y = 2. Ego is on that lane some 4 to 14 m along its turn.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.map.oncoming_priority import goes_first
+from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.tracks.junctions import junctions_of
+from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.scenario.recorded.recording import Light, Recording
+from rulec.scenario.sumo.lanelets import net_lanelets
+from rulec.scenario.sumo.net import read_net
+from support.builders.drive_contexts import context_of
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+NETS = sorted((Path(__file__).parents[2] / "worlds/stored").glob("*.net.xml"))
+INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
+STEP_S = 0.25
+
+
+def arc(x, y, radius, first, last):
+    angles = np.radians(np.linspace(first, last, 19))
+    return np.stack((x + radius * np.cos(angles), y + radius * np.sin(angles)), axis=1)
+
+
+FAR_TURN = arc(-8, 8, 10, -90, 0)
+NEAR_TURN = arc(8, 8, 6, 270, 180)
+ITS_FAR_TURN = arc(8, -8, 10, 90, 180)
+
+
+def crossroads(entry=None, its_entry=None):
+    """Lanelets of ego's turn (1, 2, 3), of the one towards it (4, 5, 6), and of its turns (7, 8)."""
+    return [
+        straight(1, -90, -8, -2, successors=(2, 9), **(entry or {})),
+        lanelet(2, FAR_TURN, predecessors=(1,), successors=(3,), **INSIDE),
+        lanelet(3, [(2, 8), (2, 90)], predecessors=(2, 7)),
+        lanelet(4, [(90, 2), (8, 2)], successors=(5, 7, 8), **(its_entry or {})),
+        lanelet(5, [(8, 2), (-8, 2)], predecessors=(4,), successors=(6,), **INSIDE),
+        lanelet(6, [(-8, 2), (-90, 2)], predecessors=(5,)),
+        lanelet(7, NEAR_TURN, predecessors=(4,), successors=(3,), **INSIDE),
+        lanelet(8, ITS_FAR_TURN, predecessors=(4,), successors=(10,), **INSIDE),
+        straight(9, -8, 8, -2, predecessors=(1,), successors=(11,), **INSIDE),
+        lanelet(10, [(-2, -8), (-2, -90)], predecessors=(8,)),
+        straight(11, 8, 90, -2, predecessors=(9,)),
+    ]
+
+
+def along(number, line, way, kind="car"):
+    """A vehicle whose middle is so far along a line at each step."""
+    steps = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
+    place = [np.interp(way, steps, line[:, axis]) for axis in (0, 1)]
+    ahead = [np.interp(way + 0.1, steps, line[:, axis]) for axis in (0, 1)]
+    heading = np.arctan2(ahead[1] - place[1], ahead[0] - place[0])
+    bodies = [
+        vehicle(number, {k: (place[0][k], place[1][k])}, kind, heading=heading[k])
+        for k in range(len(way))
+    ]
+    states = {k: body.states[k] for k, body in enumerate(bodies)}
+    outlines = {k: body.outlines[k] for k, body in enumerate(bodies)}
+    return replace(bodies[0], states=states, outlines=outlines)
+
+
+TIMES = np.arange(0, 14, STEP_S)
+TURN = np.concatenate(([(-60.0, -2.0)], FAR_TURN, [(2.0, 90.0)]))
+STRAIGHT_ON = np.array([(-60.0, -2.0), (90.0, -2.0)])
+# At 5 m/s the middle is where the turn begins, 52 m along, at 4 s
+EGO = 32 + 5 * TIMES
+
+
+def its(way):
+    """The other's ways: to the west, to the north and to the south."""
+    turn = {"on": [(-90.0, 2.0)], "near": [*NEAR_TURN, (2, 90)], "far": [*ITS_FAR_TURN, (-2, -90)]}
+    return np.concatenate(([(90.0, 2.0)], [(8.0, 2.0)], turn[way]))
+
+
+def at(reaches_s, mps=10.0):
+    """The middle of one that is where the junction begins, 82 m along, at a time."""
+    return 82 + mps * (TIMES - reaches_s)
+
+
+def told(way, road=None, ego=EGO, turn="on", line=TURN, kind="car", route=("1", "2", "3")):
+    found = recording(road or crossroads(), [along(7, line, ego), along(8, its(turn), way, kind)])
+    found = replace(found, step_s=STEP_S)
+    right = priority_signals(context_of(found, route))
+    left = priority_signals(context_of(mirrored_recording(found), route, "left"))
+    word = "in_way_of_oncoming"
+    assert right.world[word].tolist() == left.world[word].tolist()
+    assert right.unknown[word].tolist() == left.unknown[word].tolist()
+    return right.world[word], right.unknown[word]
+
+
+def test_ego_turns_at_once_before_one_that_comes():
+    conflict, unknown = told(at(5.5))
+    # Ego's front is on the other's lane from about 4.6 s on, its rear until about 7.2 s
+    times = TIMES[conflict]
+    assert 4.0 < times[0] < 5.0
+    assert 6.5 < times[-1] < 7.75
+    assert not unknown.any()
+
+
+@pytest.mark.parametrize("reaches_s", [2.0, 9.5], ids=["ego lets it pass", "it is far away"])
+def test_ego_turns_behind_or_long_before_one(reaches_s):
+    conflict, unknown = told(at(reaches_s))
+    assert not conflict.any()
+    assert not unknown.any()
+
+
+def test_one_that_has_to_brake_is_in_conflict():
+    # At 5 s it is half a second away, and gets there at 9 s, less than 3 s after ego
+    conflict, _ = told(np.interp(TIMES, [0, 5, 9, 13], [27, 77, 82, 120]))
+    assert conflict.any()
+
+
+def test_who_goes_straight_on_goes_first():
+    conflict, unknown = told(at(5.5), line=STRAIGHT_ON, turn="far", ego=EGO, route=("1", "9", "11"))
+    assert not (conflict | unknown).any()
+
+
+@pytest.mark.parametrize(("turn", "conflict"), [("near", True), ("far", False)])
+def test_one_that_turns_itself(turn, conflict):
+    """Who turns to the near side goes first, too; two who turn to the far side pass each other."""
+    assert told(at(7.0, 5.0), turn=turn)[0].any() == conflict
+
+
+def test_who_waits_in_the_junction_lets_it_pass():
+    waits = np.interp(TIMES, [0, 4.5, 8, 10, 13.75], [32, 55.5, 55.5, 65, 90])
+    assert not told(at(5.5), ego=waits)[0].any()
+
+
+def test_one_that_has_to_give_way_by_its_sign():
+    sign = {"signs": frozenset({"YIELD"})}
+    assert not told(at(5.5), crossroads(its_entry=sign))[0].any()
+    assert told(at(5.5), crossroads(entry=sign, its_entry=sign))[0].any()
+    assert told(at(5.5), crossroads(entry=sign))[0].any()
+
+
+def test_one_that_came_past_a_red_light():
+    def light(changes_s):
+        steps = round(changes_s / STEP_S)
+        return {"lights": (Light(0, (("green", steps), ("red", 400))),)}
+
+    assert not told(at(5.5), crossroads(its_entry=light(2.0)))[0].any()
+    # It was green at the line, and red half a second later
+    assert told(at(5.5), crossroads(its_entry=light(5.0)))[0].any()
+
+
+def test_nobody_comes_on_foot():
+    assert not told(at(5.5, 10.0), kind="pedestrian")[0].any()
+
+
+@pytest.mark.parametrize(
+    ("reaches_s", "unknown"), [(7.5, True), (20.0, False)], ids=["soon", "far away"]
+)
+def test_a_recording_that_ends_before_it_is_clear(reaches_s, unknown):
+    """It ends at 6 s, when ego is on the other's lane until about 7.2 s."""
+    road = crossroads()
+    found = recording(road, [along(7, TURN, EGO[:24]), along(8, its("on"), at(reaches_s)[:24])])
+    signals = priority_signals(context_of(replace(found, step_s=STEP_S), ("1", "2", "3")))
+    assert not signals.world["in_way_of_oncoming"].any()
+    assert signals.unknown["in_way_of_oncoming"].any() == unknown
+
+
+def test_one_that_is_lost_from_sight_may_have_come():
+    # At 3 s, 25 m before the junction; in a simulation it has arrived where it was going
+    found = recording(crossroads(), [along(7, TURN, EGO), along(8, its("on"), at(5.5)[:12])])
+    found = replace(found, step_s=STEP_S)
+    for complete, unknown in ((frozenset(), True), (frozenset({"arrivals"}), False)):
+        lost = replace(found, complete=complete)
+        signals = priority_signals(context_of(lost, ("1", "2", "3")))
+        assert not signals.world["in_way_of_oncoming"].any()
+        assert signals.unknown["in_way_of_oncoming"].any() == unknown
+
+
+@pytest.mark.parametrize("path", NETS, ids=lambda path: path.name.split(".")[0])
+def test_who_goes_first_is_what_the_net_says(path):
+    """Signs alone say what SUMO's `request` bits say of ways that turn across others."""
+    net = read_net(path)
+    told = net_lanelets(net, 0.5)
+    bare = {name: replace(x, foes=None, first=None) for name, x in told.items()}
+    drawn = Recording("drawn", 0.5, bare, (), ())
+    far = 1 if net.side == "right" else -1
+    pairs = 0
+    for junction in junctions_of(drawn):
+        for own, way in enumerate(junction.ways):
+            first = told[way.lanelets[0].id].first
+            for other, its_way in enumerate(junction.ways):
+                towards = abs(
+                    (way.headings[0] - its_way.headings[0] + np.pi) % (2 * np.pi) - np.pi
+                ) > np.radians(135)
+                across = way.turned * far > np.radians(45) >= its_way.turned * far
+                if first is not None and towards and across and junction.meeting(own, other):
+                    assert goes_first(drawn, way, its_way) == bool(first & its_way.names)
+                    pairs += 1
+    assert pairs or path.name.startswith(("motorway", "roundabout", "zebra"))
