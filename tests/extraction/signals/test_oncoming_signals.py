@@ -36,7 +36,7 @@ ITS_FAR_TURN = arc(8, -8, 10, 90, 180)
 
 
 def crossroads(entry=None, its_entry=None):
-    """Lanelets of ego's turn (1, 2, 3), of the one towards it (4, 5, 6), and of its turns (7, 8)."""
+    """Lanelets of ego's turn (1, 2, 3), and of who comes towards it (4, 5, 6; turns 7, 8)."""
     return [
         straight(1, -90, -8, -2, successors=(2, 9), **(entry or {})),
         lanelet(2, FAR_TURN, predecessors=(1,), successors=(3,), **INSIDE),

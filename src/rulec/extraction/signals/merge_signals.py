@@ -1,6 +1,7 @@
 """Signals of narrowings, where two lanes become one.
 
-Two lanes beside each other become one where both lead to the same lanelet, or one of them ends.
+Two lanes beside each other become one where both lead to the same lane and to no other, or where
+one of them ends. A lane that merely has no successor on the map may go on beyond it.
 """
 
 from __future__ import annotations
@@ -15,43 +16,65 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.scenario.recorded.recording import Lanelet
 
+_TAPERED = 0.6
+"""A lane that ends is narrower at its end than this part of what it was."""
+
+_RAMPS = frozenset({"accessRamp", "exitRamp"})
+"""Who joins from an acceleration lane gives way, and who leaves a road does not go on beside it."""
+
 
 def merge_signals(context: DriveContext) -> SignalColumns:
     """The signals of ego's place at narrowings, and of who is beside it there."""
     reach = context.thresholds.approach_m
     front, lane = context.ego_extents.s_max[0], context.ego_lane
-    narrowing, merged = np.zeros((2, context.states), dtype=bool)
-    abreast = np.zeros(context.relevant.shape, dtype=bool)
+    narrowing, merged, perhaps = np.zeros((3, context.states), dtype=bool)
+    abreast, perhaps_abreast = np.zeros((2, *context.relevant.shape), dtype=bool)
     level = relations.station(context) == relations.BESIDE
-    for place, right in _merges(context):
+    for place, right, sure in _merges(context):
         on_one = (lane == right) | (lane == right + 1)
         before = on_one & (front > place - reach) & (front <= place)
-        narrowing |= before
-        merged |= (front > place) & (front <= place + reach) & _was(before)
         other = np.where(lane == right, right + 1, right)
         there = np.take_along_axis(context.touched, other[None, :, None], axis=2)[..., 0]
-        abreast |= before & level & there & context.going_along
+        beside = before & level & there & context.going_along
+        if sure:
+            narrowing |= before
+            merged |= on_one & (front > place) & (front <= place + reach)
+            abreast |= beside
+        else:
+            perhaps |= on_one & (np.abs(front - place) <= reach)
+            perhaps_abreast |= beside
     return SignalColumns(
-        {"narrowing": narrowing, "merged": merged}, {"abreast_at_narrowing": abreast}
+        {"narrowing": narrowing, "merged": merged},
+        {"abreast_at_narrowing": abreast},
+        {
+            "narrowing": perhaps & ~narrowing,
+            "merged": perhaps & ~merged,
+            "abreast_at_narrowing": perhaps_abreast & ~abreast,
+        },
     )
 
 
-def _was(flags: relations.Codes) -> relations.Codes:
-    return np.maximum.accumulate(flags)
+def _merges(context: DriveContext) -> Iterator[tuple[float, int, bool]]:
+    """Places along the road at which a lane and the next one to the left become one.
 
-
-def _merges(context: DriveContext) -> Iterator[tuple[float, int]]:
-    """Places along the road at which a lane and the next one to the left become one."""
+    The last value is False where one of them may go on beyond the map.
+    """
     rows, borders = context.road.rows, context.road.borders
+    whole = "lanes" in context.recording.complete
     for piece, (row, after) in enumerate(pairwise(rows)):
+        onward = {lanelet.id for lanelet in after if lanelet is not None}
         for right, (one, other) in enumerate(pairwise(row)):
-            if one is not None and other is not None:
-                joins = set(one.successors) & set(other.successors)
-                ends = [x for x in (one, other) if not _goes_on(x)]
-                left_out = after[right] is None or after[right + 1] is None
-                if joins or (left_out and len(ends) == 1):
-                    yield float(borders[piece + 1]), right
+            if one is None or other is None or (one.types | other.types) & _RAMPS:
+                continue
+            ways = [set(lanelet.successors) & onward for lanelet in (one, other)]
+            if ways[0] == ways[1] and len(ways[0]) == 1:
+                yield float(borders[piece + 1]), right, True
+            elif sum(bool(way) for way in ways) == 1:
+                ends = one if not ways[0] else other
+                if not ends.successors:
+                    yield float(borders[piece + 1]), right, whole or _tapers(ends)
 
 
-def _goes_on(lanelet: Lanelet) -> bool:
-    return bool(lanelet.successors)
+def _tapers(lanelet: Lanelet) -> bool:
+    widths = np.hypot(*(lanelet.left[[0, -1]] - lanelet.right[[0, -1]]).T)
+    return bool(widths[1] < _TAPERED * widths[0])

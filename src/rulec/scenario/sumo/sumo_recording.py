@@ -37,8 +37,8 @@ from rulec.scenario.sumo.vehicle_types import VehicleType, read_vehicle_types, v
 from rulec.scenario.xml_element import short
 
 COMPLETE = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
-COMPLETE |= {"officer", "arrivals"}
-"""A net has every sign, light and track that its traffic obeys, and no officer at all.
+COMPLETE |= {"lanes", "officer", "arrivals"}
+"""A net has every lane, sign, light and track of its traffic, and no officer at all.
 
 Who is in the data no longer has arrived where it was going."""
 

@@ -4,7 +4,12 @@ from support.worlds.truths.crossing_truths import pedestrian_facts
 from support.worlds.truths.following_truths import following_facts
 from support.worlds.truths.light_truths import red_light_facts
 from support.worlds.truths.passing_truths import near_side_facts
-from support.worlds.truths.priority_truths import give_way_facts, right_facts, roundabout_facts
+from support.worlds.truths.priority_truths import (
+    give_way_facts,
+    oncoming_facts,
+    right_facts,
+    roundabout_facts,
+)
 from support.worlds.truths.speed_truths import speed_facts
 from support.worlds.truths.stop_truths import stop_facts
 
@@ -14,6 +19,7 @@ TRUTHS = {
     "following_distance": following_facts,
     "near_side_passing": near_side_facts,
     "junction_priority": right_facts,
+    "oncoming_priority": oncoming_facts,
     "give_way_sign": give_way_facts,
     "roundabout_priority": roundabout_facts,
     "stop_sign": stop_facts,

@@ -10,6 +10,7 @@ _BEHIND_S = 0.6
 _MOVING_MPS = 3.0
 _APART_M = WIDTH_M + 0.2
 _SIDEWAYS_DEG = (40.0, 140.0)
+_TOWARDS_DEG = (40.0, 50.0)
 
 
 def right_facts(world):
@@ -38,6 +39,28 @@ def roundabout_facts(world):
         if _on_ring(world, crossing.link.end) and not _on_ring(world, crossing.link.start):
             sure = grade and _on_ring(world, other.link.start)
             yield Fact(crossing.track.id, "roundabout_priority", *at, sure, other.track.id)
+
+
+def oncoming_facts(world):
+    """Who turns to the far side before one that comes towards it."""
+    far = "R" if world.net.lefthand else "L"
+    for crossing, other, grade, at in _conflicts(world):
+        across = crossing.link.turn.upper() == far and other.link.turn.upper() != far
+        side = abs(_comes_from(world, crossing.link, other.link))
+        if across and side < _TOWARDS_DEG[1] and not _at_red(world, other):
+            sure = grade and side < _TOWARDS_DEG[0]
+            own, _ = conflict_area(world.net, crossing.link, other.link)
+            # It is in the way when it gets there, which may be long after it entered
+            begin, end = _occupied(world, crossing, own)
+            span = at[0], max(at[1], end if np.isfinite(end) else begin)
+            yield Fact(crossing.track.id, "oncoming_priority", *span, sure, other.track.id)
+
+
+def _at_red(world, crossing):
+    """True if it has come past a red light."""
+    states = world.lights.get(crossing.link.light, {})
+    shown = states.get(crossing.track.step[crossing.row], "")
+    return bool(shown) and shown[crossing.link.light_index] == "r"
 
 
 def _conflicts(world):

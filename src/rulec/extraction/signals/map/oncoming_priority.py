@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-
-import numpy as np
+from math import radians
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
@@ -21,7 +20,7 @@ def turns_far(context: DriveContext, passage: Passage) -> bool:
     """True if a participant turns to the far side, or round."""
     towards_far = 1.0 if context.side == "right" else -1.0
     turned = context.surroundings.passages.way(passage).turned * towards_far
-    return turned > np.radians(context.thresholds.turned_deg)
+    return turned > radians(context.thresholds.turned_deg)
 
 
 def gives_way_to(context: DriveContext, own: Passage, other: Passage) -> bool:

@@ -278,7 +278,8 @@ def _leaves_at_latest(context: DriveContext, own: Passage) -> float:
     if column + 1 < tracks.present.shape[1] and tracks.present[own.row, column + 1]:
         return column
     line = passages.way(own).line
+    end = line.length + float(passages.lengths[own.row]) / 2
     place = shapely.Point(tracks.x[own.row, column], tracks.y[own.row, column])
-    left = line.length - line.project(place) + float(passages.lengths[own.row]) / 2
+    left = float(end - line.project(place))
     speed = max(float(tracks.speed[own.row, column]), _SLOWEST_MPS)
     return column + left / speed / context.recording.step_s

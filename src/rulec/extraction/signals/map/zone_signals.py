@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
@@ -17,6 +19,9 @@ from rulec.scenario.recorded.lane_coordinates import crossings_along
 
 _LIGHTS_AT_CROSSING_M = 30.0
 """A light whose line is so near before a pedestrian crossing directs it, too."""
+
+_BEFORE_LINE_M = 10.0
+"""On maps without stop lines crossings are up to so far before the ends of lanelets with lights."""
 
 _ROOM_M = 1.0
 Stretches = Sequence[tuple[float, float]]
@@ -75,20 +80,41 @@ def _crossing_kinds(context: DriveContext) -> SignalColumn:
     directed = [
         start for start, _ in crossings_along(only, road.line, road.lanes, 0.0, road.line.length)
     ]
-    lines = [
-        end
-        for row, end in zip(road.rows, road.borders[1:].tolist(), strict=True)
-        if any(lanelet.lights for lanelet in row if lanelet is not None)
-    ]
+    # A net says itself which crossings have lights
+    lit = () if "light" in context.recording.complete else _directed_stretches(context)
     kinds = {
         start: "directed_crossing"
         if any(abs(start - other) < 1.0 for other in directed)
-        or any(0 <= start - line <= _LIGHTS_AT_CROSSING_M for line in lines)
+        or any(low <= start <= high for low, high in lit)
         else "zebra"
         for start, _ in road.crossings
     }
     start, _ = next_crossing(context)
     return np.array([kinds.get(place, "zebra") for place in start.tolist()])
+
+
+def _directed_stretches(context: DriveContext) -> Stretches:
+    """From where to where on ego's road its lights direct those who cross, too.
+
+    From shortly before a light's line on, up to the roads behind the junction that it stands at.
+    """
+    road, stretches = context.road, []
+    for row, end in zip(road.rows, road.borders[1:].tolist(), strict=True):
+        lit = [lanelet for lanelet in row if lanelet is not None and lanelet.lights]
+        if lit:
+            drawn = lit[0].stop_line
+            place = np.nan
+            if drawn is not None:
+                place = float(road.line.coordinates(drawn.mean(axis=0)[None])[0, 0])
+            near = abs(place - end) <= _LIGHTS_AT_CROSSING_M
+            last = [
+                high + context.thresholds.side_road_m
+                for low, high in road.junctions
+                if low <= end + _LIGHTS_AT_CROSSING_M and high > end
+            ]
+            begin = place if near else end - _BEFORE_LINE_M
+            stretches.append((begin, max([end + _LIGHTS_AT_CROSSING_M, *last])))
+    return stretches
 
 
 def _at_edge(context: DriveContext) -> Flags:
@@ -103,18 +129,19 @@ def _exit_clear(context: DriveContext, places: Stretches) -> tuple[Flags, Flags]
     """Is there room for ego behind what it enters, and where is that unknown?
 
     There is none if the one ahead leaves too little behind the place where it is at that time, and
-    ego has to stand on it. Where the recording ends before ego is through it is unknown.
+    it makes ego stand on it. Where the recording ends before ego is through it is unknown. What ego
+    enters is the last place that it has got to, and before any the next one.
     """
     clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
-    own = context.ego_extents
+    own, size = context.ego_extents, context.ego_extents.s_max[0] - context.ego_extents.s_min[0]
     front, rear = own.s_max[0], own.s_min[0]
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     lanes = np.arange(context.touched.shape[-1])
     same = (context.touched & (lanes == context.ego_lane[None, :, None])).any(axis=-1)
     follows = same & context.going_along & (relations.station(context) == relations.BEHIND)
-    for start, end in places:
-        nears = (front >= start - context.thresholds.approach_m) & (rear < end)
-        if not nears.any():
+    entered = _entered(front, rear, places, context.thresholds.approach_m)
+    for number, (start, end) in enumerate(places):
+        if not (nears := entered == number).any():
             continue
         room = np.where(
             follows & (context.extents.s_max > end), context.extents.s_min - end, np.inf
@@ -122,11 +149,24 @@ def _exit_clear(context: DriveContext, places: Stretches) -> tuple[Flags, Flags]
         inside = follows & (context.extents.s_max <= end) & (context.extents.s_max > start)
         taken = np.where(inside, context.extents.s_max - context.extents.s_min + _ROOM_M, 0.0)
         free = room.min(axis=0, initial=np.inf) - taken.sum(axis=0)
-        short = free < own.s_max[0] - own.s_min[0] + _ROOM_M
-        on = (front > start) & (rear < end)
-        waits_later = np.maximum.accumulate((on & stands)[::-1])[::-1]
-        through = bool((rear >= end).any())
-        clear &= ~(nears & short & waits_later)
-        if not through:
-            unknown |= nears & short & ~waits_later
+        short = free < size + _ROOM_M
+        held = (front > start) & (rear < end) & stands & short
+        held_later = np.maximum.accumulate(held[::-1])[::-1]
+        clear &= ~(nears & short & held_later)
+        if not (rear >= end).any():
+            unknown |= nears & short & ~held_later
     return clear, unknown & clear
+
+
+def _entered(front: Floats, rear: Floats, places: Stretches, reach: float) -> NDArray[intp]:
+    """The number of the place that ego enters or is on, by state; -1 for none."""
+    entered = np.full(len(front), -1)
+    nearest = np.full(len(front), np.inf)
+    for number, (start, _) in enumerate(places):
+        ahead = (front <= start) & (front > start - reach) & (start < nearest)
+        entered, nearest = np.where(ahead, number, entered), np.where(ahead, start, nearest)
+    latest = np.full(len(front), -np.inf)
+    for number, (start, end) in enumerate(places):
+        on = (front > start) & (rear < end) & (start > latest)
+        entered, latest = np.where(on, number, entered), np.where(on, start, latest)
+    return entered

@@ -1,0 +1,146 @@
+"""Two lanes that become one 100 m along the road, and what merely looks so.
+
+Lanes are 4 m wide; the right one has its middle at y = 0, the left one at y = 4.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.merge_signals import merge_signals
+from rulec.extraction.tracks.mirror import mirrored_recording
+from support.builders.drive_contexts import context_of, steady
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+RIGHT, LEFT, ON = "1", "2", "3"
+
+
+def lanes(right=(3,), left=(3,), *more, right_types=(), right_width=4.0):
+    """Two lanes with their successors, and a lane behind the left one."""
+    return [
+        lanelet(
+            1,
+            [(0, 0), (50, 0), (100, 0)],
+            right_width,
+            left_of=2,
+            successors=right,
+            types=frozenset(right_types),
+        ),
+        straight(2, 0, 100, 4, right_of=1, successors=left),
+        straight(3, 100, 250, 4, predecessors=(2,)),
+        *more,
+    ]
+
+
+def signals(road, *others, xs=(40, 60, 90, 97, 99, 120, 147, 152), y=0.0, route=(LEFT, ON)):
+    """Ego's front is 2 m ahead of its middle; the same in the mirror."""
+    ego = vehicle(7, {k: (x, 4.0 if x > 100 else y) for k, x in enumerate(xs)})
+    found = recording(road, [ego, *others])
+    right = merge_signals(context_of(found, route))
+    left = merge_signals(context_of(mirrored_recording(found), route, "left"))
+    for name in ("narrowing", "merged"):
+        assert right.world[name].tolist() == left.world[name].tolist()
+        assert right.unknown[name].tolist() == left.unknown[name].tolist()
+    abreast = (right, left)
+    assert len({str(one.about["abreast_at_narrowing"].tolist()) for one in abreast}) == 1
+    return right
+
+
+BEFORE = [False, True, True, True, False, False, False, False]
+AFTER = [False, False, False, False, True, True, True, False]
+
+
+@pytest.mark.parametrize("y", [0.0, 4.0], ids=["right", "left"])
+def test_two_lanes_that_lead_to_one(y):
+    # Fronts are at 42, 62, 92, 99, 101, 122, 149 and 154: 50 m before and beyond 100
+    found = signals(lanes(), y=y)
+    assert found.world["narrowing"].tolist() == BEFORE
+    assert found.world["merged"].tolist() == AFTER
+    assert not found.unknown["narrowing"].any()
+
+
+def test_a_lane_that_gets_narrow_and_ends():
+    found = signals(lanes(right=(), right_width=[4.0, 4.0, 0.5]), y=4.0)
+    assert found.world["narrowing"].tolist() == BEFORE
+    assert found.world["merged"].tolist() == AFTER
+
+
+def test_a_lane_that_may_go_on_beyond_the_map():
+    # It is as wide at the map's end as before: it may lead to a ramp that nobody has drawn
+    found = signals(lanes(right=()), y=4.0)
+    assert not found.world["narrowing"].any()
+    near = [False, True, True, True, True, True, True, False]
+    assert found.unknown["narrowing"].tolist() == near
+    assert found.unknown["merged"].tolist() == near
+
+
+def test_where_a_net_has_all_lanes_that_one_ends():
+    road = lanes(right=())
+    ego = vehicle(7, {0: (80, 4), 1: (90, 4)})
+    found = replace(recording(road, [ego]), complete=frozenset({"lanes"}))
+    told = merge_signals(context_of(found, (LEFT, ON)))
+    assert told.world["narrowing"].all()
+    assert not told.unknown["narrowing"].any()
+
+
+@pytest.mark.parametrize(
+    "road",
+    [
+        # The right lane leads off the road
+        lanes(
+            (9,),
+            (3,),
+            lanelet(9, [(100, 0), (150, -40)], predecessors=(1,)),
+        ),
+        # From either lane one gets to both
+        [
+            straight(1, 0, 100, 0, left_of=2, successors=(3, 9)),
+            straight(2, 0, 100, 4, right_of=1, successors=(3, 9)),
+            straight(3, 100, 250, 4, predecessors=(1, 2), right_of=9),
+            straight(9, 100, 250, 0, predecessors=(1, 2), left_of=3),
+        ],
+        # Both may leave, one alone goes on
+        lanes((9,), (3, 9), lanelet(9, [(100, 0), (150, -40)], predecessors=(1, 2))),
+        lanes(right_types=("accessRamp",)),
+        lanes((), right_width=[4.0, 4.0, 0.5], right_types=("exitRamp",)),
+    ],
+    ids=["a ramp", "all to all", "an exit from both", "an entry", "an exit that ends"],
+)
+def test_no_narrowing(road):
+    found = signals(road, y=4.0)
+    assert not found.world["narrowing"].any()
+    assert not found.world["merged"].any()
+    assert not found.unknown["narrowing"].any()
+
+
+def test_a_third_lane_has_nothing_to_do_with_it():
+    road = [
+        *lanes()[:1],
+        straight(2, 0, 100, 4, right_of=1, left_of=4, successors=(3,)),
+        straight(4, 0, 100, 8, right_of=2, successors=(5,)),
+        straight(3, 100, 250, 4, predecessors=(1, 2), left_of=5),
+        straight(5, 100, 250, 8, predecessors=(4,), right_of=3),
+    ]
+    ego = vehicle(7, {0: (80, 8), 1: (90, 8), 2: (110, 8)})
+    told = merge_signals(context_of(recording(road, [ego]), ("4", "5")))
+    assert not told.world["narrowing"].any()
+    assert not told.world["merged"].any()
+
+
+def test_who_is_abreast():
+    beside = steady(1, 62, 4, 0, steps=8)
+    ahead = steady(2, 97, 4, 0, steps=8)
+    same = steady(3, 92, 0, 0, steps=8)
+    found = signals(lanes(), beside, ahead, same)
+    # Middles of 4 m long bodies: ego is at 60 in state 1, at 97 and 99 in states 3 and 4, and from
+    # there on beyond the narrowing
+    abreast = found.about["abreast_at_narrowing"]
+    assert [np.flatnonzero(row).tolist() for row in abreast] == [[1], [3], []]
+
+
+def test_a_drive_of_one_state_and_one_that_begins_beyond():
+    assert signals(lanes(), xs=(90,)).world["narrowing"].tolist() == [True]
+    found = signals(lanes(), xs=(120, 152))
+    assert found.world["merged"].tolist() == [True, False]
+    assert not found.world["narrowing"].any()

@@ -1,0 +1,182 @@
+"""What ego drives through: the room behind it, who directs a crossing, level crossings, tracks.
+
+The junction reaches from x = 100 to 120; bodies are 4 m long, so room for ego are 5 m.
+"""
+
+from dataclasses import replace
+
+import pytest
+
+from rulec.extraction.signals.map.zone_signals import zone_signals
+from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.scenario.recorded.recording import Light
+from support.builders.drive_contexts import context_of
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+INSIDE = frozenset({"intersection"})
+RED = (Light(0, (("red", 9),)),)
+
+
+def road(before=None, inside=None, *more):
+    return [
+        straight(1, 0, 100, successors=(2,), **(before or {})),
+        straight(2, 100, 120, predecessors=(1,), successors=(3,), **(inside or {"types": INSIDE})),
+        straight(3, 120, 300, predecessors=(2,)),
+        *more,
+    ]
+
+
+def zebra(x, number=9, kinds=(), **more):
+    types = frozenset({"crosswalk", *kinds})
+    return lanelet(number, [(x, -6), (x, 6)], width=4, types=types, **more)
+
+
+def going(number, xs, y=0.0, **more):
+    return vehicle(number, {k: (x, y) for k, x in enumerate(xs)}, **more)
+
+
+def told(lanes, *bodies, complete=(), **more):
+    """The signals, which are the same in the mirror."""
+    found = replace(recording(lanes, bodies), complete=frozenset(complete), **more)
+    right = zone_signals(context_of(found, ("1", "2", "3")))
+    left = zone_signals(context_of(mirrored_recording(found), ("1", "2", "3"), "left"))
+    for name, column in right.world.items():
+        assert column.tolist() == left.world[name].tolist(), name
+    return right
+
+
+def exit_clear(lanes, ego, *others):
+    found = told(lanes, going(7, ego), *others)
+    unknown = found.unknown["exit_clear"].tolist()
+    values = found.world["exit_clear"].tolist()
+    return ["?" if u else v for u, v in zip(unknown, values, strict=True)]
+
+
+# Fronts are 2 m ahead: ego is in the junction from state 1 on, and stands in it in state 3, speeds
+# being means over a second
+STOPS = (90, 105, 112, 112, 112, 120, 140)
+
+
+def test_ego_stands_behind_one_that_leaves_no_room():
+    # Its rear is at 123, 3 m behind the junction
+    queue = going(8, (125, 125, 125, 125, 125, 140, 160))
+    assert exit_clear(road(), STOPS, queue) == [False] * 4 + [True] * 3
+
+
+def test_one_that_moves_on_in_time_leaves_room():
+    queue = going(8, (125, 125, 130, 140, 150, 160))
+    assert exit_clear(road(), (90, 100, 110, 120, 130, 140), queue) == [True] * 6
+
+
+def test_ego_stands_in_the_junction_for_another_reason():
+    """The one ahead was near behind the junction, and is far away when ego stands."""
+    ahead = going(8, (115, 125, 145, 165, 185, 205, 225))
+    assert exit_clear(road(), STOPS, ahead) == [True] * 7
+
+
+def test_a_queue_within_the_junction_takes_the_room_behind_it():
+    # Room behind the junction: 131 - 120 = 11 m, less 5 m for each of the two that are in it
+    queue = [going(8, (133,) * 6), going(9, (118,) * 6), going(10, (113,) * 6)]
+    ego = (90, 103, 108, 108, 108, 108)
+    assert exit_clear(road(), ego, *queue) == [False] * 6
+    # With one of them only there is room enough, whatever ego waits for
+    assert exit_clear(road(), ego, queue[0], queue[1]) == [True] * 6
+
+
+def test_a_queue_on_the_lane_beside_is_not_ahead():
+    lanes = road()
+    lanes[2] = replace(lanes[2], left_of="5")
+    lanes.append(straight(5, 120, 300, 4, right_of=3))
+    assert exit_clear(lanes, STOPS, going(8, (125,) * 7, 4.0)) == [True] * 7
+
+
+def test_a_recording_that_ends_before_ego_is_through():
+    queue = going(8, (125, 125))
+    assert exit_clear(road(), (90, 105), queue) == ["?", "?"]
+    assert exit_clear(road(), (90, 105)) == [True, True]
+    assert exit_clear(road(), (90,), going(8, (125,))) == ["?"]
+
+
+def test_what_ego_enters_is_not_the_crossing_behind_it():
+    """Ego stands on the crossing at 124 to 128, and has left the junction by then."""
+    lanes = road(None, None, zebra(126))
+    queue = going(8, (133,) * 6)
+    # Fronts are at 92, 107, 120 and 129: what ego enters is the crossing when it gets to it
+    found = exit_clear(lanes, (90, 105, 118, 127, 127, 127), queue)
+    assert found == [True, True, True, False, False, False]
+
+
+def test_a_crossing_before_the_junction_is_another_place():
+    """Ego stands with its front in the junction and its rear on the crossing at 94 to 98."""
+    lanes = road(None, None, zebra(96))
+    inside = going(8, (104,) * 6 + (120,))
+    # Fronts are at 82, 92, 99, 99, 99, 101 and 107. The room behind the crossing is 4 m, less than ego
+    # needs; behind the junction there is room enough
+    found = exit_clear(lanes, (80, 90, 97, 97, 97, 99, 105), inside)
+    assert found == [False] * 4 + [True] * 3
+
+
+def kind(lanes, *, complete=(), x=40.0):
+    (word,) = set(told(lanes, going(7, (x, x)), complete=complete).world["crossing_kind"])
+    return str(word)
+
+
+@pytest.mark.parametrize(
+    ("lanes", "word"),
+    [
+        (road(None, None, zebra(60)), "zebra"),
+        (road(None, None, zebra(60, lights=RED)), "directed_crossing"),
+        (road(None, None, zebra(60, kinds=["directed"])), "directed_crossing"),
+        # Ego's light is at 100: a crossing in the lanelet's last metres, behind the line, and at
+        # the far end of the junction are directed, one long before it is not
+        (road({"lights": RED}, None, zebra(60)), "zebra"),
+        (road({"lights": RED}, None, zebra(95)), "directed_crossing"),
+        (road({"lights": RED}, None, zebra(110)), "directed_crossing"),
+        (road({"lights": RED}, None, zebra(130)), "directed_crossing"),
+        (road({"lights": RED}, None, zebra(160)), "zebra"),
+    ],
+)
+def test_who_directs_a_crossing(lanes, word):
+    assert kind(lanes) == word
+
+
+def test_a_line_drawn_before_the_crossing_tells_where_the_light_s_reach_begins():
+    line = [(80, -2), (80, 2)]
+    before = {"lights": RED, "stop_line": lanelet(0, line).centre}
+    assert kind(road(before, None, zebra(85))) == "directed_crossing"
+    assert kind(road(before, None, zebra(75))) == "zebra"
+
+
+def test_a_net_says_which_crossings_have_lights():
+    lanes = road({"lights": RED}, None, zebra(110))
+    assert kind(lanes, complete=["light"]) == "zebra"
+
+
+def test_without_a_crossing_the_kind_is_the_usual_one():
+    assert kind(road()) == "zebra"
+
+
+def test_level_crossings_are_those_of_the_map():
+    rails = road(None, {"types": frozenset({"level_crossing"})})
+    xs = (92, 94, 97, 99, 118, 123)
+    found = told(rails, going(7, xs)).world
+    # Fronts are at 94, 96, 99, 101, 120 and 125, rears 4 m behind
+    assert found["level_crossing_zone"].tolist() == [False, True, True, True, True, False]
+    assert found["enters_level_crossing"].tolist() == [False, False, False, True, False, False]
+    assert found["guarded"].tolist() == found["level_crossing_zone"].tolist()
+    assert "level_crossing_zone" not in told(road(), going(7, xs)).world
+    free = told(road(), going(7, xs), complete=["rail"]).world
+    assert not free["level_crossing_zone"].any()
+    assert not free["enters_level_crossing"].any()
+
+
+def test_tracks_beside_the_lane_at_the_kerb():
+    rail = frozenset({"rail", "restricted_area"})
+    lanes = road({"right_of": 8})
+    lanes.append(straight(8, 0, 100, -4, left_of=1, types=rail))
+    found = told(lanes, going(7, (90, 105)), complete=["rail"]).world
+    assert found["tracks_at_kerb"].tolist() == [True, False]
+    # On the far side they leave room to pass at the kerb's side
+    lanes = road({"left_of": 8})
+    lanes.append(straight(8, 0, 100, 4, right_of=1, types=rail))
+    assert not told(lanes, going(7, (90, 105)), complete=["rail"]).world["tracks_at_kerb"].any()
