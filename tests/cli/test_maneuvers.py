@@ -578,3 +578,51 @@ def test_strict_wants_a_maneuver_that_keeps_every_rule_for_sure(tmp_path, capsys
     about = [str(file), "-r", str(rules)]
     assert answer(capsys, *about)[0] == 0
     assert answer(capsys, *about, "--strict")[0] == 1
+
+
+def test_what_is_assumed_holds_where_the_scenario_does_not_tell(tmp_path, capsys):
+    def counts(signals, *options):
+        file = tmp_path / "dark.toml"
+        file.write_text(DARK.replace('CONGESTED = "?"', signals), encoding="utf-8")
+        arguments = [str(file), "-r", "esterle2019", "--json", *options]
+        found = json.loads(answer(capsys, *arguments)[1])
+        dark = [rule["rule"] for rule in found["not_judged"]]
+        return found["satisfying"], found["open"], found["unknown"], dark
+
+    yes, no = counts("CONGESTED = true"), counts("CONGESTED = false")
+    assert yes[0] > no[0]
+    for given in ("", 'CONGESTED = "?"'):
+        assert counts(given, "--assume", "CONGESTED=true") == yes
+        assert counts(given, "--assume", "CONGESTED=false", "--told-only") == no
+        assert counts(given, "--assume", "defaults") == no
+    assert counts("CONGESTED = true", "--assume", "CONGESTED=false", "--told-only") == yes
+    assert counts("") == no
+    assert counts('CONGESTED = "?"') == (no[0], yes[0] - no[0], ["CONGESTED"], [])
+    assert counts("", "--told-only")[2:] == (["CONGESTED"], ["R1"])
+
+
+def test_where_nothing_can_be_judged_there_is_no_answer(capsys):
+    status, out, _ = answer(capsys, "s2", "-r", "vienna", "--told-only")
+    assert status == 2
+    assert "satisfying  not known: no hard rule of vienna can be judged" in out.splitlines()
+
+
+def test_told_only_contradicts_defaults(capsys):
+    status, _, err = answer(
+        capsys, "s2", "-r", "esterle2019", "--told-only", "--assume", "defaults"
+    )
+    assert status == 2
+    assert "opposite" in err
+
+
+@pytest.mark.parametrize("ending", ["jsonl", "csv", "parquet"])
+def test_traces_of_what_is_not_known_have_the_same_verdicts(tmp_path, capsys, ending):
+    file, traces = tmp_path / "dark.toml", tmp_path / f"dark.{ending}"
+    file.write_text(DARK, encoding="utf-8")
+    found = find_maneuvers(file, "esterle2019", horizon_s=2)
+    about = [str(file), "-r", "esterle2019", "--horizon", "2"]
+    assert main(["traces", *about, "-o", str(traces)]) == 0
+    capsys.readouterr()
+    main(["verify", str(traces), "-r", "esterle2019", "--json"])
+    verdicts = [json.loads(line)["satisfied"] for line in capsys.readouterr().out.splitlines()]
+    assert (verdicts.count(True), verdicts.count(None)) == (found.satisfying, found.open) == (4, 1)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from rulec.api.rulebook_compilation import Rules
+    from rulec.monitoring.assumptions import Assumptions
     from rulec.partition import Envelope, GraphOptions, NavigationGraph
     from rulec.planning import Maneuvers
     from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
@@ -49,19 +50,25 @@ class ScenarioVerbs(SessionSettings):
         rules: Rules,
         *,
         after: Before | None = None,
+        assumptions: Assumptions | None = None,
+        told_only: bool = False,
         **options: Unpack[GraphOptions],
     ) -> Maneuvers:
         """Count the maneuvers that keep every hard rule, without enumerating them.
 
         ``after`` is what was before, up to one step before the scenario begins: a trace, a
         ``Monitor``, or its snapshot. Without a ``partition`` it is the one whose relations the
-        rules read. Source: algorithm 1 of the paper. Raises RulecError.
+        rules read. The ``assumptions`` are about what the scenario leaves unknown or does not
+        mention; what else it does not mention has its default, or with ``told_only`` is unknown.
+        Source: algorithm 1 of the paper. Raises RulecError.
         """
-        from rulec.planning import evaluate, partition_for
+        from rulec.monitoring.assumptions import Assumptions
+        from rulec.planning import SceneReading, evaluate, partition_for
 
+        reading = SceneReading(assumptions or Assumptions(), told_only)
         compiled = self._compiled(rules)
         options["partition"] = partition_for(compiled, options.get("partition"))
-        return evaluate(self.navigation_graph(scenario, **options), compiled, after)
+        return evaluate(self.navigation_graph(scenario, **options), compiled, after, reading)
 
     def envelope(self, graph: NavigationGraph, nodes: Sequence[int]) -> Sequence[Envelope]:
         """The bounds of a maneuver by layer. Raises RulecError R0609 without path."""

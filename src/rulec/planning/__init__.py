@@ -3,6 +3,13 @@
 from rulec.planning.maneuvers import Maneuvers, evaluate
 from rulec.planning.ranking.least_violating import RankedManeuver
 from rulec.planning.ranking.pruning import RulePruning
-from rulec.planning.rule_instances import partition_for
+from rulec.planning.rule_instances import SceneReading, partition_for
 
-__all__ = ["Maneuvers", "RankedManeuver", "RulePruning", "evaluate", "partition_for"]
+__all__ = [
+    "Maneuvers",
+    "RankedManeuver",
+    "RulePruning",
+    "SceneReading",
+    "evaluate",
+    "partition_for",
+]

@@ -26,7 +26,7 @@ from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_clas
 from rulec.planning.ranking.least_violating import RankedManeuver, front, ranked, with_penalty
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
 from rulec.planning.ranking.pruning import Blaming, RulePruning, violating, violating_alone
-from rulec.planning.rule_instances import bind_rules, in_rule_words, past_for
+from rulec.planning.rule_instances import SceneReading, bind_rules, in_rule_words, past_for
 from rulec.trace import TraceGraph
 from rulec.trace.trace_model import trace_of
 from rulec.value_display import Rows, short_count
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from rulec.planning.trace_history import Before
 
 Item = TypeVar("Item")
+
+AS_WRITTEN = SceneReading()
 
 MOST_BEST = 100
 """Levels that are not comparable can leave any number of maneuvers that none is better than."""
@@ -50,7 +52,8 @@ class Maneuvers(Rows):
     ``possible`` about what is not violated for sure; where all is known they are the same.
     ``after`` is the past, None if there was none. ``violated_before`` are
     the hard rules that it has violated for good; nothing of that counts against a maneuver.
-    ``not_judged`` are rules that no maneuver can be known to violate.
+    ``not_judged`` are rules that no maneuver can be known to violate. ``reading`` says what holds
+    where the scenario does not tell.
     """
 
     graph: NavigationGraph
@@ -64,6 +67,7 @@ class Maneuvers(Rows):
     after: Before | None = None
     violated_before: tuple[Violation, ...] | None = None
     not_judged: tuple[RuleNotJudged, ...] = ()
+    reading: SceneReading = AS_WRITTEN
 
     def __repr__(self) -> str:
         counts = f"{short_count(self.satisfying)} of {short_count(self.traces)}"
@@ -78,6 +82,12 @@ class Maneuvers(Rows):
     def open(self) -> int:
         """Number of further maneuvers of which no hard rule is known to be violated."""
         return self.possible.accepted - self.product.accepted
+
+    @property
+    def judges(self) -> bool:
+        """Whether some hard rule can be judged, if there is any."""
+        hard = {rule.name for rule in self.rules.rules if rule.strength == "hard"}
+        return not hard or not hard <= {rule.rule for rule in self.not_judged}
 
     @property
     def exact(self) -> bool:
@@ -248,16 +258,20 @@ def _first(n: int, items: Iterator[Item]) -> list[Item]:
 
 
 def evaluate(
-    graph: NavigationGraph, rules: CompiledRulebook, after: Before | None = None
+    graph: NavigationGraph,
+    rules: CompiledRulebook,
+    after: Before | None = None,
+    reading: SceneReading = AS_WRITTEN,
 ) -> Maneuvers:
     """Count a graph's paths, and those that keep every hard rule.
 
-    ``after`` has led up to the first layer. Raises RulecError: R0502 to R0505 if the graph does not
+    ``after`` has led up to the first layer, ``reading`` says what holds where the scenario does not
+    tell. Raises RulecError: R0502 to R0505 if the graph does not
     supply what the rules read, R0507 if a hard rule was compiled for another step; R0501 to R0511
     if ``after`` is no such past.
     """
     rules = rules.fitted_to(graph.step)
-    paths = in_rule_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary)
+    paths = in_rule_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary, reading)
     past = past_for(graph, paths, rules, HARD, after)
     bound = bind_rules(graph, paths, rules, HARD, past)
     hard = perhaps = node_transformers(paths, bound)
@@ -277,4 +291,5 @@ def evaluate(
         after=after,
         violated_before=None if after is None else past.violations,
         not_judged=tuple(not_judged(paths, rules, past)),
+        reading=reading,
     )

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.logic.free_names import names_in
+from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.verdict import NO_PAST, CarriedState
 from rulec.planning.planning_messages import TWO_PARTITIONS
 from rulec.planning.product.graph_instance import GraphInstance
 from rulec.planning.product.graph_instances import instances
 from rulec.rulebook.rulebook_model import Strength
-from rulec.trace import TraceGraph
+from rulec.trace import Trace, TraceGraph
 from rulec.trace.vocabulary_projection import project_graph
 from rulec.vocabulary import Vocabulary
 
@@ -31,7 +32,7 @@ RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {
 }
 """The relations that only one partition supplies."""
 
-SUPPLIED = {"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]}
+SUPPLIED = frozenset({"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]})
 """The names that partitions supply."""
 
 
@@ -69,17 +70,50 @@ def partition_for(
     return requested or ("fine" if declares_fine else "paper")
 
 
+NOTHING_ASSUMED = Assumptions()
+
+
+@dataclass(frozen=True, slots=True)
+class SceneReading:
+    """What holds of a scenario where it does not tell.
+
+    The assumed values hold of what it leaves unknown or does not mention. What else it does not
+    mention has its default or, with ``told_only``, is unknown.
+    """
+
+    assumptions: Assumptions = NOTHING_ASSUMED
+    told_only: bool = False
+
+    def of(self, graph: TraceGraph) -> TraceGraph:
+        """The graph as it is read."""
+        if not self.assumptions and not self.told_only:
+            return graph
+        told = SUPPLIED.union(name for layer in graph.states for state in layer for name in state)
+        traces = [
+            self.assumptions.applied(
+                Trace("", graph.step_s, graph.objects, layer, ends="complete", told=told)
+            )
+            for layer in graph.states
+        ]
+        # Without layers nothing would be told.
+        told = told.union(self.assumptions.values)
+        told_only = self.told_only and not self.assumptions.defaults
+        states = tuple([trace.states for trace in traces])
+        return replace(graph, states=states, told=told if told_only else None)
+
+
 def in_rule_words(
     graph: NavigationGraph,
     traces: TraceGraph,
     obstacles: Mapping[str, Obstacle],
     vocabulary: Vocabulary,
+    reading: SceneReading,
 ) -> TraceGraph:
     """Traces of paths through a graph, about these obstacles, in the words of a vocabulary."""
     recorded = None
     if graph.scenario.account is not None:
         recorded = {name: (own.type, *own.broader) for name, own in obstacles.items()}
-    return project_graph(traces, vocabulary, SUPPLIED, recorded)
+    return reading.of(project_graph(traces, vocabulary, SUPPLIED, recorded))
 
 
 def past_for(

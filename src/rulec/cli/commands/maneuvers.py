@@ -10,14 +10,14 @@ import click
 
 import rulec
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.scenario_options import graph_options, read_scene
 from rulec.cli.output import errors_told, read_machines
 from rulec.report.text.console import print_result
 
 
 @click.command()
-@graph_options
+@scenario_options.graph_options
 @shared.rulebook_option()
 @shared.number_option("--list", "n_listed", "List the N cheapest satisfying maneuvers.")
 @shared.number_option(
@@ -48,6 +48,19 @@ from rulec.report.text.console import print_result
     "What was before: a file with one trace, or a monitor that was saved (.json).",
 )
 @click.option(
+    "--assume",
+    "assumed",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="What holds wherever the scenario does not tell, such as built_up=true; or `defaults`: "
+    "what it says is unknown has its default.",
+)
+@click.option(
+    "--told-only",
+    is_flag=True,
+    help="What the scenario does not mention is unknown, instead of having its default.",
+)
+@click.option(
     "--strict", is_flag=True, help="Exit with 1 if no maneuver keeps every hard rule for sure."
 )
 @shared.json_option
@@ -61,6 +74,8 @@ def command(
     n_classes: int | None,
     worlds: bool,
     after: Path | None,
+    assumed: tuple[str, ...],
+    told_only: bool,
     strict: bool,
     json_output: bool,
     at: str,
@@ -77,7 +92,7 @@ def command(
     may keep them open; the list has both, and ranks suppose the worst.
 
     Exit status: 0 there is a satisfying or an open maneuver, 1 there is none, 2 it could not be
-    answered.
+    answered, or no hard rule be judged.
     """
     # Maneuvers, 130 ms: not for --help.
     from rulec.planning.probability.rule_probability import alternative_counts, rule_probabilities
@@ -87,8 +102,13 @@ def command(
     begin = time.perf_counter()
     rules = read_machines(rulebook, at)
     past = None if after is None else read_past(after)
-    scene = read_scene(scenario, options)
-    maneuvers = rulec.find_maneuvers(scene, rules, after=past, **options)
+    if told_only and "defaults" in assumed:
+        raise click.UsageError("--told-only and --assume defaults say the opposite of each other.")
+    assumptions = scenario_options.assumptions(None, assumed, rules.vocabulary)
+    scene = scenario_options.read_scene(scenario, options)
+    maneuvers = rulec.find_maneuvers(
+        scene, rules, after=past, assumptions=assumptions, told_only=told_only, **options
+    )
     listed = None if n_listed is None else maneuvers.cheapest(n_listed, perhaps=True)
     best = None
     legal = maneuvers.satisfying + maneuvers.open
@@ -121,4 +141,4 @@ def command(
     else:
         print_result(as_text(maneuvers, answers, seconds))
     kept = maneuvers.satisfying if strict else legal
-    return ExitStatus.OK if kept else ExitStatus.VIOLATED
+    return ExitStatus.after(answered=maneuvers.judges, failed=not kept)

@@ -67,6 +67,7 @@ def command(
     if option := scenario_options.given_drives_option(about):
         raise click.UsageError(f"{option} is for drives: add --recorded.")
     # Maneuvers and the formats of traces, 130 ms: not for --help, and not for recordings.
+    from rulec.monitoring.state_validation import partial_names
     from rulec.planning.product.graph_product import count_paths
     from rulec.trace.formats.trace_files import format_of, kinds_in, write_traces
     from rulec.trace.trace_model import all_traces
@@ -88,8 +89,9 @@ def command(
         traces = _counted_aloud(all_traces(graph, scene.name, wanted), tell)
         form = form or format_of(str(output))
         kinds = kinds_in(chain.from_iterable(graph.states))
+        partial = graph.told is not None or bool(partial_names(chain.from_iterable(graph.states)))
         with output_stream(output) as (stream, name):
-            write_traces(traces, stream, name, form, kinds)
+            write_traces(traces, stream, name, form, kinds, partial=partial)
     print_written(f"{wanted:,} of {shown_count(total)} traces to {output}", output)
 
 

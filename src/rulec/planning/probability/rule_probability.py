@@ -155,7 +155,8 @@ def _counts(maneuvers: Maneuvers, obstacle: str, number: int) -> tuple[int, int,
     traces = world_graph(graph, world)
     if traces is None:
         return 0, 0, 0
-    paths = in_rule_words(graph, traces, named_in(graph, world), rules.vocabulary)
+    obstacles = named_in(graph, world)
+    paths = in_rule_words(graph, traces, obstacles, rules.vocabulary, maneuvers.reading)
     past = past_for(graph, paths, rules, HARD, maneuvers.after)
     bound = bind_rules(graph, paths, rules, HARD, past)
     kept = explore(node_transformers(paths, bound)).accepted

@@ -47,9 +47,8 @@ class ViolationEvents:
         self._perhaps = perhaps
         self._path = path
         obstacles = {name: predicted.obstacle for name, predicted in path.predicted.items()}
-        self._words = in_rule_words(
-            maneuvers.graph, path.traces, obstacles, maneuvers.rules.vocabulary
-        )
+        vocabulary, reading = maneuvers.rules.vocabulary, maneuvers.reading
+        self._words = in_rule_words(maneuvers.graph, path.traces, obstacles, vocabulary, reading)
         self._states = [state for (state,) in self._words.states]
         self._past = past_for(
             maneuvers.graph, maneuvers.paths, maneuvers.rules, (*HARD, *SOFT), maneuvers.after

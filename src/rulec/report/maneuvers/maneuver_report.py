@@ -68,8 +68,13 @@ def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[A
 def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
     """Write the counts, and a block for each maneuver asked for."""
     graph, rules = maneuvers.graph, maneuvers.rules
-    names = ", ".join(rule.name for rule in rules.rules if rule.strength == "hard")
+    dark = {rule.rule for rule in maneuvers.not_judged}
+    hard = [rule.name for rule in rules.rules if rule.strength == "hard"]
+    names = ", ".join(name for name in hard if name not in dark)
     by = f"{rules.name} ({names or 'no hard rules'})" if len(names) <= 60 else rules.name
+    satisfying = f"{styled(shown_count(maneuvers.satisfying), 'bold')} by {by}"
+    if not maneuvers.judges:
+        satisfying = f"not known: no hard rule of {rules.name} can be judged"
     horizon = f"{horizon_s(graph):g} s in steps of {graph.step_s:g} s"
     how = f"partition {graph.partition}, adjacency {graph.adjacency}"
     how += f", extent {graph.extent}" if graph.extent != "lane" else ""
@@ -81,7 +86,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
         f"maneuvers   {shown_count(maneuvers.traces)}",
         *_shut_in(maneuvers),
-        f"satisfying  {styled(shown_count(maneuvers.satisfying), 'bold')} by {by}",
+        f"satisfying  {satisfying}",
         *_doubts(maneuvers),
         *_violated_before(maneuvers.violated_before or ()),
         *([visible(by_default)] if maneuvers.by_default else []),
@@ -111,14 +116,16 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
 
 def _doubts(maneuvers: Maneuvers) -> Iterator[str]:
     """What not all being known comes to."""
-    if maneuvers.unknown:
+    if maneuvers.unknown and maneuvers.judges:
         more = "" if maneuvers.exact else ", or fewer: there was too much to look at"
         yield f"open        {styled(shown_count(maneuvers.open), 'bold')} more{more}"
+    if maneuvers.unknown:
         names = first_of(maneuvers.unknown, MOST_DEFAULTS)
         yield visible(f"unknown     {names}: not, or not exactly, known")
     if maneuvers.not_judged:
-        rules = first_of([rule.rule for rule in maneuvers.not_judged], MOST_DEFAULTS)
-        yield visible(f"not judged  {rules}: nothing tells what they read")
+        dark = first_of([rule.rule for rule in maneuvers.not_judged], MOST_DEFAULTS)
+        number = f"{len(maneuvers.not_judged)} of {len(maneuvers.rules.rules)} rules"
+        yield visible(f"not judged  {number}, for want of what they read: {dark}")
 
 
 def _scene(maneuvers: Maneuvers) -> Iterator[str]:
