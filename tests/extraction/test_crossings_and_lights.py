@@ -148,6 +148,17 @@ def test_a_stop_sign():
     assert "stop_sign" not in violated(stops, GERMAN)["7"]
 
 
+@pytest.mark.parametrize(("mps", "sure"), [(10.0, True), (5.0, False)])
+def test_who_comes_fast_has_not_stopped_before_the_recording_either(mps, sure):
+    """Who creeps from the first state on may have stood at the line just before it."""
+    lanes = [
+        straight(1, 0, 100, signs=frozenset({"STOP"}), successors=("2",)),
+        straight(2, 100, 300, predecessors=("1",)),
+    ]
+    found = recording(lanes, [going(7, 90, mps)])
+    assert ("stop_sign" in violated(found, GERMAN, defaults=False)["7"]) is sure
+
+
 def test_a_junction():
     # 1 and 2 lead straight on; 5 crosses 2 at a right angle
     lanes = [

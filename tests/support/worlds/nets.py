@@ -7,7 +7,10 @@ import subprocess
 from pathlib import Path
 
 USUAL_MPS, SLOW_MPS = 13.89, 8.33
+TOWN, COUNTRY = "highway.residential", "highway.secondary"
+"""Types of roads: what the net tells of where they are, which of the latter is nothing."""
 _GENERATED = ("--no-turnarounds", "--no-warnings", "--default.speed", f"{USUAL_MPS}")
+_GENERATED += ("--default.type", TOWN)
 _GREEN_S, _ALL_RED_S = 14, 2
 
 
@@ -120,7 +123,7 @@ def _priority(kind):
         tilt = pick.uniform(-25, 25)
         nodes = [f'id="w" x="{-gap}" y="0"', f'id="e" x="{2 * gap}" y="0"']
         edges = []
-        what = f'numLanes="1" speed="{USUAL_MPS}"'
+        what = f'numLanes="1" speed="{USUAL_MPS}" type="{COUNTRY}"'
         for name, x in (("a", 0), ("b", gap)):
             nodes.append(f'id="{name}" x="{x}" y="0" type="{kind}"')
             nodes.append(f'id="n{name}" x="{x + tilt}" y="{length}"')
@@ -137,19 +140,21 @@ def _priority(kind):
 def _roundabout(pick, lefthand):
     """Four roads that lead to a ring."""
     radius, length = pick.randrange(16, 24), pick.randrange(110, 140)
-    nodes, edges, names = [], [], ["e", "n", "w", "s"]
+    nodes, edges, names, town = [], [], ["e", "n", "w", "s"], f'type="{TOWN}"'
     for k, name in enumerate(names):
         turn = math.radians(90 * k + pick.uniform(-10, 10))
         x, y = math.cos(turn), math.sin(turn)
         nodes.append(f'id="r{name}" x="{radius * x:.2f}" y="{radius * y:.2f}" type="priority"')
         nodes.append(f'id="{name}" x="{length * x:.2f}" y="{length * y:.2f}"')
-        edges += _both_ways(name, f"r{name}", f'priority="2" numLanes="1" speed="{SLOW_MPS}"')
+        edges += _both_ways(
+            name, f"r{name}", f'priority="2" numLanes="1" speed="{SLOW_MPS}" {town}'
+        )
     order = names[::-1] if lefthand else names
     for one, other in zip(order, [*order[1:], order[0]], strict=True):
         bend = _arc(radius, names.index(one) * 90, -90 if lefthand else 90)
         edges.append(
             f'id="r{one}_r{other}" from="r{one}" to="r{other}" priority="5" numLanes="1" '
-            f'speed="{SLOW_MPS}" shape="{bend}"'
+            f'speed="{SLOW_MPS}" shape="{bend}" {town}'
         )
     ring = " ".join(f"r{name}" for name in order)
     loop = " ".join(f"r{a}_r{b}" for a, b in zip(order, [*order[1:], order[0]], strict=True))
@@ -172,7 +177,7 @@ def _zebra(pick, lefthand):
     for k in (1, 2):
         nodes[k] += ' type="priority"'
     lanes = pick.choice((1, 2))
-    what = f'priority="3" numLanes="{lanes}" speed="{USUAL_MPS}" sidewalkWidth="2"'
+    what = f'priority="3" numLanes="{lanes}" speed="{USUAL_MPS}" sidewalkWidth="2" type="{TOWN}"'
     edges = [row for k in range(3) for row in _both_ways(f"n{k}", f"n{k + 1}", what)]
     walks = "".join(
         f'<crossing node="n{k}" edges="n{k - 1}_n{k} n{k}_n{k - 1}" priority="true" width="4"/>\n'

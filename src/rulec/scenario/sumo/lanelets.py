@@ -13,7 +13,8 @@ import numpy as np
 
 from rulec.scenario.recorded.recording import Lanelet, LaneMark, Points
 from rulec.scenario.recorded.reference_line import without_repeats
-from rulec.scenario.sumo.net import NetConnection, NetLane, SumoNet
+from rulec.scenario.sumo.lane_kinds import lane_kinds
+from rulec.scenario.sumo.net import NetConnection, NetEdge, NetLane, SumoNet
 from rulec.scenario.sumo.right_of_way import (
     LEVEL_CROSSINGS,
     UNREGULATED,
@@ -53,7 +54,10 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     for start, ends in after.items():
         for end in ends:
             before[end].append(start)
-    limits = _limits(net, before)
+    origins = _origins(net, before)
+    limits = {key: _unrounded(road.speed) for key, road in origins.items()}
+    driven = {key for key in origins if _permitted(net.lanes[key]) - _WALKERS - _RIDERS - _RAILS}
+    kinds = lane_kinds(net, driven)
     junctions = _junctions(net)
     lights, ways = net.lane_lights(step_s), net.way_lights(step_s)
     rights, signs = rights_of_ways(net), signs_of_lanes(net)
@@ -67,7 +71,7 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
         if lane.id not in there:
             continue
         left, right, centre = _lines(lane, shapes[lane.id])
-        own = rights.get(lane.id)
+        own, origin = rights.get(lane.id), origins.get(lane.id, lane)
         junction = junction_of(lane)
         towards_left = 1 if net.side == "right" else -1
         lanelets[lane.id] = Lanelet(
@@ -79,7 +83,13 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
             predecessors=tuple(before[lane.id]),
             left_of=_neighbour(lane, towards_left, there),
             right_of=_neighbour(lane, -towards_left, there),
-            types=frozenset(_types(lane, net, junctions, entries[lane.id])),
+            types=frozenset(
+                (
+                    *_types(lane, net, junctions, entries[lane.id]),
+                    *_place_types(origin.edge, net, lane),
+                    *filter(None, [kinds.get(origin.id)]),
+                )
+            ),
             signs=signs.get(lane.id, frozenset()),
             limit_mps=limits.get(lane.id),
             lights=tuple(lights.get(lane.id, ())),
@@ -151,9 +161,9 @@ def _neighbour(lane: NetLane, step: int, there: set[str]) -> str | None:
     return beside_it if beside_it in there else None
 
 
-def _limits(net: SumoNet, before: Mapping[str, list[str]]) -> dict[str, float]:
-    """Lane -> legal limit (m/s), for those on which vehicles drive."""
-    limits = {}
+def _origins(net: SumoNet, before: Mapping[str, list[str]]) -> dict[str, NetLane]:
+    """Lane -> the lane of the road that leads there, for those on which vehicles drive."""
+    origins = {}
     for lane in net.lanes.values():
         origin, seen = lane, {lane.id}
         while origin.edge.function == "internal":
@@ -165,8 +175,8 @@ def _limits(net: SumoNet, before: Mapping[str, list[str]]) -> dict[str, float]:
             origin = net.lanes[earlier]
             seen.add(earlier)
         if origin.edge.function == "" and not _permitted(lane) <= _WALKERS:
-            limits[lane.id] = _unrounded(origin.speed)
-    return limits
+            origins[lane.id] = origin
+    return origins
 
 
 def _unrounded(limit_mps: float) -> float:
@@ -200,7 +210,6 @@ def _types(
     lane: NetLane, net: SumoNet, junctions: set[str], entries: list[NetConnection]
 ) -> Iterator[str]:
     permitted = _permitted(lane)
-    yield from _place_types(lane, net)
     if lane.edge.function == "crossing":
         # Where walkers have to give way there is no crossing that gives them priority
         waits = entries and all(entry.state == _GIVES_WAY and not entry.light for entry in entries)
@@ -217,8 +226,6 @@ def _types(
         yield "sidewalk" if permitted & _WALKERS else "bicycleLane"
     elif permitted & _BUSES and not permitted & {"passenger", "private", "truck"}:
         yield "busLane"
-    if "motorway" in lane.edge.type:
-        yield "highway"
     junction = junction_of(lane)
     crosses_rails = junction in net.junctions and net.junctions[junction].type in LEVEL_CROSSINGS
     if crosses_rails:
@@ -230,14 +237,20 @@ def _types(
 
 
 _URBAN = ("residential", "living_street", "pedestrian")
+_ORDINARY = (*_URBAN, "tertiary", "secondary", "unclassified", "service")
+"""Others, such as trunk roads, may be expressways."""
 _FAST_KMH = 80.0
 
 
-def _place_types(lane: NetLane, net: SumoNet) -> Iterator[str]:
-    """Types that say where a road is, as far as its own type and limit tell."""
+def _place_types(road: NetEdge, net: SumoNet, lane: NetLane) -> Iterator[str]:
+    """Types that say where a lane of a road is, as far as the road's type and limit tell."""
     if lane.edge.id in net.roundabouts:
         yield "roundabout"
-    if any(word in lane.edge.type for word in _URBAN):
+    if "motorway" in road.type:
+        yield "highway"
+    elif any(word in road.type for word in _ORDINARY):
+        yield "ordinary"
+    if any(word in road.type for word in _URBAN):
         yield "urban"
     elif lane.edge.function == "" and lane.speed * _KMH > _FAST_KMH:
         yield "rural"

@@ -50,12 +50,19 @@ def _on_crossing(world, walker, walk, where):
         row = walker.at(step)
         if row is None or walker.lane[row] != walk:
             continue
-        x, y, angle = (walker.column(name)[row] for name in ("x", "y", "angle"))
-        ahead = np.array([np.sin(np.radians(angle)), np.cos(np.radians(angle))])
+        x, y = (walker.column(name)[row] for name in ("x", "y"))
+        ahead = _across(walker, walk)
         left = [(one.shape.mean(axis=0) - (x, y)) @ ahead + one.width / 2 for one in beside]
         own = (lane.shape.mean(axis=0) - (x, y)) @ ahead + lane.width / 2
         grades.add(True if own > 0.3 else (False if max(left) > -_CLEAR_M else None))
     return True if True in grades else (False if False in grades else None)
+
+
+def _across(walker, walk):
+    """The direction in which it crosses; on its last step there it may look elsewhere."""
+    rows = [row for row, lane in enumerate(walker.lane) if lane == walk]
+    x, y = (walker.column(name)[rows[-1]] - walker.column(name)[rows[0]] for name in ("x", "y"))
+    return np.array([x, y]) / max(np.hypot(x, y), 1e-9)
 
 
 def _soon_on_it(world, walker, walk, steps):

@@ -26,6 +26,19 @@ def needed(book, speed, leading):
     return np.maximum(speed * REACTION_S + (speed**2 - leading**2) / (2 * BRAKING_MPS2), 0.0)
 
 
+_TOWNS, _FAST_ROADS = "residential", "motorway"
+
+
+def _asked_for(world, track):
+    """Where the rule holds for sure, and where it may; in Britain not in towns."""
+    kinds = [world.net.edges[world.net.lanes[lane].edge].type for lane in track.lane]
+    if world.book != "gb":
+        return True, True
+    holds, not_here = (np.array([word in kind for kind in kinds]) for word in (_FAST_ROADS, _TOWNS))
+    # Within junctions the roads that lead there count
+    return holds, ~not_here & ~(track.inside & bool(not_here.any()))
+
+
 def following_facts(world):
     """Too short a gap; sure to a leader on the same lane of a road, nobody changing lanes."""
     for track in world.vehicles.values():
@@ -37,7 +50,8 @@ def following_facts(world):
         steady &= ~_leader_changing(world, track)
         possible = (short > -_SURELY_M) | _beside_short(world, track)
         possible |= _merging_short(world, track)
-        masks = (steady & (short > _SURELY_M), possible, _LEAST_S)
+        surely, perhaps = _asked_for(world, track)
+        masks = (surely & steady & (short > _SURELY_M), perhaps & possible, _LEAST_S)
         yield from graded(world, track, "following_distance", masks)
 
 

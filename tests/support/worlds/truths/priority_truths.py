@@ -103,13 +103,19 @@ def _grade(world, one, other):
     spare = own[0] - theirs[1]
     if spare >= _BEHIND_S:
         return None
-    entered = world.time(one.track, one.row)
-    # It drove into the side of one that was in the junction already
-    return bool(spare < -0.3 and entered < theirs[1] - 0.3 and _moves(other))
+    if one.link.end == other.link.end:
+        # It joined behind it, as near as its speed let it
+        return False
+    # It drove into the side of one that was in the junction already, and did not wait there
+    return bool(spare < -0.3 and _moves(world, other, (own[0], theirs[1])))
 
 
-def _moves(crossing):
-    return crossing.track.column("speed")[crossing.row] > _MOVING_MPS
+def _moves(world, crossing, during):
+    """True if it moves all the time from a time to another."""
+    track = crossing.track
+    times = np.array(track.step) * world.step_s
+    there = (times >= during[0]) & (times <= during[1])
+    return track.column("speed")[there].min(initial=np.inf) > _MOVING_MPS
 
 
 def conflict_area(net, one, other):

@@ -28,6 +28,7 @@ _SIGNS = {
 """Sign -> signal, and whether it is for the line at the lanelet's end."""
 
 _CLASSES = {"highway": "motorway", "interstate": "motorway", "country": "ordinary_road"}
+_CLASSES |= {"ordinary": "ordinary_road"}
 
 
 def map_signals(context: DriveContext) -> SignalColumns:
