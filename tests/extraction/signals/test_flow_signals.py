@@ -156,3 +156,16 @@ def test_overtaking_looks_as_far_as_ten_seconds_of_the_difference_need():
     context = context_of(recording(lanes(2), [ego, slow]), ("2",))
     assert flow_signals(context).world["overtaking"][0]
     assert not context.relevant[0, 0]
+
+
+@pytest.mark.parametrize("mps", [25, 36, 45])
+def test_the_faster_ego_is_the_farther_queues_are_looked_for(mps):
+    """At 36 m/s three vehicles with 2 s between them take up 231 m, more than 100 m each way."""
+    road, ego = [straight(1, -300, 900)], steady(7, 0, 0, speed=mps, steps=4)
+    alone = flow_signals(context_of(recording(road, [ego])))
+    assert not alone.unknown["dense_all_lanes"].any()
+    assert not alone.world["dense_all_lanes"].any()
+    apart = 1.4 * mps
+    others = [steady(8, -apart, 0, speed=mps, steps=4), steady(9, apart, 0, speed=mps, steps=4)]
+    queue = flow_signals(context_of(recording(road, [ego, *others])))
+    assert queue.world["dense_all_lanes"].all()

@@ -1,7 +1,8 @@
 """Signals of traffic flow around ego: queues, congestion, overtaking.
 
 All of it counts the vehicles that go ego's way on its lanes, ego among them, not farther away than
-``flow_reach_m``. Queues are those of lanes, and a lane's vehicles are those whose middle is in it.
+``flow_reach_m``, or than where ``fewest`` vehicles of a queue at ego's speed have room. Queues are
+those of lanes, and a lane's vehicles are those whose middle is in it.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 
 _BODY_M = 5.0
 """About how long a vehicle is."""
+
+_HAIR_M = 0.01
 
 
 def flow_signals(context: DriveContext) -> SignalColumns:
@@ -52,24 +55,35 @@ def _seen(context: DriveContext) -> Flags:
     A lane that is a short acceleration lane here, or of which the map ends soon, has no room for
     ``fewest`` vehicles at the largest distances of a queue.
     """
-    limits, lanes = context.thresholds, context.road.lanes
-    places = np.stack(
-        [context.ego_extents.s[0] + way * limits.flow_reach_m for way in (-1, 1)], axis=-1
-    )
+    lanes, reach = context.road.lanes, _reach(context)
+    places = np.stack([context.ego_extents.s[0] + way * reach for way in (-1, 1)], axis=-1)
     # How much there is of each lane from the road's beginning to each place
     sums = np.cumsum(lanes.there * np.diff(lanes.s)[:, None], axis=0)
     columns = np.concatenate((np.zeros((1, sums.shape[1])), sums)).T
     seen = np.stack(
         [np.diff(np.interp(places, lanes.s, column))[:, 0] for column in columns], axis=1
     )
-    gap = np.maximum(limits.queue_gap_m, limits.queue_headway_s * context.ego_extents.along[0])
-    room: Flags = seen >= limits.fewest * (gap[:, None] + _BODY_M)
+    room: Flags = seen >= _shortest_queue(context)[:, None] - _HAIR_M
     return room
 
 
+def _shortest_queue(context: DriveContext) -> Floats:
+    """How much (m) ``fewest`` vehicles take up at the largest distances of a queue, by state."""
+    limits = context.thresholds
+    gap = np.maximum(limits.queue_gap_m, limits.queue_headway_s * context.ego_extents.along[0])
+    length: Floats = limits.fewest * (gap + _BODY_M)
+    return length
+
+
+def _reach(context: DriveContext) -> Floats:
+    """How far (m) ahead and behind traffic is looked at, by state."""
+    limits = context.thresholds
+    far = np.minimum(_shortest_queue(context) / 2, limits.near_m)
+    return np.maximum(limits.flow_reach_m, far)
+
+
 def _close(context: DriveContext) -> Flags:
-    reach = context.thresholds.flow_reach_m
-    return context.going_along & (relations.gap(context) <= reach)
+    return context.going_along & (relations.gap(context) <= _reach(context))
 
 
 def _around(context: DriveContext) -> tuple[Floats, Floats]:
