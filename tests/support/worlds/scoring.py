@@ -17,6 +17,12 @@ SLACK_S = 1.6
 """Speeds are means over a second, and words may be told from the states around."""
 
 
+SIMULATED_WORLD = [
+    part for name in ("wet", "icy", "tunnel") for part in ("--assume", f"{name}=false")
+]
+"""What no file of the simulator says: its world is dry, and these nets have no tunnels."""
+
+
 @dataclass(slots=True)
 class Score:
     """How often a rule's verdicts were right: each pair of a vehicle and a rule is one.
@@ -76,7 +82,7 @@ def answers(data, book, net=None):
     Read from the command's output, which is what users rely on. Raises RuntimeError if it failed.
     """
     out, err = StringIO(), StringIO()
-    roads = [] if net is None else ["--net", str(net)]
+    roads = [] if net is None else ["--net", str(net), *SIMULATED_WORLD]
     with TemporaryDirectory() as folder, redirect_stdout(out), redirect_stderr(err):
         rules = Path(folder) / "scored.rules"
         rules.write_text(scored_book(book), encoding="utf-8")
