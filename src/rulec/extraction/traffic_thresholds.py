@@ -89,6 +89,8 @@ class Thresholds:
     """Overtaking takes so long on a road where others come towards ego."""
     access_s: float = 5.0
     """Who turns off within so long crosses a line for access."""
+    setting_off_s: float = 10.0
+    """Who stood so short a time ago sets off, and may gain speed beside others."""
     together_s: float = 1.0
     """Who reach a junction within so long reach it at the same time."""
 

@@ -45,12 +45,13 @@ def _far_lane(context: DriveContext) -> tuple[relations.Codes, Flags]:
 def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     """Does what comes towards ego leave room to overtake, and where is that unknown?
 
-    It does where ego need not leave the lanes of its direction, and else if ego and the nearest one
-    that comes would not meet within ``overtaking_s``. Who is farther than ``near_m`` is not there:
-    at speeds at which that is too near nothing is known.
+    It does where ego need not leave the lanes of its direction, on the far one of which it may be
+    already, and else if ego and the nearest one that comes would not meet within ``overtaking_s``.
+    Who is farther than ``near_m`` is not there: at speeds at which that is too near nothing is
+    known.
     """
     limits = context.thresholds
-    _, own_lanes = _far_lane(context)
+    own_lanes = (context.existing_lanes.sum(axis=1) > 1) & ~_beyond_own_lanes(context)
     pieces = context.road.piece(context.ego_extents.s[0]).tolist()
     lanelets = [
         context.road.lanelet(*pair) for pair in zip(pieces, context.ego_lane.tolist(), strict=True)
@@ -67,6 +68,16 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     meets = (against & (relations.gap(context) / closing < limits.overtaking_s)).any(axis=0)
     far_enough = 2 * own * limits.overtaking_s <= limits.near_m
     return alone | ~meets, ~alone & ~meets & ~far_enough
+
+
+def _beyond_own_lanes(context: DriveContext) -> Flags:
+    """Flags of states in which ego reaches over the far edge of the lanes of its direction."""
+    straight, there = context.road.lanes.straight, context.existing_lanes
+    own, touching = context.ego_extents, context.thresholds.touching_m
+    if context.side == "left":
+        return own.w_min[0] < straight[there.argmax(axis=1)] - touching
+    last = straight[there.shape[1] - there[:, ::-1].argmax(axis=1)]
+    return own.w_max[0] > last + touching
 
 
 def _obstructed(context: DriveContext) -> Flags:

@@ -30,6 +30,12 @@ def flow_signals(context: DriveContext) -> SignalColumns:
     overtakes, unsure, overtaken, open_end = _overtaking(context)
     decides = context.existing_lanes & (_seen(context) | queues)
     dense = np.all(queues | ~decides, axis=1) & np.any(decides, axis=1)
+    # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more
+    leads = dense & ~_follows(context)
+    dense &= ~leads
+    cut_off = leads & ("light" not in context.recording.complete)
+    # Lanes that move off beside each other do not overtake
+    moot = cut_off | _sets_off(context)
     return SignalColumns(
         {
             "congested": congested,
@@ -42,11 +48,28 @@ def flow_signals(context: DriveContext) -> SignalColumns:
             "being_overtaken": ~dense & overtaken,
         },
         unknown={
-            "dense_all_lanes": ~np.any(decides, axis=1),
+            "dense_all_lanes": ~np.any(decides, axis=1) | cut_off,
             "overtaking": unsure & ~overtakes,
-            "being_overtaken": ~dense & ~overtaken & open_end,
+            "being_overtaken": ~dense & np.where(overtaken, moot, open_end),
         },
     )
+
+
+def _follows(context: DriveContext) -> Flags:
+    """Flags of states in which somebody is ahead of ego in its lane, as far as traffic reaches."""
+    own_lane = context.road.lane_of(context.extents.w) == context.ego_lane
+    ahead = _close(context) & (relations.station(context) == relations.BEHIND)
+    follows: Flags = (ahead & own_lane).any(axis=0)
+    return follows
+
+
+def _sets_off(context: DriveContext) -> Flags:
+    """Flags of states in which ego has stood up to ``setting_off_s`` ago."""
+    limits, speed = context.thresholds, context.ego.speed[0]
+    stands = speed * KMH < limits.standing_kmh
+    steps = round(limits.setting_off_s / context.recording.step_s)
+    stood = np.maximum.accumulate(np.where(stands, np.arange(context.states), -1 - steps))
+    return np.arange(context.states) - stood <= steps
 
 
 def _seen(context: DriveContext) -> Flags:

@@ -1,7 +1,7 @@
 """Signals of pedestrians at the crossing ahead, and of vehicles stopping there.
 
 Intentions are not recorded. Who is on the crossing is on it, unless it walks away from
-ego's lanes, which it has crossed then; who stands at the kerb beside it waits to cross; who walks
+ego's lane, which it has crossed then; who stands at the kerb beside it waits to cross; who walks
 towards it is about to, if it will be there soon.
 """
 
@@ -28,7 +28,7 @@ def crossing_signals(context: DriveContext) -> SignalColumns:
     used = ((uses > 0) & context.relevant & walkers).any(axis=0)
     return SignalColumns(
         about={
-            "crossing_use": named_values(uses, _USES),
+            "crossing_use": named_values(np.where(_past_ego(context), 0, uses), _USES),
             "stopped_for_pedestrian": _stopped(context) & used,
             "crosses_side_road": aside > 0,
         },
@@ -83,6 +83,20 @@ def _towards(context: DriveContext) -> Floats:
     straight = context.road.lanes.straight
     left = context.extents.across
     return np.where(context.extents.w < (straight[0] + straight[-1]) / 2, left, -left)
+
+
+def _past_ego(context: DriveContext) -> Flags:
+    """Flags of participants that have left ego's lane, and ego's body, and walk away from them."""
+    straight, own, others = context.road.lanes.straight, context.ego_extents, context.extents
+    right = np.minimum(straight[context.ego_lane], own.w_min[0])
+    left = np.maximum(straight[context.ego_lane + 1], own.w_max[0])
+    least = context.thresholds.standing_kmh / KMH
+    past: Flags = np.where(
+        others.w_min > left,
+        others.across > least,
+        (others.w_max < right) & (others.across < -least),
+    )
+    return past
 
 
 def _stopped(context: DriveContext) -> Flags:
