@@ -46,6 +46,28 @@ def test_uses_of_the_crossing(x, y, across, expected):
     assert use(x, y, across=across) == expected
 
 
+@pytest.mark.parametrize(
+    ("y", "across", "expected"),
+    [
+        # Ego's lane is the right one, up to y = 2, its body reaches to y = 1
+        (2.5, 1.5, "not_crossing"),
+        (1.9, 1.5, "on_crossing"),
+        (2.5, 0, "on_crossing"),
+        (2.5, -1.5, "on_crossing"),
+        (-1, 1.5, "on_crossing"),
+    ],
+)
+def test_who_has_crossed_egos_lane_is_let_across(y, across, expected):
+    places = {k: (60, y + across * 0.5 * k) for k in range(2)}
+    walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
+    beside = steady(9, 50, 4, speed=0, steps=2)
+    found = recording([*lanes(2), ZEBRA], [steady(7, 20, 0, steps=2), walker, beside])
+    about = crossing_signals(context_of(found)).about
+    assert str(about["crossing_use"][0, 0]) == expected
+    # Whoever stands in the next lane stands for it all the same
+    assert about["stopped_for_pedestrian"][1, 0]
+
+
 def test_walking_along_the_pavement_is_not_coming_to_cross():
     assert use(60, -3, along=1.5, across=0.5) == "not_crossing"
     assert use(60, -3, along=0.5, across=1.5) == "about_to_cross"

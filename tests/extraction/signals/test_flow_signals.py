@@ -1,5 +1,7 @@
 """Signals of traffic around ego: congestion, queues, overtaking."""
 
+from dataclasses import replace
+
 import pytest
 
 from rulec.extraction.signals.flow_signals import flow_signals
@@ -41,6 +43,29 @@ def test_all_lanes_queue_when_each_has_three_close_vehicles():
     sparse = line(10, 3, y=4.0, apart=30.0, number=30)
     assert not first(*line(10, 2), *sparse)["dense_all_lanes"]
     assert first(*line(10, 2), *sparse, queue_headway_s=2.7)["dense_all_lanes"]
+
+
+@pytest.mark.parametrize("complete", [True, False])
+def test_whom_nobody_is_ahead_of_is_in_no_queue(complete):
+    behind = [*line(10, 2, start=-30), *line(10, 3, y=4.0, start=-30, number=30)]
+    found = recording(lanes(2), [steady(7, 0, 0), *behind])
+    found = replace(found, complete=frozenset({"light"} if complete else ()))
+    signals = flow_signals(context_of(found))
+    assert not signals.world["dense_all_lanes"][0]
+    # Where only some of the traffic is recorded there may be one
+    assert signals.unknown["dense_all_lanes"][0] == (not complete)
+
+
+@pytest.mark.parametrize(("stood_s", "known"), [(9, False), (11, True)])
+def test_who_sets_off_beside_others_is_not_told_to_be_overtaken(stood_s, known):
+    # Ego stands for 2 s, and goes at 10 m/s for so long, when one at 15 m/s is beside it
+    last = 2 * (2 + stood_s)
+    ego = vehicle(7, {k: (max(k - 4, 0) * 5.0, 0) for k in range(last + 6)})
+    place = (last - 4) * 5.0
+    other = vehicle(8, {k: (place + (k - last) * 7.5, 4.0) for k in range(last - 4, last + 6)})
+    found = flow_signals(context_of(recording(lanes(2), [ego, other])))
+    assert found.world["being_overtaken"][last]
+    assert found.unknown["being_overtaken"][last] == (not known)
 
 
 @pytest.mark.parametrize(("side", "y", "route"), [("right", 4.0, ("1",)), ("left", 0.0, ("2",))])
