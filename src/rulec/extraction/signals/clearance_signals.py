@@ -74,10 +74,10 @@ def _beyond_own_lanes(context: DriveContext) -> Flags:
     """Flags of states in which ego reaches over the far edge of the lanes of its direction."""
     straight, there = context.road.lanes.straight, context.existing_lanes
     own, touching = context.ego_extents, context.thresholds.touching_m
-    if context.side == "left":
-        return own.w_min[0] < straight[there.argmax(axis=1)] - touching
-    last = straight[there.shape[1] - there[:, ::-1].argmax(axis=1)]
-    return own.w_max[0] > last + touching
+    first, end = there.argmax(axis=1), there.shape[1] - there[:, ::-1].argmax(axis=1)
+    left, right = own.w_max[0] - straight[end], straight[first] - own.w_min[0]
+    beyond: Flags = (left if context.side == "right" else right) > touching
+    return beyond
 
 
 def _obstructed(context: DriveContext) -> Flags:
