@@ -21,6 +21,7 @@ NAMES = (
     "peers",
     "long",
     "online",
+    "unknown",
     "graph",
     "world",
     "drives",

@@ -31,7 +31,7 @@ from support.generators.blurred_traces import blurred, telling_numbers
 from support.generators.random_rulebooks import rulebook
 from support.generators.random_traces import traces
 from support.generators.seeds import seeds
-from support.oracles.completion_oracle import completions, keeps_facts, unknown_places, values_of
+from support.oracles.completion_oracle import completions, keeps_facts, n_completions
 from support.oracles.presence import there
 
 NUMBERS = telling_numbers()
@@ -80,13 +80,6 @@ def extent(verdicts):
     return WORST_FIRST[ranks[-1]], WORST_FIRST[ranks[0]]
 
 
-def _n_completions(trace, vocabulary):
-    n = 1
-    for _, name, _, value in unknown_places(trace):
-        n *= len(values_of(name, value, vocabulary, NUMBERS))
-    return n
-
-
 def whole_runs(compiled, book_, trace):
     for _, whole in completions(trace, book_.vocabulary, NUMBERS):
         if keeps_facts(book_, whole):
@@ -102,7 +95,7 @@ def test_after_every_state_they_are_the_best_and_the_worst_of_all_completions(ch
     names = {name for formula in formulas for name in names_in(formula)}
     for trace in traces(chance, Fraction(1))[:2]:
         partial = blurred(chance, trace, names, most=3)
-        if _n_completions(partial, book_.vocabulary) > MOST:
+        if n_completions(partial, book_.vocabulary, NUMBERS) > MOST:
             continue
         try:
             expected = list(whole_runs(compiled, book_, partial))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 from rulec.diagnostics import RulecError
 from rulec.rulebook.rulebook_model import Strength
@@ -44,13 +44,23 @@ class ConditionalOutcome:
     outcome: OutcomeName
 
 
-@dataclass(frozen=True, slots=True)
+class OpenReasons(NamedTuple):
+    """Why a verdict is open, and on what it depends: see ``OpenVerdict``."""
+
+    because: tuple[Reason, ...]
+    depends_on: tuple[str, ...] = ()
+    outcomes: tuple[ConditionalOutcome, ...] = ()
+    exact: bool = True
+
+
+@dataclass(frozen=True)
 class OpenVerdict:
     """A rule that some completions of a trace keep and others do not, or whose end is not seen.
 
     ``depends_on``: the smallest set of names such that completions that agree on them agree on the
     outcome; of equally small ones the first in the vocabulary's order. ``exact`` is false where
-    there was too much to look at: the verdict may then be known after all.
+    there was too much to look at: the verdict may then be known after all. To find all this takes
+    longer than the verdict; it is done when it is first asked for.
     """
 
     __repr__ = short_repr
@@ -59,9 +69,37 @@ class OpenVerdict:
     strength: Strength
     binding: Mapping[str, str]
     because: tuple[Reason, ...]
-    depends_on: tuple[str, ...] = ()
-    outcomes: tuple[ConditionalOutcome, ...] = ()
-    exact: bool = True
+    # Made by factories, so that the class itself has no such attributes.
+    depends_on: tuple[str, ...] = field(default_factory=tuple)
+    outcomes: tuple[ConditionalOutcome, ...] = field(default_factory=tuple)
+    exact: bool = field(default_factory=lambda: True)
+
+    @classmethod
+    def explained_later(
+        cls,
+        rule: str,
+        strength: Strength,
+        binding: Mapping[str, str],
+        reasons: Callable[[], OpenReasons],
+    ) -> OpenVerdict:
+        """An open verdict whose reasons are found when they are asked for."""
+        result = cls.__new__(cls)
+        own = {"rule": rule, "strength": strength, "binding": binding, "_reasons": reasons}
+        result.__dict__.update(own)
+        return result
+
+    def __getattr__(self, name: str) -> Any:
+        # Called only for what is not there.
+        reasons = self.__dict__.get("_reasons")
+        if reasons is None or name not in OpenReasons._fields:
+            raise AttributeError(name)
+        self.__dict__.update(reasons()._asdict())
+        self.__dict__.pop("_reasons", None)
+        return self.__dict__[name]
+
+    def __getstate__(self) -> dict[str, Any]:
+        _ = self.because
+        return dict(self.__dict__)
 
 
 @dataclass(frozen=True, slots=True)

@@ -88,6 +88,9 @@ class TraceColumns:
     no array takes its declared default in every state. ``objects`` maps object to type, ``present``
     an object that is not there all the time to its first and last step (from 0, inclusive), as in a
     ``Trace``. States are ``step_s`` seconds apart.
+
+    Where a value is ``unknown`` its entry means nothing; a number known as an interval lies between
+    its entries in ``values`` and in ``upper``.
     """
 
     __repr__ = short_repr
@@ -97,6 +100,8 @@ class TraceColumns:
     objects: Mapping[str, str] = field(default_factory=dict)
     present: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     step_s: float = 1.0
+    unknown: Mapping[Key, NDArray[np.bool_]] = field(default_factory=dict)
+    upper: Mapping[Key, NDArray[np.float64]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

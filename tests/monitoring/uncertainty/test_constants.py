@@ -1,8 +1,6 @@
 """Constants are unknown once for a trace: verdicts are those of all values that they may have."""
 
-from dataclasses import replace
 from fractions import Fraction
-from itertools import islice
 
 import pytest
 from hypothesis import Phase, given, settings
@@ -13,66 +11,24 @@ from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.verify import verify
 from rulec.trace import Trace
-from rulec.vocabulary import Quantity, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval
-from support.builders.full_vocabulary import WORLD
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.rulebooks import compile_here
-from support.generators.blurred_traces import blurred, places_of, telling_numbers
+from support.generators.blurred_traces import blurred, telling_numbers
+from support.generators.constant_values import (
+    steady,
+    with_some_constant,
+    with_unknown_constants,
+)
 from support.generators.random_rulebooks import rulebook
 from support.generators.random_traces import traces
 from support.generators.seeds import seeds
-from support.oracles.completion_oracle import CompletionOracle, completions, put
+from support.oracles.completion_oracle import CompletionOracle, n_completions
 from support.oracles.rulebook_oracle import Oracle, Said
 from support.oracles.state_oracle import Reading
 
 NUMBERS = telling_numbers()
 MOST = 400
 """Completions that are gone through."""
-
-
-def with_some_constant(chance, book):
-    names = chance.sample(list(WORLD.declarations), 3)
-    declarations = {
-        name: replace(item, constant=name in names) for name, item in WORLD.declarations.items()
-    }
-    return replace(book, vocabulary=Vocabulary("world", WORLD.types, declarations))
-
-
-def steady(trace, constants):
-    """The trace whose states that say something of a constant all say what the first one says."""
-    said, states = {}, list(trace.states)
-    for number, name, objects in places_of(trace):
-        if name in constants:
-            value = of(trace.states[number][name], objects)
-            value = said.setdefault((name, objects), value)
-            states[number] = put(states[number], name, objects, value)
-    return replace(trace, states=tuple(states))
-
-
-def of(value, objects):
-    for item in objects:
-        value = value[item]
-    return value
-
-
-def with_unknown_constants(chance, trace, constants):
-    """A few of these wholly unknown; of numbers one at most, perhaps an interval."""
-    subjects = list(
-        {(name, objects): 0 for _, name, objects in places_of(trace) if name in constants}
-    )
-    numeric = [x for x in subjects if isinstance(WORLD.declarations[x[0]], Quantity)]
-    others = [x for x in subjects if x not in numeric]
-    chance.shuffle(numeric)
-    chance.shuffle(others)
-    states = list(trace.states)
-    for name, objects in [*numeric[:1], *others[:3]]:
-        value = UNKNOWN
-        if (name, objects) in numeric and chance.random() < 0.5:
-            value = Interval(*sorted(chance.choices([0, 0.1, 0.3, 1, 1.5, 2, -0.5], k=2)))
-        for number, where, items in places_of(trace):
-            if (where, items) == (name, objects):
-                states[number] = put(states[number], name, objects, value)
-    return replace(trace, states=tuple(states))
 
 
 @given(seeds)
@@ -90,7 +46,7 @@ def test_verdicts_are_those_of_all_values_of_constants(chance):
         ):
             continue
         partial = with_unknown_constants(chance, partial, constants)
-        if next(islice(completions(partial, book.vocabulary, NUMBERS), MOST, None), None):
+        if n_completions(partial, book.vocabulary, NUMBERS) > MOST:
             continue
         completed = CompletionOracle(oracle, partial, NUMBERS)
         if completed.refused or not completed.answers:

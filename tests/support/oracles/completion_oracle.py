@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import combinations, product
+from math import prod
 
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
@@ -42,18 +43,33 @@ def put(state, name, objects, value):
     return {**state, name: put(state[name], objects[0], objects[1:], value)}
 
 
+def unknown_together(trace, vocabulary):
+    """The places of unknown values that are one choice, with what each may be, and its states."""
+    together = {}
+    for number, name, objects, given in unknown_places(trace):
+        number_of = None if vocabulary.declarations[name].constant else number
+        together.setdefault((number_of, name, objects), (given, []))[1].append(number)
+    return together
+
+
+def options_of(together, vocabulary, numbers):
+    return [
+        values_of(name, given, vocabulary, numbers) for (_, name, _), (given, _) in together.items()
+    ]
+
+
+def n_completions(trace, vocabulary, numbers):
+    """How many there are, facts left aside."""
+    return prod(map(len, options_of(unknown_together(trace, vocabulary), vocabulary, numbers)))
+
+
 def completions(trace, vocabulary, numbers):
     """Pairs of chosen values, by place, and the trace that they make.
 
     A constant, which is unknown in all states or in none, has one value in all of them.
     """
-    together = {}
-    for number, name, objects, given in unknown_places(trace):
-        number_of = None if vocabulary.declarations[name].constant else number
-        together.setdefault((number_of, name, objects), (given, []))[1].append(number)
-    options = [
-        values_of(name, given, vocabulary, numbers) for (_, name, _), (given, _) in together.items()
-    ]
+    together = unknown_together(trace, vocabulary)
+    options = options_of(together, vocabulary, numbers)
     for chosen in product(*options):
         states = list(trace.states)
         for (_, name, objects), value in zip(together, chosen, strict=True):

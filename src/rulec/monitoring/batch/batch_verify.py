@@ -17,17 +17,29 @@ from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_b
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
+from rulec.monitoring.batch.uncertain.uncertain_verdicts import uncertain_verdicts
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.limits import LIMITS
-from rulec.monitoring.state_validation import check_objects, check_state, has_partial_values
+from rulec.monitoring.state_validation import (
+    check_objects,
+    check_state,
+    check_told,
+    has_partial_values,
+)
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.completions import MissingValueError
+from rulec.monitoring.uncertainty.judged_rules import judged_rules
+from rulec.monitoring.uncertainty.possible_letters import untold_names, with_untold
+from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
 from rulec.trace.trace_columns import Array, Layout
 from rulec.trace.trace_model import check_frame, check_presence
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
 
 FEWEST = 4
 """Fewer traces of one shape are judged one by one."""
@@ -75,11 +87,12 @@ def verify_chunk(
     answers: list[Answer | None] = [None] * len(items)
     shapes: dict[trace_groups.Shape, list[_Placed]] = {}
     for place, item in enumerate(items):
-        if isinstance(item, Trace) and item.ends == "complete" and item.told is None:
+        if isinstance(item, Trace):
             try:
                 if rulebook.vocabulary.constants:
-                    item = with_constants(item, rulebook.vocabulary)
-                shapes.setdefault(trace_groups.shape_of(item), []).append((place, item))
+                    item = _with_constants(item, rulebook.vocabulary)
+                shape = *trace_groups.shape_of(item), item.ends, item.told
+                shapes.setdefault(shape, []).append((place, item))
             except (TypeError, AttributeError, LookupError, RulecError):
                 continue  # it is no trace, or a constant changes, which ``verify`` will say
     for alike in shapes.values():
@@ -113,41 +126,85 @@ def _verify_group(
     except RulecError:
         return
     group = trace_groups.group_traces([trace for _, trace in traces])
-    if len(group.cells.states) * _SHARED > group.cells.layout.n_states:
-        if any(counts(axiom.formula) for axiom in rules.axioms):
-            return
-        try:
-            columns = columnize(group.cells, rules.vocabulary, group.names)
-            verdicts = verify_columns(columns, rules)
-        except (UnencodableError, NotGivenError):
-            known = [placed for placed in traces if not _is_partial(placed[1])]
-            if len(known) < len(traces):
+    example = traces[0][1]
+    is_whole = example.ends == "complete" and example.told is None
+    are_shared = len(group.cells.states) * _SHARED <= group.cells.layout.n_states
+    if not are_shared or not is_whole or any(map(_is_partial, group.cells.states)):
+        if not _verify_columns(traces, group, rules, answers):
+            known = [placed for placed in traces if not any(map(_is_partial, placed[1].states))]
+            if is_whole and len(known) < len(traces):
                 _verify_group(known, rulebook, answers)
+        return
+    cells = trace_groups.under_common_names(group)
+    scenes = cells.there or (cells.objects,) * len(cells.states)
+    refused = {
+        id(state)
+        for state, renamed, scene in zip(group.cells.states, cells.states, scenes, strict=True)
+        if not _fits(renamed, cells.objects, scene, rules)
+    }
+    if refused:
+        traces = [placed for placed in traces if refused.isdisjoint(map(id, placed[1].states))]
+        if not traces:
             return
-    else:
+        group = trace_groups.group_traces([trace for _, trace in traces])
         cells = trace_groups.under_common_names(group)
-        scenes = cells.there or (cells.objects,) * len(cells.states)
-        refused = {
-            id(state)
-            for state, renamed, scene in zip(group.cells.states, cells.states, scenes, strict=True)
-            if not _fits(renamed, cells.objects, scene, rules)
-        }
-        if refused:
-            traces = [placed for placed in traces if refused.isdisjoint(map(id, placed[1].states))]
-            if not traces:
-                return
-            group = trace_groups.group_traces([trace for _, trace in traces])
-            cells = trace_groups.under_common_names(group)
-        verdicts = verify_cells(cells, rules)
+    verdicts = verify_cells(cells, rules)
+    _answer(violations_in(verdicts, len(traces)), traces, group, answers)
+
+
+def _verify_columns(
+    traces: Sequence[_Placed],
+    group: trace_groups.TraceGroup,
+    rules: CompiledRulebook,
+    answers: list[Answer | None],
+) -> bool:
+    """Judge traces in columns; False if something about one of them is odd."""
+    if any(counts(axiom.formula) for axiom in rules.axioms):
+        return False
+    example = traces[0][1]
+    is_whole = example.ends == "complete" and example.told is None
+    try:
+        check_told(example.told, rules.vocabulary)
+        untold = untold_names(rules.vocabulary, example.told)
+        vocabulary = with_untold(rules.vocabulary, untold) if untold else rules.vocabulary
+        columns = columnize(group.cells, vocabulary, group.names)
+        if is_whole and not columns.unknown and not columns.upper:
+            verdicts = verify_columns(columns, rules)
+            _answer(violations_in(verdicts, len(traces)), traces, group, answers)
+            return True
+        ordered = [traces[place] for place in group.order]
+        judged = judged_rules(rules, example.told, cut=example.ends == "cut")
+        own = [trace for _, trace in ordered]
+        for (place, _), answer in zip(
+            ordered, uncertain_verdicts(columns, own, rules, judged), strict=True
+        ):
+            answers[place] = answer
+    except (UnencodableError, NotGivenError, MissingValueError, RulecError):
+        return False
+    return True
+
+
+def _answer(
+    found: Iterable[tuple[int, Sequence[Violation]]],
+    traces: Sequence[_Placed],
+    group: trace_groups.TraceGroup,
+    answers: list[Answer | None],
+) -> None:
     objects = tuple(group.cells.objects)
-    for number, violations in violations_in(verdicts, len(traces)):
+    for number, violations in found:
         place, trace = traces[group.order[number]]
         own = trace_groups.under_own_names(violations, objects, tuple(trace.objects))
         answers[place] = Verdict(trace.id, own)
 
 
-def _is_partial(trace: Trace) -> bool:
-    return any(isinstance(state, Mapping) and has_partial_values(state) for state in trace.states)
+def _is_partial(state: object) -> bool:
+    return isinstance(state, Mapping) and has_partial_values(state)
+
+
+def _with_constants(trace: Trace, vocabulary: Vocabulary) -> Trace:
+    if any(state.get(name) is UNKNOWN for name in vocabulary.constants for state in trace.states):
+        trace = spelled_out(trace, vocabulary)
+    return with_constants(trace, vocabulary)
 
 
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:

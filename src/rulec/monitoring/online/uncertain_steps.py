@@ -20,11 +20,8 @@ from rulec.monitoring.online.four_valued import (
     edges_between,
     within,
 )
-from rulec.monitoring.uncertainty.possible_letters import (
-    LetterClasses,
-    Letters,
-    possible_digits,
-)
+from rulec.monitoring.uncertainty.letter_classes import LetterClasses, Letters
+from rulec.monitoring.uncertainty.possible_letters import possible_digits
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 
 MOST_STEPS = 1 << 16

@@ -11,18 +11,17 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
 from math import prod
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
-from rulec.logic.kleene import Unknown, holds, number_of, weighted_sum
-from rulec.monitoring.state_view import StateView
+from rulec.logic.kleene import PartialState, Unknown, holds, number_of, weighted_sum
 from rulec.monitoring.uncertainty.linear_arrangement import LinearPlane, sample_points
 from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Quantity, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 from rulec.vocabulary.vocabulary_model import choices
 
 Subject: TypeAlias = tuple[str, tuple[str, ...]]
@@ -35,11 +34,26 @@ MOST_COMPLETIONS = 1 << 12
 """Unknown values with more joint completions are taken to be independent."""
 
 
+class MissingValueError(Exception):
+    """Some completion needs a value that is neither given nor has a default."""
+
+    def __init__(self, name: str, objects: tuple[str, ...]) -> None:
+        super().__init__(name)
+        self.subject = name, objects
+
+
+class PartialView(PartialState, Protocol):
+    """A state, as a ``StateView``, of which some values may be partial."""
+
+    def given(self, name: str, items: tuple[str, ...]) -> PartialValue | None:
+        """The value, be it partial, that the state gives, or the declared default."""
+
+
 @dataclass(frozen=True, slots=True)
 class CompletedView:
     """A state in which some values are supposed."""
 
-    view: StateView
+    view: PartialView
     supposed: Mapping[Subject, Value | Fraction]
 
     @property
@@ -107,12 +121,12 @@ class _Possible:
 def joint_digits(
     reads: Sequence[Read | NumberRead],
     binding: Mapping[str, str],
-    view: StateView,
+    view: PartialView,
     axioms: Sequence[CompiledAxiom],
 ) -> PossibleDigits:
     """The joint digits of ``reads``, asked of the objects of a binding.
 
-    There are none if the state contradicts an axiom.
+    There are none if the state contradicts an axiom. Raises MissingValueError.
     """
     fixed: dict[int, int] = {}
     counted: dict[int, int] = {}
@@ -144,7 +158,7 @@ def joint_digits(
 def _links_of_reads(
     reads: Sequence[Read | NumberRead],
     binding: Mapping[str, str],
-    view: StateView,
+    view: PartialView,
     counted: dict[int, int],
 ) -> Iterator[_Link]:
     """Links of reads with unknown subjects; ``counted`` gets what counts for sure."""
@@ -166,14 +180,14 @@ def _links_of_reads(
 
 
 def unknown_in_read(
-    read: Read | NumberRead, binding: Mapping[str, str], view: StateView
+    read: Read | NumberRead, binding: Mapping[str, str], view: PartialView
 ) -> frozenset[Subject]:
     """The unknown subjects of a read."""
     return frozenset(x for x in subjects_of_read(read, binding, view) if _is_unknown(x, view))
 
 
 def subjects_of_read(
-    read: Read | NumberRead, binding: Mapping[str, str], view: StateView
+    read: Read | NumberRead, binding: Mapping[str, str], view: PartialView
 ) -> Iterator[Subject]:
     """What a read depends on, with repetitions."""
     if isinstance(read, Read):
@@ -184,19 +198,19 @@ def subjects_of_read(
 
 
 def unknown_subjects(
-    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: StateView
+    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
 ) -> frozenset[Subject]:
     """The unknown subjects of which a formula or a term speaks."""
     return frozenset(x for x in subjects_in(what, environment, view) if _is_unknown(x, view))
 
 
-def _is_unknown(subject: Subject, view: StateView) -> bool:
+def _is_unknown(subject: Subject, view: PartialView) -> bool:
     given = view.given(*subject)
     return given is UNKNOWN or isinstance(given, Interval)
 
 
 def subjects_in(
-    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: StateView
+    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
 ) -> Iterator[Subject]:
     """What a formula or a term speaks of, for these objects and those that may count."""
     match what:
@@ -215,14 +229,14 @@ def subjects_in(
             yield from subjects_in(right, environment, view)
 
 
-def _candidates(count: ltl.Count, view: StateView) -> Iterator[str]:
+def _candidates(count: ltl.Count, view: PartialView) -> Iterator[str]:
     return (
         name for name, own in view.objects.items() if view.vocabulary.is_subtype(own, count.type)
     )
 
 
 def _clusters(
-    links: Sequence[_Link], axioms: Sequence[CompiledAxiom], view: StateView
+    links: Sequence[_Link], axioms: Sequence[CompiledAxiom], view: PartialView
 ) -> Iterator[_Cluster]:
     """The links in groups that share no subjects, with the axioms that bind these."""
     waiting = [*links, *_links_of_axioms(axioms, view)]
@@ -238,7 +252,7 @@ def _clusters(
     return (cluster for cluster in clusters if any(x.read is not None for x in cluster.links))
 
 
-def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: StateView) -> Iterator[_Link]:
+def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: PartialView) -> Iterator[_Link]:
     for axiom in axioms:
         names = [variable.name for variable in axiom.variables]
         types = [variable.type for variable in axiom.variables]
@@ -251,7 +265,7 @@ def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: StateView) -> Iterat
 
 
 def _completed(
-    cluster: _Cluster, reads: Sequence[Read | NumberRead], view: StateView
+    cluster: _Cluster, reads: Sequence[Read | NumberRead], view: PartialView
 ) -> set[_Possible] | None:
     """What a cluster's completions come to; None if there are too many."""
     values: dict[Subject, Sequence[Value]] = {}
@@ -305,8 +319,10 @@ def _result(
         if link.read is None:
             if truth is False:
                 return None
+        elif isinstance(truth, Unknown):
+            raise MissingValueError(truth.name, truth.objects)
         else:
-            more[link.read] = more.get(link.read, 0) + (truth is True)
+            more[link.read] = more.get(link.read, 0) + truth
     return _Possible(tuple(sorted(digits.items())), tuple(sorted(more.items())))
 
 
@@ -333,7 +349,7 @@ def _independent(cluster: _Cluster, reads: Sequence[Read | NumberRead]) -> set[_
 
 
 def _digit(
-    read: Read | NumberRead, binding: Mapping[str, str], view: StateView | CompletedView
+    read: Read | NumberRead, binding: Mapping[str, str], view: PartialView | CompletedView
 ) -> int:
     if isinstance(read, Read):
         value = view.value(read.name, tuple([binding[variable] for variable in read.variables]))
@@ -345,7 +361,7 @@ def _digit(
 
 
 def _planes(
-    link: _Link, reads: Sequence[Read | NumberRead], view: StateView
+    link: _Link, reads: Sequence[Read | NumberRead], view: PartialView
 ) -> Iterator[LinearPlane]:
     if link.formula is None:
         assert link.read is not None
@@ -358,7 +374,7 @@ def _planes(
 
 
 def _planes_in(
-    formula: ltl.Formula, environment: Mapping[str, str], view: StateView
+    formula: ltl.Formula, environment: Mapping[str, str], view: PartialView
 ) -> Iterator[LinearPlane]:
     for atom in ltl.atoms_of(formula):
         if isinstance(atom, ltl.Comparison):
@@ -369,7 +385,7 @@ def _planes_of_sum(
     terms: Sequence[tuple[Fraction, ltl.Term]],
     limit: Fraction,
     environment: Mapping[str, str],
-    view: StateView,
+    view: PartialView,
 ) -> Iterator[LinearPlane]:
     coefficients: dict[ltl.Term, Fraction] = {}
     limits = [limit]
@@ -382,7 +398,8 @@ def _planes_of_sum(
                     coefficients[number] = coefficients.get(number, Fraction(0)) + factor
                 else:
                     known = number_of(term, environment, view)
-                    assert not isinstance(known, Unknown), "it is known"
+                    if isinstance(known, Unknown):
+                        return  # a value is missing, which a completion may do without
                     limits = [each - factor * known for each in limits]
             case ltl.Count(variable, _, body):
                 items = list(_candidates(term, view))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 from rulec.automata.outcome_machine import KEPT, OutcomeRange, SetMonitor
-from rulec.monitoring.uncertainty.possible_letters import LetterClasses, Letters
+from rulec.monitoring.uncertainty.letter_classes import LetterClasses, Letters
 
 MOST_WAYS = 1 << 12
 """So many sets of states are told apart while looking for what decides."""

@@ -6,8 +6,9 @@ hyperplanes). One point of each is found by Fourier-Motzkin elimination, exactly
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from fractions import Fraction
+from itertools import pairwise
 from typing import NamedTuple
 
 from rulec.logic.formula import Term
@@ -34,6 +35,12 @@ def sample_points(
     ``bounds`` has every number, with the closed interval in which it lies, or None for any. None
     for more than ``MOST_POINTS`` cells.
     """
+    if len(bounds) == 1:
+        ((number, interval),) = bounds.items()
+        own = [(plane.limit, plane.coefficients[number]) for plane in planes]
+        limits = {limit / factor for limit, factor in own if factor}
+        on_line = _on_a_line(limits, interval)
+        return None if len(on_line) > MOST_POINTS else [{number: point} for point in on_line]
     within = [
         bound
         for number, interval in bounds.items()
@@ -50,6 +57,18 @@ def sample_points(
         if len(points) > MOST_POINTS:
             return None
     return points
+
+
+def _on_a_line(limits: Set[Fraction], interval: tuple[Fraction, Fraction] | None) -> list[Fraction]:
+    """The limits that the interval holds, and a number on each side of them in it."""
+    if interval is None:
+        known = [*limits, *([] if limits else [Fraction(0)])]
+        interval = min(known) - 1, max(known) + 1
+    low, high = interval
+    inner = sorted(x for x in limits if low <= x <= high)
+    ends = [low, *inner, high]
+    beside = [(one + other) / 2 for one, other in pairwise(ends) if one < other]
+    return [*inner, *beside] or [low]
 
 
 def _cells(

@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import product
-from typing import Any, TypeAlias
-
-import numpy as np
+from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
-from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact, scale
 from rulec.diagnostics import RulecError
 from rulec.logic import formula as ltl
@@ -21,16 +17,16 @@ from rulec.logic.kleene import Unknown, weighted_sum
 from rulec.monitoring.axiom_violations import StatePlace, impossible_state
 from rulec.monitoring.letter_reader import missing_value, present_in
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.uncertainty.completions import joint_digits, unknown_in_read
+from rulec.monitoring.uncertainty.completions import (
+    MissingValueError,
+    PossibleDigits,
+    joint_digits,
+    unknown_in_read,
+)
+from rulec.monitoring.uncertainty.letter_classes import Letters
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
-
-Cube: TypeAlias = tuple[int, ...]
-"""For each read the bit set of its digits, each of which goes with each of the others'."""
-
-Letters: TypeAlias = tuple[Cube, ...]
-"""The letters that a state may have: those of all the cubes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,14 +113,23 @@ class PossibleLetters:
             for index, (cube,) in enumerate(states):
                 if all(mask & (mask - 1) == 0 for mask in cube):
                     continue
-                joint = joint_digits(
-                    reads, objects, self.view(first + index), self._rulebook.axioms
-                )
+                joint = self._joint_digits(rule, objects, first + index)
                 is_exact &= joint.exact
                 states[index] = tuple(
                     [tuple([1 << digit for digit in digits]) for digits in sorted(joint.digits)]
                 )
         return PossibleWord(tuple(states), tuple(unknown), is_exact)
+
+    def _joint_digits(
+        self, rule: CompiledRule, objects: Mapping[str, str], number: int
+    ) -> PossibleDigits:
+        try:
+            return joint_digits(
+                rule.machine.reads, objects, self.view(number), self._rulebook.axioms
+            )
+        except MissingValueError as error:
+            where = self._where(number)
+            raise missing_value(error.subject, where, rule.name, self._trace.place) from None
 
     def impossible(self, rule: CompiledRule, objects: Mapping[str, str], number: int) -> RulecError:
         """The error (R0508) about a state that contradicts a fact."""
@@ -248,46 +253,3 @@ def is_joint(rule: CompiledRule, axioms: Sequence[CompiledAxiom]) -> bool:
 def _digits_between(read: NumberRead, low: Fraction, high: Fraction) -> int:
     first, last = read.digit(low), read.digit(high)
     return ((1 << (last - first + 1)) - 1) << first
-
-
-class LetterClasses:
-    """The classes of possible letters of a machine, as bit sets."""
-
-    def __init__(self, machine: OutcomeMachine) -> None:
-        self._reads = machine.reads
-        self._table = np.array(machine.letters).reshape([r.size for r in machine.reads][::-1])
-        self._known: dict[Letters, int] = {}
-        self._groups: dict[tuple[Letters, tuple[int, ...]], Mapping[Cube, int]] = {}
-
-    def of(self, letters: Letters) -> int:
-        """The classes of letters; 0 if facts exclude them all."""
-        known = self._known.get(letters)
-        if known is None:
-            known = 0
-            for cube in letters:
-                known |= self._of_cube(cube)
-            self._known[letters] = known
-        return known
-
-    def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
-        """The classes of letters by the digits, as bits, of ``fixed`` reads."""
-        key = letters, fixed
-        if key not in self._groups:
-            groups: dict[Cube, int] = {}
-            for cube in letters:
-                for part in product(*[_bits(cube[place]) for place in fixed]):
-                    chosen = dict(zip(fixed, part, strict=True))
-                    narrowed = tuple([chosen.get(n, mask) for n, mask in enumerate(cube)])
-                    groups[part] = groups.get(part, 0) | self._of_cube(narrowed)
-            self._groups[key] = {part: classes for part, classes in groups.items() if classes}
-        return self._groups[key]
-
-    def _of_cube(self, cube: Cube) -> int:
-        digits = [[n for n in range(mask.bit_length()) if mask >> n & 1] for mask in cube]
-        # The first read's digit counts ones, so it is the last axis.
-        classes = np.unique(self._table[np.ix_(*digits[::-1])]) if digits else self._table.ravel()
-        return sum(1 << symbol for symbol in classes.tolist() if symbol != IMPOSSIBLE)
-
-
-def _bits(mask: int) -> list[int]:
-    return [1 << n for n in range(mask.bit_length()) if mask >> n & 1]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import replace
 from itertools import product
 from math import prod
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -23,8 +23,9 @@ from rulec.automata.outcome_machine import (
 from rulec.automata.thresholds import scale
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.uncertainty.dependence import BEFORE, Dependence, PossibleAlternative
-from rulec.monitoring.uncertainty.possible_letters import LetterClasses, Letters, PossibleWord
-from rulec.monitoring.verdict import ConditionalOutcome, OutcomeName, Reason
+from rulec.monitoring.uncertainty.letter_classes import LetterClasses, Letters
+from rulec.monitoring.uncertainty.possible_letters import PossibleWord
+from rulec.monitoring.verdict import ConditionalOutcome, OpenReasons, OutcomeName, Reason
 
 MOST_OUTCOMES = 1 << 4
 """For so many combinations of values it is said how an open verdict comes out."""
@@ -38,52 +39,52 @@ _NAMES: Mapping[tuple[int, int], OutcomeName] = {
 _Word: TypeAlias = Sequence[Letters]
 
 
-@dataclass(frozen=True, slots=True)
-class Answer:
+class Answer(NamedTuple):
     """The best and the worst outcome of all completions.
 
-    ``step`` is the first letter after which all are lost; the rest is an ``OpenVerdict``'s.
+    ``step`` is the first letter after which all are lost.
     """
 
     best: int
     worst: int
     step: int | None = None
-    because: tuple[Reason, ...] = ()
-    depends_on: tuple[str, ...] = ()
-    outcomes: tuple[ConditionalOutcome, ...] = ()
-    exact: bool = True
 
 
 class UncertainMachine:
     """Answers of one rule's machine, remembered.
 
-    ``monitor`` runs it on the ``classes`` of possible letters.
+    ``monitor`` runs it on the ``classes`` of possible letters. ``correlated`` are the classes, as
+    bits, of states whose unknown values have to do with each other.
     """
 
-    def __init__(self, rule: CompiledRule, machine: OutcomeMachine) -> None:
+    def __init__(self, machine: OutcomeMachine) -> None:
         self._reads = machine.reads
         self._machine = machine
         self.monitor = SetMonitor(machine)
         self.classes = LetterClasses(machine)
-        self._answers: dict[object, Answer] = {}
+        self.correlated: dict[object, dict[object, int]] = {}
+        self._reasons: dict[object, OpenReasons] = {}
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
-        self._rule = rule
 
     def impossible_at(self, word: PossibleWord) -> int | None:
         """The index of a state that has no possible letter."""
         classes = self.classes
         return next((n for n, letters in enumerate(word.states) if not classes.of(letters)), None)
 
-    def answer(
+    def answer(self, words: Sequence[PossibleWord]) -> Answer:
+        """What the completions come to; ``words`` are by the values of what does not change."""
+        runs = [self._run(word.states) for word in words]
+        best, worst = min(run[0] for run in runs), max(run[1] for run in runs)
+        steps = [step for *_, step in runs if step is not None]
+        return Answer(best, worst, max(steps) if len(steps) == len(runs) else None)
+
+    def reasons(
         self,
         words: Sequence[PossibleWord],
         constants: Sequence[Mapping[str, object]],
         order: Sequence[str],
-    ) -> Answer:
-        """What the completions come to; ``words`` are by the values of what does not change.
-
-        ``order`` is that of names in the vocabulary.
-        """
+    ) -> OpenReasons:
+        """Why the answer is open; ``order`` is that of names in the vocabulary."""
         alternatives = tuple(
             [
                 PossibleAlternative(word.states, own)
@@ -95,33 +96,25 @@ class UncertainMachine:
             for names in zip(*(word.unknown for word in words), strict=True)
         )
         key = tuple([(x.letters, tuple(x.constants.items())) for x in alternatives]), unknown
-        answer = self._answers.get(key)
-        if answer is None:
-            if len(self._answers) > _MOST_REMEMBERED:
-                self._answers.clear()
-            answer = self._answer(alternatives, unknown, order)
-            self._answers[key] = answer
-        return answer
+        found = self._reasons.get(key)
+        if found is None:
+            if len(self._reasons) > _MOST_REMEMBERED:
+                self._reasons.clear()
+            best, worst, _ = self.answer(words)
+            found = self._reasons_of(alternatives, unknown, order, {best, worst})
+            self._reasons[key] = found
+        return found
 
-    def outcomes(self, words: Sequence[PossibleWord]) -> tuple[int, int]:
-        """The best and the worst outcome of completions, as of ``answer``."""
-        return _range_of([self._run(word.states) for word in words])
-
-    def _answer(
+    def _reasons_of(
         self,
         alternatives: Sequence[PossibleAlternative],
         unknown: tuple[frozenset[str], ...],
         order: Sequence[str],
-    ) -> Answer:
-        runs = [self._run(x.letters) for x in alternatives]
-        best, worst = _range_of(runs)
-        steps = [step for _, _, step in runs]
-        if best == worst and best != PENDING:
-            known = [step for step in steps if step is not None]
-            return Answer(best, worst, max(known) if len(known) == len(steps) else None)
-        pending: tuple[Reason, ...] = ("not over",) if PENDING in (best, worst) else ()
-        if best == worst:
-            return Answer(best, worst, because=pending)
+        outcomes: Set[int],
+    ) -> OpenReasons:
+        pending: tuple[Reason, ...] = ("not over",) if PENDING in outcomes else ()
+        if len(outcomes) == 1:
+            return OpenReasons(pending)
         varying = (
             {name for own in alternatives for name in own.constants} if alternatives[1:] else set()
         )
@@ -134,16 +127,8 @@ class UncertainMachine:
         told: tuple[Reason, ...] = ("not told",) if any(on) else ()
         before: tuple[Reason, ...] = ("began before",) if BEFORE in on else ()
         depends_on = tuple([name for name in on if name])
-        outcomes = () if before else tuple(self._outcomes(depends_on, alternatives, unknown))
-        because = (*told, *before, *pending)
-        return Answer(
-            best,
-            worst,
-            because=because,
-            depends_on=depends_on,
-            outcomes=outcomes,
-            exact=found is not None,
-        )
+        cases = () if before else tuple(self._outcomes(depends_on, alternatives, unknown))
+        return OpenReasons((*told, *before, *pending), depends_on, cases, found is not None)
 
     def _run(self, word: _Word) -> tuple[int, int, int | None]:
         return self.monitor.run([self.classes.of(letters) for letters in word])
@@ -282,10 +267,6 @@ class UncertainMachine:
         return False
 
 
-def _range_of(runs: Sequence[tuple[int, int, int | None]]) -> tuple[int, int]:
-    return min(best for best, _, _ in runs), max(worst for _, worst, _ in runs)
-
-
 def _is_open(letters: Letters, read: int) -> bool:
     union = 0
     for cube in letters:
@@ -327,6 +308,6 @@ def uncertain_machine(
         if len(_PREPARED) >= _MOST_PREPARED:
             _PREPARED.clear()
         machine = outcomes or replace(of_complete_words(rule.machine), starts=key[1])
-        known = source, UncertainMachine(rule, machine)
+        known = source, UncertainMachine(machine)
         _PREPARED[key] = known
     return known[1]

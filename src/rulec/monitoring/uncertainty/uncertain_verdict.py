@@ -8,26 +8,22 @@ facts. Of a cut trace see ``rulec.automata.prefix_machines``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine
-from rulec.logic.free_names import names_in
+from rulec.automata.outcome_machine import KEPT, VIOLATED
 from rulec.monitoring.bindings import Binding, bindings
 from rulec.monitoring.uncertainty.completions import Subject
-from rulec.monitoring.uncertainty.possible_letters import (
-    PossibleLetters,
-    PossibleWord,
-    untold_names,
-    with_untold,
-)
+from rulec.monitoring.uncertainty.judged_rules import judged_rules
+from rulec.monitoring.uncertainty.possible_letters import PossibleLetters, PossibleWord
 from rulec.monitoring.uncertainty.suppositions import Suppositions, spelled_out, with_supposed
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
 from rulec.monitoring.verdict import (
     NO_PAST,
     CarriedState,
+    OpenReasons,
     OpenVerdict,
-    RuleNotJudged,
     Verdict,
     Violation,
 )
@@ -55,50 +51,34 @@ class UncertainRun:
         self.trace = spelled_out(trace, rulebook.vocabulary)
         self.rulebook = rulebook
         self.past = past
-        self._untold = untold_names(rulebook.vocabulary, trace.told)
-        self.vocabulary = with_untold(rulebook.vocabulary, self._untold)
+        self.judged = judged_rules(rulebook, trace.told, cut=trace.ends == "cut")
+        self.vocabulary = self.judged.vocabulary
         self._suppositions = Suppositions(self.trace, rulebook, self.vocabulary)
         self._letters: dict[tuple[object, ...], PossibleLetters] = {}
 
     def verdict(self) -> Verdict:
         """The verdict of all rules."""
-        trace, rules = self.trace, self.rulebook.rules
         violations: list[Violation] = []
         doubtful: list[OpenVerdict] = []
-        not_judged: list[RuleNotJudged] = []
-        prefixes: Mapping[str, OutcomeMachine | None] | None = None
-        if trace.ends == "cut":
-            compiler = self.rulebook.prefixes
-            prefixes = {} if compiler is None else compiler(self.rulebook)
-        for rule in rules:
-            outcomes = None if prefixes is None else prefixes.get(rule.name)
-            if prefixes is not None and outcomes is None:
-                why = "there is no machine for what it says of a trace that is cut"
-                not_judged.append(RuleNotJudged(rule.name, rule.strength, (), why))
-                continue
-            machine = uncertain_machine(rule, outcomes)
-            untold = machine.untold(self._untold)
-            if untold:
-                not_judged.append(RuleNotJudged(rule.name, rule.strength, untold))
-                continue
+        for rule, machine in self.judged.machines:
             for answer in self._answers(rule, machine):
                 if isinstance(answer, Violation):
                     violations.append(answer)
                 else:
                     doubtful.append(answer)
-        said = {name for state in trace.states for name in state}
-        read = {name for rule in rules for name in names_in(rule.formula)}
-        presumed = tuple(
-            name
-            for name, item in self.vocabulary.declarations.items()
-            if item.presumed and name in read and name not in said
+        return Verdict(
+            self.trace.id,
+            tuple(violations),
+            tuple(doubtful),
+            self.judged.not_judged,
+            presumed_in(self.trace, self.judged.presumed),
         )
-        return Verdict(trace.id, tuple(violations), tuple(doubtful), tuple(not_judged), presumed)
 
     def outcomes(self, rule: CompiledRule, binding: Binding, start: int) -> tuple[int, int]:
         """The best and the worst outcome of a complete trace, from a state of the machine on."""
         machine = uncertain_machine(rule, None, (start,))
-        return machine.outcomes(self._words(rule, machine, binding)[0])
+        best, worst, _ = machine.answer(self._words(rule, machine, binding)[0])
+        return best, worst
 
     def _answers(
         self, rule: CompiledRule, machine: UncertainMachine
@@ -106,30 +86,24 @@ class UncertainRun:
         trace = self.trace
         declared = self.vocabulary
         for binding in bindings(rule, declared, trace.objects, trace.present, len(trace.states)):
-            objects = binding.objects
+            objects, own = binding.objects, machine
             if binding.first == 0:
                 about = (rule.name, tuple(objects.values()))
                 if about in self.past.settled:
                     continue
                 if start := self.past.states.get(about, 0):
-                    machine = uncertain_machine(rule, None, (start,))
-            words, constants, is_exact = self._words(rule, machine, binding)
-            answer = machine.answer(words, constants, tuple(declared.declarations))
+                    own = uncertain_machine(rule, None, (start,))
+            words, constants, is_exact = self._words(rule, own, binding)
+            answer = own.answer(words)
             if answer.worst == KEPT:
                 continue
             if answer.best == VIOLATED:
                 step = None if answer.step is None else binding.first + answer.step
                 yield Violation(rule.name, rule.strength, objects, step)
             else:
-                yield OpenVerdict(
-                    rule.name,
-                    rule.strength,
-                    objects,
-                    answer.because,
-                    depends_on=answer.depends_on,
-                    outcomes=answer.outcomes,
-                    exact=is_exact and answer.exact,
-                )
+                order = tuple(declared.declarations)
+                why = partial(_reasons, own, words, constants, (order, is_exact))
+                yield OpenVerdict.explained_later(rule.name, rule.strength, objects, why)
 
     def _words(
         self, rule: CompiledRule, machine: UncertainMachine, binding: Binding
@@ -159,3 +133,19 @@ class UncertainRun:
             trace = with_supposed(self.trace, values)
             self._letters[key] = PossibleLetters(trace, self.rulebook, self.vocabulary)
         return self._letters[key]
+
+
+def presumed_in(trace: Trace, names: Sequence[str]) -> tuple[str, ...]:
+    """Those of these names that no state says."""
+    return tuple(name for name in names if not any(name in state for state in trace.states))
+
+
+def _reasons(
+    machine: UncertainMachine,
+    words: Sequence[PossibleWord],
+    constants: Sequence[Mapping[str, object]],
+    order: tuple[Sequence[str], bool],
+) -> OpenReasons:
+    names, is_exact = order
+    found = machine.reasons(words, constants, names)
+    return found._replace(exact=found.exact and is_exact)

@@ -32,9 +32,12 @@ _TINY = 1e-300
 
 
 def digits_of_sum(
-    read: NumberRead, summands: Sequence[Summand], n_states: int
+    read: NumberRead,
+    summands: Sequence[Summand],
+    n_states: int,
+    ignored: NDArray[np.bool_] | np.bool_ = np.False_,
 ) -> NDArray[np.uint8]:
-    """For each state how many of the read's thresholds the sum passes."""
+    """For each state how many of the read's thresholds the sum passes; any if it is ignored."""
     total = np.zeros(n_states)
     size = np.zeros(n_states)
     with np.errstate(all="ignore"):
@@ -51,9 +54,15 @@ def digits_of_sum(
             away = total - limit
             digits += away > 0
             unclear |= ~(np.abs(away) > error + abs(limit) * _UNIT)
-    for state in np.flatnonzero(unclear).tolist():
+    for state in np.flatnonzero(unclear & ~ignored).tolist():
         digits[state] = read.digit(_exactly(summands, state))
     return digits
+
+
+def digits_of_count(read: NumberRead, counted: Array) -> NDArray[np.uint8]:
+    """For each state how many of the read's thresholds the number of objects passes."""
+    numbers = range(int(counted.max(initial=0)) + 1)
+    return np.array([read.digit(Fraction(n)) for n in numbers], dtype=np.uint8).take(counted)
 
 
 def _exactly(summands: Sequence[Summand], state: int) -> Fraction:
@@ -162,6 +171,9 @@ class ColumnReader:
     def _digits(self, read: NumberRead, bound: ObjectBinding) -> Array:
         n_states = self.columns.layout.n_states
         ready = scale(read)
+        match read.terms:
+            case ((_, ltl.Count() as count),):
+                return digits_of_count(read, self._counted(count, bound))
         if ready.quantity is None:
             summands = [(factor, self._summand(term, bound)) for factor, term in read.terms]
             return digits_of_sum(read, summands, n_states)
@@ -182,16 +194,26 @@ class ColumnReader:
 
     def _counted(self, count: ltl.Count, bound: ObjectBinding) -> Array:
         """Value of a count in each state. Raises NotGivenError if not known."""
+        total, undecided = self.count(count, bound)
+        for inner, where in undecided:
+            if np.any(where):
+                raise self._missing(count, inner)
+        return total
+
+    def count(
+        self, count: ltl.Count, bound: ObjectBinding
+    ) -> tuple[Array, list[tuple[ObjectBinding, Mask]]]:
+        """How many objects count in each state, and where it is not known whether one does."""
         total: Array = np.zeros(self.columns.layout.n_states, dtype=np.int64)
+        undecided: list[tuple[ObjectBinding, Mask]] = []
         for name, kind in self.columns.objects.items():
             if self._vocabulary.is_subtype(kind, count.type):
                 inner = {**bound, count.variable: name}
                 truth = self._truth(count.body, inner)
                 there = self._there(name)
                 total += truth.true & there
-                if np.any(there & ~(truth.true | truth.false)):
-                    raise self._missing(count, inner)
-        return total
+                undecided.append((inner, there & ~(truth.true | truth.false)))
+        return total, undecided
 
     def _missing(self, count: ltl.Count, bound: ObjectBinding) -> NotGivenError:
         for part in ltl.atoms_of(count.body):

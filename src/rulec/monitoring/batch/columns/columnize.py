@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
 from contextlib import suppress
+from itertools import count, repeat
 from operator import itemgetter
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rulec.automata.thresholds import EXACT_IN_FLOATS
 from rulec.monitoring.batch.trace_groups import Names
 from rulec.monitoring.state_validation import NUMBERS, TRUTHS
 from rulec.trace.trace_columns import Array, Key, TraceCells, TraceColumns, smallest_unsigned
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, UnknownValue
 
 _NOT_GIVEN = object()
 _EMPTY: Mapping[str, Any] = {}
@@ -43,13 +46,21 @@ def columnize(
         values = [state.get(name, _NOT_GIVEN) for state in traces.states]
         columnizer.add(values, declaration, declaration.parameters, ())
     return TraceColumns(
-        traces.layout, columnizer.columns, traces.objects, traces.present, traces.step_s
+        traces.layout,
+        columnizer.columns,
+        traces.objects,
+        traces.present,
+        traces.step_s,
+        unknown=columnizer.unknown,
+        upper=columnizer.upper,
     )
 
 
 class _Columnizer:
     def __init__(self, traces: TraceCells, vocabulary: Vocabulary, names: Sequence[Names]) -> None:
         self.columns: dict[Key, Array] = {}
+        self.unknown: dict[Key, NDArray[np.bool_]] = {}
+        self.upper: dict[Key, NDArray[np.float64]] = {}
         self._names = names
         self._traces = traces
         self._vocabulary = vocabulary
@@ -64,8 +75,10 @@ class _Columnizer:
     ) -> None:
         """Add the columns of a name for some objects and further ones."""
         if not parameters:
-            self.columns[declaration.name, items] = self._column(values, declaration, items)
+            self._add_column(values, declaration, items)
             return
+        if UNKNOWN in values:
+            values = list(map(self._of_each, values, count(), repeat(parameters[0])))
         maps = [_EMPTY if value is _NOT_GIVEN else value for value in values]
         if not set(map(type, maps)) <= {dict}:
             raise UnencodableError
@@ -104,18 +117,37 @@ class _Columnizer:
             for place in map(self._names[0].index, maps[0])
         ]
 
-    def _column(
+    def _of_each(self, value: Any, place: int, kind: str) -> Any:
+        """What is unknown of everybody is so of each one."""
+        if value is not UNKNOWN:
+            return value
+        objects = self._traces.objects
+        names = self._names[place] if self._names else tuple(objects)
+        own = zip(names, objects.values(), strict=True)
+        return {name: UNKNOWN for name, type_ in own if self._vocabulary.is_subtype(type_, kind)}
+
+    def _add_column(
         self, values: Sequence[Any], declaration: Declaration, items: tuple[str, ...]
-    ) -> Array:
+    ) -> None:
         if _NOT_GIVEN in values:
-            filler = declaration.default
+            filler: Any = declaration.default
             if filler is None:
                 if self._are_there_in_any(items, values):
                     raise UnencodableError
                 # Where an object is not there, nothing reads what would be said of it.
                 filler = next(value for value in values if value is not _NOT_GIVEN)
             values = [filler if value is _NOT_GIVEN else value for value in values]
-        return encode_values(values, declaration).take(self._traces.cells)
+        cells, key = self._traces.cells, (declaration.name, items)
+        kinds = set(map(type, values))
+        if UnknownValue in kinds:
+            self.unknown[key] = np.array([value is UNKNOWN for value in values]).take(cells)
+            anything = one_value(declaration)
+            values = [anything if value is UNKNOWN else value for value in values]
+        if Interval in kinds:
+            highest = [value.high if type(value) is Interval else value for value in values]
+            self.upper[key] = encode_values(highest, declaration).take(cells)
+            values = [value.low if type(value) is Interval else value for value in values]
+        self.columns[key] = encode_values(values, declaration).take(cells)
 
     def _are_there_in_any(self, items: tuple[str, ...], values: Sequence[Any]) -> bool:
         places = {place for place, value in enumerate(values) if value is _NOT_GIVEN}
@@ -133,6 +165,13 @@ def _under(about: Mapping[str, Any], names: Mapping[str, str]) -> Mapping[str, A
         return {names[item]: value for item, value in about.items()}
     except KeyError:
         raise UnencodableError from None
+
+
+def one_value(declaration: Declaration) -> bool | float | str:
+    """Any value that a declaration allows."""
+    if isinstance(declaration, Enumeration):
+        return declaration.values[0]
+    return False if isinstance(declaration, Signal) else 0.0
 
 
 def column_dtype(declaration: Declaration) -> np.dtype[Any]:

@@ -1,0 +1,1 @@
+"""Verification of many traces of which not all is known."""

@@ -1,0 +1,189 @@
+"""Reader of columns of which some values are not known: what the digits of reads may be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.thresholds import exact, scale
+from rulec.logic import formula as ltl
+from rulec.logic.kleene import ObjectBinding
+from rulec.monitoring.batch.columns.column_reader import (
+    UNKNOWN as UNKNOWN_TRUTH,
+)
+from rulec.monitoring.batch.columns.column_reader import (
+    ColumnReader,
+    Mask,
+    NotGivenError,
+    Summand,
+    Truth,
+    digits_of_count,
+    digits_of_sum,
+)
+from rulec.monitoring.uncertainty.letter_diagram import Numbers
+from rulec.trace import Value
+from rulec.trace.trace_columns import Array, Key, TraceColumns
+from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
+
+
+def meanings_of(read: Read | NumberRead, vocabulary: Vocabulary) -> Sequence[int]:
+    """The digits, as bits, that each number of a read stands for.
+
+    A value has the number of its place among those declared, and what is unknown the one after
+    these. A number whose digit is between two has ``lowest * read.size + highest``.
+    """
+    every = (1 << read.size) - 1
+    if isinstance(read, Read):
+        declaration = vocabulary.declarations[read.name]
+        values: Sequence[bool | str] = (
+            declaration.values if isinstance(declaration, Enumeration) else (False, True)
+        )
+        return [*(1 << read.digit(value) for value in values), every]
+    return [
+        every >> low << low & (1 << high + 1) - 1
+        for low in range(read.size)
+        for high in range(read.size)
+    ]
+
+
+def quantity(read: NumberRead) -> Key:
+    """The quantity that a number is, with its variables; no name for a sum or a count."""
+    term = scale(read).quantity
+    return ("", ()) if term is None else (term.name, term.arguments)
+
+
+def number_of_value(
+    read: Read | NumberRead, value: Value, vocabulary: Vocabulary
+) -> tuple[int, int]:
+    """The number of what is unknown, and that of a value."""
+    if isinstance(read, NumberRead):
+        digit = read.digit(exact(value))  # type: ignore[arg-type]
+        return read.size - 1, digit * (read.size + 1)
+    declaration = vocabulary.declarations[read.name]
+    if isinstance(declaration, Enumeration):
+        return len(declaration.values), declaration.values.index(str(value))
+    return 2, int(value)
+
+
+class PartialReader(ColumnReader):
+    """A reader of the numbers of ``meanings_of``; a declared default may be ``UNKNOWN``."""
+
+    def __init__(self, columns: TraceColumns, vocabulary: Vocabulary) -> None:
+        super().__init__(columns, vocabulary)
+        self._numbers: dict[object, Numbers] = {}
+
+    def numbers(self, read: Read | NumberRead, bound: ObjectBinding) -> Numbers:
+        """The number of a read in each state, or one for all. Raises NotGivenError."""
+        about = read if isinstance(read, Read) else scale(read)
+        items = tuple([bound[variable] for variable in about.variables])
+        key = (read.name if isinstance(read, Read) else read), items
+        if key not in self._numbers:
+            self._numbers[key] = (
+                self._values(read.name, items)
+                if isinstance(read, Read)
+                else self._between(read, bound)
+            )
+        return self._numbers[key]
+
+    def _values(self, name: str, items: tuple[str, ...]) -> Numbers:
+        declaration = self._vocabulary.declarations[name]
+        n_values = len(declaration.values) if isinstance(declaration, Enumeration) else 2
+        if self.is_dark((name, items)):
+            return n_values
+        values = self.given(name, items)
+        if not isinstance(values, np.ndarray):
+            return int(values)
+        unknown = self.columns.unknown.get((name, items))
+        numbers = values.astype(np.intp)
+        return numbers if unknown is None else np.where(unknown, n_values, numbers)
+
+    def is_dark(self, key: Key) -> bool:
+        """Whether no state says a name, and its default is unknown."""
+        default: object = self._vocabulary.declarations[key[0]].default
+        return key not in self.columns.values and default is UNKNOWN
+
+    def _between(self, read: NumberRead, bound: ObjectBinding) -> Numbers:
+        lows: list[Summand] = []
+        highs: list[Summand] = []
+        unknown: Mask = np.False_
+        for factor, term in read.terms:
+            low, high, dark = self._bounds(term, bound)
+            lows.append((factor, low if factor > 0 else high))
+            highs.append((factor, high if factor > 0 else low))
+            unknown = unknown | dark
+        low_digits = self._digits_of(read, lows, unknown)
+        same = all(low is high for (_, low), (_, high) in zip(lows, highs, strict=True))
+        high_digits = low_digits if same else self._digits_of(read, highs, unknown)
+        numbers = low_digits * read.size + high_digits
+        return np.where(unknown, read.size - 1, numbers) if np.any(unknown) else numbers
+
+    def _digits_of(self, read: NumberRead, summands: Sequence[Summand], ignored: Mask) -> Array:
+        n_states = self.columns.layout.n_states
+        if isinstance(read.terms[0][1], ltl.Count) and len(read.terms) == 1:
+            return digits_of_count(read, np.asarray(summands[0][1])).astype(np.intp)
+        if scale(read).quantity is None:
+            return digits_of_sum(read, summands, n_states, ignored).astype(np.intp)
+        ((_, numbers),) = summands
+        if not isinstance(numbers, np.ndarray):
+            return np.full(n_states, scale(read).digit(numbers))
+        digits = np.zeros(n_states, dtype=np.intp)
+        for floor in scale(read).floors:
+            digits += numbers >= floor
+        return digits
+
+    def _bounds(
+        self, term: ltl.Term, bound: ObjectBinding
+    ) -> tuple[Array | float, Array | float, Mask]:
+        """The least and the most that a term may be, and where it is unknown."""
+        if isinstance(term, ltl.Count):
+            total, undecided = self.count(term, bound)
+            high = total
+            for inner, where in undecided:
+                if np.any(where):
+                    self._check_given(term.body, inner)
+                    high = high + where
+            return total, high, np.False_
+        key = term.name, tuple([bound[variable] for variable in term.arguments])
+        if self.is_dark(key):
+            return 0.0, 0.0, np.True_
+        low = self.given(*key)
+        return low, self.columns.upper.get(key, low), self.columns.unknown.get(key, np.False_)
+
+    def _check_given(self, body: ltl.Formula, bound: ObjectBinding) -> None:
+        """Raises NotGivenError if it might be because a value is missing that it is not known."""
+        for part in ltl.atoms_of(body):
+            terms = [part] if isinstance(part, ltl.Atom) else [term for _, term in part.terms]
+            for term in terms:
+                if isinstance(term, ltl.Count):
+                    raise NotGivenError("", ())
+                key = term.name, tuple([bound[variable] for variable in term.arguments])
+                if not self.is_dark(key):
+                    self.given(*key)
+
+    def atom(self, name: str, items: tuple[str, ...], expected: str | None) -> Truth:
+        """Three-valued truth of an atom in each state."""
+        if self.is_dark((name, items)):
+            return UNKNOWN_TRUTH
+        truth, unknown = (
+            super().atom(name, items, expected),
+            self.columns.unknown.get((name, items)),
+        )
+        return truth if unknown is None else Truth(truth.true & ~unknown, truth.false & ~unknown)
+
+    def _compared(self, comparison: ltl.Comparison, bound: ObjectBinding) -> Truth:
+        unknown: Mask = np.False_
+        for _, term in comparison.terms:
+            if isinstance(term, ltl.Count):
+                continue
+            key = term.name, tuple([bound[variable] for variable in term.arguments])
+            if self.is_dark(key):
+                return UNKNOWN_TRUTH
+            if key in self.columns.unknown:
+                unknown = unknown | self.columns.unknown[key]
+            if key in self.columns.upper:
+                unknown = unknown | (self.columns.upper[key] != self.columns.values[key])
+        truth = super()._compared(comparison, bound)
+        return Truth(truth.true & ~unknown, truth.false & ~unknown)

@@ -1,0 +1,115 @@
+"""A rule's machine on sets of letters, as tables: the subset construction of what has been met."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
+from rulec.monitoring.batch.machines.joint_machine import JointMachine
+from rulec.monitoring.uncertainty.letter_diagram import LetterSets
+from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
+
+MOST_ENTRIES = 1 << 18
+"""Sets of states times sets of letters; a larger machine is not made."""
+
+POSSIBLE, CERTAIN = 1, 2
+"""Bits of a verdict: some completion is not violated, every one is kept."""
+
+_LOST = -1
+"""Stands for all sets of states from which every word is violated."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetTable:
+    """A machine by numbers of letter sets; ``impossible`` are those that no state can have.
+
+    ``joint`` has the verdicts ``POSSIBLE`` and ``CERTAIN``, ``possible`` the first of these alone.
+    """
+
+    joint: JointMachine
+    possible: MealyMonitor
+    impossible: frozenset[int]
+
+
+class SetTables:
+    """The set machine of a rule for all letter sets that have been met."""
+
+    def __init__(self, machine: UncertainMachine, meanings: Sequence[Sequence[int]]) -> None:
+        self.machine = machine
+        self._meanings = meanings
+        self.letters = LetterSets(machine.classes.diagram, meanings)
+        self._known: tuple[int, SetTable | None] = 0, None
+
+    def now(self) -> SetTable | None:
+        """The machine for all sets met; None if it gets too large, and they are forgotten."""
+        sets = self.letters.sets
+        if self._known[0] != len(sets):
+            self._known = len(sets), set_table(self.machine.monitor, sets)
+            if self._known[1] is None:
+                self.letters = LetterSets(self.machine.classes.diagram, self._meanings)
+        return self._known[1]
+
+
+@lru_cache(maxsize=1 << 10)
+def set_tables(machine: UncertainMachine, meanings: tuple[tuple[int, ...], ...]) -> SetTables:
+    """The set machines of a rule, by what the numbers of its reads stand for."""
+    return SetTables(machine, meanings)
+
+
+def set_table(monitor: SetMonitor, sets: Sequence[int]) -> SetTable | None:
+    """Determinise for these sets of classes, as bits; None if it gets too large."""
+    lost = monitor.machine.lost
+
+    def key(number: int) -> int:
+        return _LOST if lost.issuperset(monitor.states(number)) else number
+
+    numbers = {key(monitor.start): 0}
+    successors: list[list[int]] = []
+    verdicts: list[list[int]] = []
+    possible_sets = [classes for classes in sets if classes]
+    if not possible_sets:
+        return None
+    for here in (waiting := [monitor.start]):
+        if len(waiting) * len(sets) > MOST_ENTRIES:
+            return None
+        steps = [monitor.step(here, classes) for classes in possible_sets]
+        row = []
+        for step in steps:
+            target = key(step.states)
+            if target not in numbers:
+                numbers[target] = len(numbers)
+                waiting.append(step.states)
+            row.append(numbers[target])
+        successors.append(row)
+        verdicts.append(
+            [POSSIBLE * (step.best != VIOLATED) | CERTAIN * (step.worst == KEPT) for step in steps]
+        )
+    # Sets with the same effects are one letter.
+    effects = list(zip(*successors, *verdicts, strict=True))
+    places: dict[tuple[int, ...], int] = {}
+    letter_of = [places.setdefault(effect, len(places)) for effect in effects]
+    n_states = len(successors)
+    next_states = tuple(zip(*[effect[:n_states] for effect in places], strict=True))
+    outputs = tuple(zip(*[effect[n_states:] for effect in places], strict=True))
+    letters = iter(letter_of)
+    joint = JointMachine(
+        (0,), tuple([next(letters) if classes else 0 for classes in sets]), next_states, outputs
+    )
+    can_be_kept = tuple([tuple([bool(x & POSSIBLE) for x in row]) for row in outputs])
+    sink = numbers.get(_LOST)
+    impossible = frozenset(n for n, classes in enumerate(sets) if not classes)
+    return SetTable(
+        joint,
+        MealyMonitor(
+            (),
+            (),
+            next_states,
+            can_be_kept,
+            rejecting_sink=sink,
+            accepting_sink=None,
+        ),
+        impossible,
+    )

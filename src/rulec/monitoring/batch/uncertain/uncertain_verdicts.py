@@ -1,0 +1,98 @@
+"""Verdicts on many traces of one shape of which not all is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.monitoring.batch.uncertain.uncertain_engine import uncertain_outcomes
+from rulec.monitoring.uncertainty.judged_rules import JudgedRules
+from rulec.monitoring.uncertainty.suppositions import spelled_out
+from rulec.monitoring.uncertainty.uncertain_verdict import presumed_in, uncertain_verdict
+from rulec.monitoring.verdict import OpenReasons, OpenVerdict, Verdict, Violation
+from rulec.trace import Trace
+from rulec.trace.trace_columns import TraceColumns
+
+
+def uncertain_verdicts(
+    columns: TraceColumns,
+    traces: Sequence[Trace],
+    rulebook: CompiledRulebook,
+    judged: JudgedRules,
+) -> Iterator[Verdict | None]:
+    """A verdict for each trace, in the layout's order; None where one has to look closer.
+
+    Raises NotGivenError where a rule needs what is neither given nor has a default.
+    """
+    unread: set[int] = set()
+    violations: dict[int, list[Violation]] = {}
+    doubtful: dict[int, list[OpenVerdict]] = {}
+    later = [_LaterReasons(trace, rulebook) for trace in traces]
+    places = {name: place for place, name in enumerate(columns.objects)}
+    objects = [tuple(trace.objects) for trace in traces]
+    for outcomes in uncertain_outcomes(columns, rulebook, judged):
+        rule, bound = outcomes.binding.rule, outcomes.binding.objects
+        chosen = [(variable, places[item]) for variable, item in bound.items()]
+
+        def own(
+            number: int, chosen: Sequence[tuple[str, int]] = tuple(chosen)
+        ) -> Mapping[str, str]:
+            names = objects[number]
+            return {variable: names[place] for variable, place in chosen}
+
+        unread.update(outcomes.unread.tolist())
+        lost = zip(outcomes.violated.tolist(), outcomes.lost_at.tolist(), strict=True)
+        for number, step in lost:
+            found = Violation(rule.name, rule.strength, own(number), None if step < 0 else step)
+            violations.setdefault(number, []).append(found)
+        for number in outcomes.open.tolist():
+            binding = own(number)
+            reasons = partial(later[number].of, rule.name, binding)
+            verdict = OpenVerdict.explained_later(rule.name, rule.strength, binding, reasons)
+            doubtful.setdefault(number, []).append(verdict)
+    is_partial = _are_partial(columns)
+    for number, trace in enumerate(traces):
+        if number in unread:
+            yield None
+            continue
+        found_here = tuple(violations.get(number, ()))
+        if not is_partial[number] and trace.ends == "complete" and trace.told is None:
+            yield Verdict(trace.id, found_here)
+            continue
+        presumed = presumed_in(trace, judged.presumed)
+        unsettled = tuple(doubtful.get(number, ()))
+        yield Verdict(trace.id, found_here, unsettled, judged.not_judged, presumed)
+
+
+def _are_partial(columns: TraceColumns) -> NDArray[np.bool_]:
+    """Whether anything of each trace is not known."""
+    layout = columns.layout
+    states = np.zeros(layout.n_states, dtype=bool)
+    for unknown in columns.unknown.values():
+        states |= unknown
+    for key, upper in columns.upper.items():
+        states |= upper != columns.values[key]
+    traces = np.zeros(layout.n_traces, dtype=bool)
+    traces[layout.traces_at(np.flatnonzero(states))] = True
+    return traces
+
+
+class _LaterReasons:
+    """Why verdicts on a trace are open, found when it is first asked of one of them."""
+
+    def __init__(self, trace: Trace, rulebook: CompiledRulebook) -> None:
+        self._trace = trace
+        self._rulebook = rulebook
+        self._open: dict[tuple[str, tuple[str, ...]], OpenVerdict] | None = None
+
+    def of(self, rule: str, binding: Mapping[str, str]) -> OpenReasons:
+        if self._open is None:
+            whole = spelled_out(self._trace, self._rulebook.vocabulary)
+            verdict = uncertain_verdict(whole, self._rulebook)
+            self._open = {(one.rule, tuple(one.binding.values())): one for one in verdict.open}
+        found = self._open[rule, tuple(binding.values())]
+        return OpenReasons(found.because, found.depends_on, found.outcomes, found.exact)

@@ -1,0 +1,61 @@
+"""Rules that can be judged from a source that cannot tell all, or has seen only a part."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.logic.free_names import names_in
+from rulec.monitoring.uncertainty.possible_letters import untold_names, with_untold
+from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
+from rulec.monitoring.verdict import RuleNotJudged
+from rulec.vocabulary import Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedRules:
+    """The rules that can be judged, with their machines, and those that cannot.
+
+    ``vocabulary`` has unknown defaults for what the source cannot tell; ``presumed`` are the names
+    that rules read and that have their defaults where no source tells them.
+    """
+
+    machines: tuple[tuple[CompiledRule, UncertainMachine], ...]
+    not_judged: tuple[RuleNotJudged, ...]
+    vocabulary: Vocabulary
+    presumed: tuple[str, ...]
+
+
+def judged_rules(
+    rulebook: CompiledRulebook, told: frozenset[str] | None, *, cut: bool
+) -> JudgedRules:
+    """The rules for a source that tells these names, all if None.
+
+    Left out are rules that no trace can be known to violate, and, of traces that are ``cut``, those
+    whose machine would be too large. Raises RulecError R0403 if Spot is not installed, which makes
+    the machines for these.
+    """
+    prefixes: Mapping[str, OutcomeMachine | None] | None = None
+    if cut:
+        prefixes = {} if rulebook.prefixes is None else rulebook.prefixes(rulebook)
+    unknown = untold_names(rulebook.vocabulary, told)
+    machines, not_judged = [], []
+    for rule in rulebook.rules:
+        outcomes = None if prefixes is None else prefixes.get(rule.name)
+        if prefixes is not None and outcomes is None:
+            why = "there is no machine for what it says of a trace that is cut"
+            not_judged.append(RuleNotJudged(rule.name, rule.strength, (), why))
+            continue
+        machine = uncertain_machine(rule, outcomes)
+        untold = machine.untold(unknown)
+        if untold:
+            not_judged.append(RuleNotJudged(rule.name, rule.strength, untold))
+        else:
+            machines.append((rule, machine))
+    declarations = rulebook.vocabulary.declarations
+    read = {name for rule in rulebook.rules for name in names_in(rule.formula)}
+    presumed = [name for name, item in declarations.items() if item.presumed and name in read]
+    vocabulary = with_untold(rulebook.vocabulary, unknown)
+    return JudgedRules(tuple(machines), tuple(not_judged), vocabulary, tuple(presumed))

@@ -1,0 +1,115 @@
+"""The values that unknown constants may have: each holds for a whole trace."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import product
+from math import prod
+from typing import Any
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.thresholds import exact
+from rulec.logic import formula as ltl
+from rulec.logic.free_names import names_in
+from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.completions import Subject, subjects_of_read
+from rulec.monitoring.uncertainty.linear_arrangement import LinearPlane, sample_points
+from rulec.trace import Value
+from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
+from rulec.vocabulary.vocabulary_model import choices
+
+MOST_ALTERNATIVES = 1 << 6
+"""Values of what does not change are gone through as long as there are no more combinations."""
+
+
+class ConstantsReader:
+    """The constants that the rules of a rulebook read, of a trace's objects."""
+
+    def __init__(
+        self, rulebook: CompiledRulebook, vocabulary: Vocabulary, objects: Mapping[str, str]
+    ) -> None:
+        self._vocabulary = vocabulary
+        self._everybody = StateView({}, objects, vocabulary)
+        self._facts = [axiom.formula for axiom in rulebook.axioms]
+        self._in_facts = {name for formula in self._facts for name in names_in(formula)}
+        self._of_facts = {
+            (name, items)
+            for name in self._in_facts.intersection(vocabulary.constants)
+            for items in choices(vocabulary.declarations[name].parameters, objects, vocabulary)
+        }
+
+    def read_by(self, rule: CompiledRule, objects: Mapping[str, str]) -> set[Subject]:
+        """The constants that a rule reads of its objects, and the facts of anybody."""
+        if not self._vocabulary.constants:
+            return set()
+        declarations = self._vocabulary.declarations
+        return self._of_facts.union(
+            subject
+            for read in rule.machine.reads
+            for subject in subjects_of_read(read, objects, self._everybody)
+            if declarations[subject[0]].constant
+        )
+
+    def suppositions(
+        self, rule: CompiledRule, given: Mapping[Subject, PartialValue | None]
+    ) -> tuple[list[dict[Subject, Value]], bool]:
+        """The values that constants of which all is ``given`` that is known may have, together.
+
+        Second is whether no more is supposed to be possible than is.
+        """
+        formulas = [rule.formula, *self._facts]
+        options: dict[Subject, Sequence[Value]] = {}
+        is_exact = True
+        for subject in sorted(given):
+            bounds = given[subject]
+            if type(bounds) not in UNKNOWN_TYPES:
+                continue
+            values = _values_of(self._vocabulary.declarations[subject[0]], bounds, formulas)
+            if values:
+                options[subject] = values
+            # Facts of which nothing is unknown once this is supposed are not held against it.
+            is_exact = is_exact and bool(values) and subject[0] not in self._in_facts
+        if prod(map(len, options.values())) > MOST_ALTERNATIVES:
+            return [{}], False
+        return [
+            dict(zip(options, chosen, strict=True)) for chosen in product(*options.values())
+        ], is_exact
+
+
+def _values_of(
+    declaration: Declaration, bounds: object, formulas: Sequence[ltl.Formula]
+) -> Sequence[Any]:
+    """Values that stand for all that formulas can tell apart; none if the name is in sums."""
+    name = declaration.name
+    match declaration:
+        case Enumeration(values=values):
+            return list(values)
+        case Signal():
+            return [False, True]
+    limits: set[Fraction] = set()
+    for terms, limit in (x for formula in formulas for x in _comparisons_with(name, formula)):
+        if len(terms) > 1:
+            return []
+        limits.add(limit / terms[0][0])
+    within = None
+    if isinstance(bounds, Interval):
+        within = exact(bounds.low), exact(bounds.high)
+    number = ltl.QuantityTerm(name)
+    planes = [LinearPlane({number: Fraction(1)}, limit) for limit in limits]
+    points = sample_points({number: within}, planes)
+    return [] if points is None else [point[number] for point in points]
+
+
+def _comparisons_with(
+    name: str, formula: ltl.Formula
+) -> Iterator[tuple[Sequence[tuple[Fraction, ltl.Term]], Fraction]]:
+    """The sums in which a quantity takes part, with their limits, within counts too."""
+    for atom in ltl.atoms_of(formula):
+        if isinstance(atom, ltl.Comparison):
+            for _, term in atom.terms:
+                if isinstance(term, ltl.Count):
+                    yield from _comparisons_with(name, term.body)
+                elif term.name == name:
+                    yield atom.terms, atom.limit
