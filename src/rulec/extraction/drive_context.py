@@ -67,9 +67,11 @@ class DriveContext:
 
     @cached_property
     def ego_lane(self) -> NDArray[intp]:
-        """The lane of ego's middle by state, numbered from the right."""
+        """The lane of ego's middle by state, numbered from the right, or the nearest that is."""
         lane: NDArray[intp] = self.road.lane_of(self.ego_extents.w)[0]
-        return lane
+        lanes = np.arange(self.existing_lanes.shape[1])
+        away = np.where(self.existing_lanes, abs(lanes - lane[:, None]), len(lanes))
+        return np.where(self.existing_lanes.any(axis=1), away.argmin(axis=1), lane)
 
     @cached_property
     def limit_mps(self) -> Floats:

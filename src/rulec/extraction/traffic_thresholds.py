@@ -109,6 +109,8 @@ LEAST_S: Mapping[str, float] = MappingProxyType(
             "straddling",
             "lane_position",
             "on_solid_line",
+            "broken_on_own_side",
+            "single_line",
             "accelerating",
             "braking_hard",
             "can_stop_at_once",

@@ -8,6 +8,7 @@ from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.scenario.recorded.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.generators.random_recordings import lanes
 
 JUNCTION = frozenset({"intersection"})
 
@@ -115,6 +116,15 @@ def test_lights_of_several_colours_leave_egos_unknown():
     assert found.unknown["light"].tolist() == [True, True]
     same = (Light(0, (("red", 9),)), Light(0, (("redYellow", 9),)))
     assert signals(along(60, 70), before={"lights": same}).world["light"][0] == "red_light"
+
+
+def test_where_no_ways_cross_there_is_no_light():
+    # The map ends at 300 m, beyond which there may be one
+    found = recording(lanes(2), [vehicle(7, {0: (240, 0), 1: (249, 0)})])
+    signals = junction_signals(context_of(found))
+    assert signals.world["light"].tolist() == ["no_light"] * 2
+    assert signals.unknown["light"].tolist() == [False, True]
+    assert not signals.world["crosses_light_line"].any()
 
 
 def test_a_map_without_lights_says_nothing_of_them():

@@ -6,7 +6,7 @@ import pytest
 
 from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
 from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording, vehicle
+from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 # From the right lane to the left one, at 10 m/s; the middle crosses the mark before state 2
@@ -131,3 +131,18 @@ def test_of_two_lines_the_one_on_ego_s_side_counts():
     # And in the left lane it is the other one
     known, _ = marks(2.5, "solid", "broken", route=("2",))
     assert (known["on_solid_line"], known["broken_on_own_side"]) == (True, True)
+
+
+def test_ego_is_in_a_lane_that_there_is():
+    # The third lane begins at 200 m: before it ego, on whose place it would be, is on the second
+    row = [straight(k, 0, 200, y=4 * (k - 1), successors=(k + 10,), **beside(k, 2)) for k in (1, 2)]
+    later = [straight(k + 10, 200, 400, y=4 * (k - 1), **beside(k, 3, 10)) for k in (1, 2, 3)]
+    found = recording([*row, *later], [vehicle(7, {0: (100, 8), 1: (300, 8)})])
+    assert context_of(found, ("1", "11")).ego_lane.tolist() == [1, 2]
+
+
+def beside(k, count, more=0):
+    return {
+        "left_of": k + 1 + more if k < count else None,
+        "right_of": k - 1 + more if k > 1 else None,
+    }

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from rulec.extraction.signals.settling import settled, without_blips
 from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.traffic_thresholds import LEAST_S
 
 columns = st.lists(st.sampled_from("abc"), min_size=1, max_size=20)
 
@@ -29,6 +30,10 @@ def test_a_short_value_between_equal_ones_is_noise():
 def test_flicker_is_settled_by_what_it_began_with():
     assert after("aaababaaa") == "aaaaaaaaa"
     assert after("aaabababbb") == "aaaaaaabbb"
+
+
+def test_what_is_said_of_one_line_is_settled_alike():
+    assert len({LEAST_S[x] for x in ("on_solid_line", "broken_on_own_side", "single_line")}) == 1
 
 
 def test_rows_are_settled_by_themselves():

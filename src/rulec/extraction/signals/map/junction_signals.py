@@ -42,9 +42,12 @@ def junction_signals(context: DriveContext) -> SignalColumns:
     complete = context.recording.complete
     if "STOP" in complete or any(STOP_SIGNS & lanelet.signs for lanelet in lanelets):
         world["crosses_stop_line"] = _crosses_stop_line(context, front)
-    if "light" in complete or any(lanelet.lights for lanelet in lanelets):
+    # Lights stand where ways cross, and nowhere else: without such a place there is none
+    nowhere = not context.surroundings.passages.junctions and not context.road.crossings
+    if nowhere or "light" in complete or any(lanelet.lights for lanelet in lanelets):
         world["light"], world["crosses_light_line"], changed = _lights(context, front)
-        unknown["light"] = world["light"] == ""
+        unseen = front + context.thresholds.light_reach_m > context.road.borders[-1]
+        unknown["light"] = (world["light"] == "") | (unseen & nowhere & ("light" not in complete))
         unknown["crosses_light_line"] = changed
     return SignalColumns(world, unknown=unknown)
 
