@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 import rulec
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.logic.formula import Unary, UnaryOperator
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.trace_history import only_trace, past_of
-from rulec.trace import Trace
+from rulec.trace import Trace, TraceGraph
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.rulebooks import (
     P,
     Q,
@@ -30,6 +32,18 @@ from support.builders.rulebooks import (
 from support.generators.random_graphs import graphs
 
 HALF = Fraction(1, 2)
+LONE = TraceGraph(
+    step_s=0.5,
+    objects={},
+    present={},
+    states=(({"p": True, "q": False, "place": {}},),),
+    successors=(),
+    weights=(),
+    margins=(),
+    cost_unit=Fraction(1),
+    start=0,
+    goals=(0,),
+)
 CARS = ("car1", "car2")
 RULES = compile_rulebook(
     book(
@@ -139,3 +153,38 @@ def test_there_is_one_past():
     with pytest.raises(RulecError) as error:
         only_trace([trace, unreadable], place)
     assert error.value is unreadable
+
+
+def test_what_of_the_past_is_unknown_leaves_open_what_hangs_on_it():
+    def counts(congested, **more):
+        state = {**BEHIND, "CONGESTED": congested}
+        past = Trace("t", 1.0, {"o1": "vehicle"}, (state,), **more)
+        found = rulec.find_maneuvers("s3", "esterle2019", after=past)
+        return found.satisfying, found.open, found.doubtful_past
+
+    (yes, *_), (no_, *_) = counts(True), counts(False)
+    assert yes > no_
+    assert counts(UNKNOWN) == (no_, yes - no_, ("R1",))
+
+
+def test_rules_that_look_back_are_open_behind_what_has_been_cut():
+    """Whoever has been near may have been so before the past begins."""
+    once = always(implies(P, Unary(UnaryOperator.ONCE, Q)))
+    rules = compile_rulebook(
+        book(rule("once", once), rule("later", always(implies(P, eventually(Q)))))
+    )
+    states = ({"p": True, "q": True},)
+    for ends, doubtful in (("complete", set()), ("cut", {"once"})):
+        past = Trace("past", 0.5, {}, states, ends=ends)
+        found = past_of(LONE, past, rules, HALF)
+        assert found.doubtful_rules == doubtful
+        (bound, *_) = instances(LONE, rules, past=found)
+        assert (bound.readings is not None) == bool(doubtful)
+
+
+def test_a_monitor_that_began_in_the_middle_is_no_past():
+    judge = Monitor(RULES, told=None, cut=True)
+    judge.step({"p": True, "q": True, "place": {}})
+    with pytest.raises(RulecError, match="before the first state of the past is unknown") as error:
+        past_of(LONE, judge, RULES, HALF)
+    assert [one.code for one in error.value.diagnostics] == ["R0511"]

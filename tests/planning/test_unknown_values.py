@@ -10,6 +10,7 @@ from hypothesis import Phase, given, settings
 import rulec
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.free_names import names_in
+from rulec.monitoring.online.running_monitor import Monitor
 from rulec.planning.maneuvers import evaluate
 from rulec.trace import Trace, TraceGraph
 from rulec.trace.trace_model import trace_of
@@ -17,6 +18,7 @@ from rulec.vocabulary import Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.full_vocabulary import WORLD
 from support.builders.rulebooks import P, Q, always, book, compile_here, implies, no, rule
+from support.builders.state_traces import as_trace
 from support.generators.blurred_traces import blurred, telling_numbers
 from support.generators.random_maneuvers import Given, scene
 from support.generators.random_traces import only
@@ -290,3 +292,62 @@ def test_probabilities_have_the_bounds_of_both_values(passing):
             assert (one.kept, one.at_most) == (other.kept, third.kept)
             differing += one.kept != one.at_most
     assert differing
+
+
+def later_violations(oracle, trace, n_past):
+    """Rules and objects whose violation is not decided by the end of the past."""
+    last = len(trace.states) - 1
+    for one in oracle.judged(trace):
+        ends = min((trace.present[name][1] for name in one.objects), default=last)
+        if (ends if one.step < 0 else one.step) >= n_past:
+            yield one.rule, one.objects
+
+
+@given(seeds)
+@settings(phases=[Phase.generate])
+def test_an_unknown_past_is_all_that_it_may_have_been(chance):
+    graph, rules, past = scene(chance, True)
+    every = [*islice(every_path(graph), MOST_PATHS + 1)]
+    if len(every) > MOST_PATHS:
+        return
+    names = {name for one in rules.rules for name in names_in(one.formula)}
+    whole = Trace("", graph.step_s, graph.objects, tuple(state for state, _ in past))
+    dark = blurred(chance, whole, names, most=3).states
+    begun = [(state, kinds) for state, (_, kinds) in zip(dark, past, strict=True)]
+    compiled = compile_here(rules, Fraction(1, 2))
+    monitor = Monitor(compiled, Fraction(1, 2))
+    for state, kinds in begun:
+        monitor.step(state, kinds)
+    found = evaluate(Given(graph), compiled, monitor)
+    if not found.in_doubt and chance.random() < 0.9:
+        return
+    hard = {one.name for one in rules.rules if one.strength == "hard"}
+    # Whether each rule that some completion violates later is violated later by all.
+    expected = {}
+    oracle = Oracle(rules)
+    for path in every:
+        own = trace_of(graph, path, "")
+        stays = [there(own, n) for n in range(len(own.states))]
+        onward = [(only(*each), each[1]) for each in zip(own.states, stays, strict=True)]
+        trace = as_trace([*begun, *onward], graph.step_s)
+        if next(islice(completions(trace, WORLD, NUMBERS), MOST_COMPLETIONS, None), None):
+            return
+        each = [
+            {*later_violations(oracle, complete, len(past))}
+            for _, complete in completions(trace, WORLD, NUMBERS)
+        ]
+        about = {key for keys in each for key in keys if key[0] in hard}
+        expected[path] = {all(key in keys for keys in each) for key in about}
+    sure = {path for path in every if not expected[path]}
+    perhaps = {path for path in every if True not in expected[path]}
+    known = {one.nodes for one in found.cheapest(MOST_PATHS)}
+    listed = found.cheapest(MOST_PATHS, perhaps=True)
+    assert known <= sure
+    assert {one.nodes for one in listed} >= perhaps
+    if found.exact:
+        assert known == sure, (graph, rules.rules, begun)
+        assert {one.nodes for one in listed} == perhaps, (graph, rules.rules, begun)
+    for one in listed:
+        verdict = found.verdict(one)
+        assert any(each.strength == "hard" for each in verdict.open) == (one.nodes not in known)
+        assert not any(each.strength == "hard" for each in verdict.violations)

@@ -208,12 +208,25 @@ RuleFor: TypeAlias = tuple[str, tuple[str, ...]]
 class CarriedState:
     """Machine states of objects that stay, and the permanent violations.
 
-    ``settled`` are rules for objects that stay that are among the ``violations``.
+    ``settled`` are rules for objects that stay that are among the ``violations``. Where the past
+    was not all known a machine may be in several ``possible`` states, and ``perhaps_settled`` are
+    rules of which it is not known whether they have been violated.
     """
 
     states: Mapping[RuleFor, int] = field(default_factory=lambda: MappingProxyType({}))
     settled: frozenset[RuleFor] = frozenset()
     violations: tuple[Violation, ...] = ()
+    possible: Mapping[RuleFor, frozenset[int]] = field(default_factory=lambda: MappingProxyType({}))
+    perhaps_settled: frozenset[RuleFor] = frozenset()
+
+    def starts(self, about: RuleFor) -> frozenset[int]:
+        """The states in which a machine may be."""
+        return self.possible.get(about) or frozenset({self.states.get(about, 0)})
+
+    @property
+    def doubtful_rules(self) -> frozenset[str]:
+        """The rules of which not all is known."""
+        return frozenset(rule for rule, _ in (*self.possible, *self.perhaps_settled))
 
 
 NO_PAST = CarriedState()

@@ -50,8 +50,9 @@ class Maneuvers(Rows):
     ``rules`` have judged them, by machines for the graph's step. ``paths`` is the graph in terms of
     their vocabulary. ``hard`` and ``product`` are about what is kept for sure, ``perhaps`` and
     ``possible`` about what is not violated for sure; where all is known they are the same.
-    ``after`` is the past, None if there was none. ``violated_before`` are
-    the hard rules that it has violated for good; nothing of that counts against a maneuver.
+    ``after`` is what was before, None if there was nothing, and ``past`` what that has come to for
+    the hard rules. ``violated_before`` are the hard rules that it has violated for good; nothing of
+    that counts against a maneuver.
     ``not_judged`` are rules that no maneuver can be known to violate. ``reading`` says what holds
     where the scenario does not tell.
     """
@@ -64,6 +65,7 @@ class Maneuvers(Rows):
     product: Product[Joint]
     perhaps: NodeTransformers
     possible: Product[Joint]
+    past: CarriedState
     after: Before | None = None
     violated_before: tuple[Violation, ...] | None = None
     not_judged: tuple[RuleNotJudged, ...] = ()
@@ -103,6 +105,17 @@ class Maneuvers(Rows):
         return self._read(partial)
 
     @property
+    def in_doubt(self) -> bool:
+        """Whether something is unknown that rules read, or hard rules in the past."""
+        return bool(self.unknown or self.doubtful_past)
+
+    @property
+    def doubtful_past(self) -> tuple[str, ...]:
+        """The hard rules of which it is not known what the past came to."""
+        doubtful = self.past.doubtful_rules
+        return tuple(rule.name for rule in self.rules.rules if rule.name in doubtful)
+
+    @property
     def by_default(self) -> tuple[str, ...]:
         """Names that rules read and the scenario leaves at their defaults."""
         supplied = {name for layer in self.paths.states for state in layer for name in state}
@@ -123,11 +136,13 @@ class Maneuvers(Rows):
 
     def verdict(self, maneuver: Maneuver) -> Verdict:
         """What a maneuver violates and what is open. Raises RulecError as ``best`` does."""
-        if not self.unknown:
-            name = self.graph.scenario.name
-            return Verdict(name, violations(self._every.instances, maneuver.nodes))
-        trace = trace_of(self.paths, maneuver.nodes, self.graph.scenario.name)
-        return uncertain_verdict(trace, self.rules, self._past)
+        every = self._every.instances
+        name = self.graph.scenario.name
+        if not any(instance.readings for instance in every):
+            return Verdict(name, violations(every, maneuver.nodes))
+        trace = trace_of(self.paths, maneuver.nodes, name)
+        past = past_for(self.graph, self.paths, self.rules, (*HARD, *SOFT), self.after)
+        return uncertain_verdict(trace, self.rules, past)
 
     def best(self, n: int = MOST_BEST) -> list[RankedManeuver]:
         """The least violating maneuvers: for each lowest penalty one of the cheapest.
@@ -192,10 +207,6 @@ class Maneuvers(Rows):
     @cached_property
     def _ranks(self) -> PenaltyOrder:
         return ranks_of(self.rules)
-
-    @cached_property
-    def _past(self) -> CarriedState:
-        return past_for(self.graph, self.paths, self.rules, (*HARD, *SOFT), self.after)
 
     @cached_property
     def _every(self) -> NodeTransformers:
@@ -288,6 +299,7 @@ def evaluate(
         product=product,
         perhaps=perhaps,
         possible=possible,
+        past=past,
         after=after,
         violated_before=None if after is None else past.violations,
         not_judged=tuple(not_judged(paths, rules, past)),

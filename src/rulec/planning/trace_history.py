@@ -9,9 +9,10 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.online.monitor_sources import read_saved, replay_trace
 from rulec.monitoring.online.running_monitor import Monitor
@@ -22,6 +23,8 @@ from rulec.planning.product.graph_instances import HARD
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import Trace, TraceGraph
 from rulec.trace.formats.trace_files import read_traces
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.vocabulary_model import choices
 
 Before: TypeAlias = Trace | Monitor | Mapping[str, Any]
 """A trace, a monitor that has taken one, or that monitor's snapshot."""
@@ -52,11 +55,42 @@ def past_of(
     try:
         past = monitor.past(there)
     except ValueError:
-        message = "what the past comes to for these rules depends on values that are unknown"
-        way_out = "give a past whose values are known, as far as these rules read them"
+        message = "what was before the first state of the past is unknown"
+        way_out = "give a past that is complete: one before which there was nothing"
         raise UNFITTING_PAST.error(place, message, help=way_out) from None
     violations = [own for own in past.violations if own.strength in strengths]
-    return replace(past, violations=tuple(violations))
+    past = replace(past, violations=tuple(violations))
+    if isinstance(before, Trace) and before.ends == "cut":
+        rules = [rule for rule in rulebook.rules if rule.strength in strengths]
+        return _begun_before(past, rules, there, rulebook.vocabulary)
+    return past
+
+
+def _begun_before(
+    past: CarriedState,
+    rules: Iterable[CompiledRule],
+    objects: Mapping[str, str],
+    vocabulary: Vocabulary,
+) -> CarriedState:
+    """The past of which the beginning has not been seen: rules that look back may be anywhere."""
+    looking_back = {
+        rule.name: rule
+        for rule in rules
+        if any(operation.operator in PAST for operation in operations_of(rule.formula))
+    }
+    anywhere = {
+        (name, items): frozenset(range(len(rule.machine.successors)))
+        for name, rule in looking_back.items()
+        for items in choices([each.type for each in rule.variables], objects, vocabulary)
+    }
+    known = [own for own in past.violations if own.rule not in looking_back]
+    return replace(
+        past,
+        settled=past.settled - anywhere.keys(),
+        violations=tuple(known),
+        possible={**past.possible, **anywhere},
+        perhaps_settled=past.perhaps_settled.union(anywhere),
+    )
 
 
 def read_past(path: Path) -> Before:

@@ -126,7 +126,7 @@ def command(
         if uncertain
         else {},
         verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or ()}
-        if maneuvers.unknown
+        if maneuvers.in_doubt
         else {},
         worlds=alternative_counts(maneuvers) if worlds else None,
         prunings=maneuvers.prunings() if why else None,

@@ -119,3 +119,12 @@ def _worst(verdicts: Iterable[RunningVerdict]) -> FourValued:
 
 WORST_FIRST: tuple[FourValued, ...] = ("violated", "pending", "holds so far", "satisfied")
 _FOUR = frozenset(WORST_FIRST)
+
+
+def without_sink(machine: MealyMonitor, states: frozenset[int]) -> frozenset[int]:
+    """The states without the one of words that were lost, if no kept word leads there."""
+    sink = machine.rejecting_sink
+    rows = zip(machine.successors, machine.outputs, strict=True)
+    if any(kept and target == sink for row in rows for target, kept in zip(*row, strict=True)):
+        return states
+    return states - {sink}

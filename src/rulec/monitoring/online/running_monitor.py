@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.online.bound_rules import BoundRules
-from rulec.monitoring.online.four_valued import MonitorEdge
+from rulec.monitoring.online.four_valued import MonitorEdge, without_sink, worst_of
 from rulec.monitoring.online.monitor_state import (
     MonitorState,
     SoFar,
@@ -24,9 +24,10 @@ from rulec.monitoring.online.rule_group import MOST_CACHED, rule_groups
 from rulec.monitoring.online.snapshot import from_data, restored, to_data, with_source
 from rulec.monitoring.online.transition_cache import TransitionCache
 from rulec.monitoring.state_validation import check_objects, check_told
-from rulec.monitoring.verdict import CarriedState, Violation
+from rulec.monitoring.verdict import CarriedState, RuleFor, Violation
 from rulec.trace import State
 from rulec.trace.trace_messages import NOT_A_TRACE
+from rulec.vocabulary.vocabulary_model import choices
 
 NO_OBJECTS: Mapping[str, str] = MappingProxyType({})
 
@@ -198,26 +199,40 @@ class Monitor:
     def past(self, objects: Mapping[str, str]) -> CarriedState:
         """Past that affects verdicts on future states with these objects.
 
-        Raises ValueError if it is not known in which states the rules' machines are.
+        Raises ValueError if it is unknown what was before the first state.
         """
         current = self._now[0]
-        if self._cut or self.not_judged:
-            raise ValueError("it depends on what is unknown")
+        if self._cut:
+            raise ValueError("it is unknown what was before")
         bound_rules = BoundRules(self._judged, current.bound_rules.groups, objects)
         edges, ended = carry_over(current.bound_rules, current.nodes, bound_rules)
         states, settled = {}, set()
+        possible: dict[RuleFor, frozenset[int]] = {}
+        doubtful: set[RuleFor] = set()
         for bound_rule in bound_rules.rules:
             name = bound_rule.prepared.name
             for items, edge in zip(bound_rule.bindings, edges[name], strict=True):
-                if not isinstance(edge, MonitorEdge):
-                    raise ValueError("it depends on what is unknown")
-                states[name, items] = edge.state
-                if edge.verdict == "violated":
-                    settled.add((name, items))
-        if current.doubted or any(change.verdict != "violated" for change in ended):
-            raise ValueError("it depends on what is unknown")
-        lost = [self._violation(change, None) for change in ended]
-        return CarriedState(states, frozenset(settled), (*self.violations, *lost))
+                if isinstance(edge, MonitorEdge):
+                    states[name, items] = edge.state
+                    if edge.verdict == "violated":
+                        settled.add((name, items))
+                    continue
+                possible[name, items] = frozenset(edge.states)
+                if worst_of(edge.verdict) == "violated":
+                    doubtful.add((name, items))
+        if self.so_far.state >= 0:
+            dark = [rule for rule in self._rulebook.rules if rule.name in self.not_judged]
+            for rule in dark:
+                kinds = [variable.type for variable in rule.variables]
+                for items in choices(kinds, objects, self._rulebook.vocabulary):
+                    possible[rule.name, items] = frozenset(range(len(rule.machine.successors)))
+                    doubtful.add((rule.name, items))
+        machines = {rule.name: rule.machine for rule in self._rulebook.rules}
+        for about in doubtful:
+            possible[about] = without_sink(machines[about[0]], possible[about])
+        lost = [self._violation(change, None) for change in ended if change.verdict == "violated"]
+        violations = (*self.violations, *lost)
+        return CarriedState(states, frozenset(settled), violations, possible, frozenset(doubtful))
 
     def snapshot(self) -> dict[str, Any]:
         """The monitor's state, for ``restore``: data that JSON can take."""

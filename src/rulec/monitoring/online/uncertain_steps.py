@@ -32,7 +32,8 @@ MOST_STEPS = 1 << 16
 class UncertainEdge:
     """Several edges of a monitor: the states that may be reached, and the verdicts.
 
-    Of the states those are left out that lie between two others in what they can still come to.
+    Of the states those are left out that lie between two others in what they can still come to,
+    of those from which nothing is kept all but one.
     It has no ``successors``, since these depend on more than a letter.
     """
 
@@ -77,7 +78,9 @@ class UncertainSteps:
 
     def edge(self, states: Iterable[int], verdicts: Iterable[FourValued]) -> Edge:
         """The edges to any of these states, with verdicts from the worst to the best of these."""
-        members = self._machine.extremes(states)
+        # What was lost stays apart: who goes on from here may leave it out.
+        lost = self._machine.lost.intersection(states := frozenset(states))
+        members = self._machine.extremes(states - lost) | frozenset(sorted(lost)[:1])
         ranks = sorted(map(WORST_FIRST.index, verdicts))
         verdict = within(WORST_FIRST[ranks[-1]], WORST_FIRST[ranks[0]])
         single = isinstance(verdict, str) and self._single.get((min(members), verdict))

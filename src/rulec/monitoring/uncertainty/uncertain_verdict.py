@@ -8,7 +8,7 @@ facts. Of a cut trace see ``rulec.automata.prefix_machines``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
@@ -74,9 +74,11 @@ class UncertainRun:
             presumed_in(self.trace, self.judged.presumed),
         )
 
-    def outcomes(self, rule: CompiledRule, binding: Binding, start: int) -> tuple[int, int]:
-        """The best and the worst outcome of a complete trace, from a state of the machine on."""
-        machine = uncertain_machine(rule, None, (start,))
+    def outcomes(
+        self, rule: CompiledRule, binding: Binding, starts: Iterable[int]
+    ) -> tuple[int, int]:
+        """The best and the worst outcome of a complete trace, from states of the machine on."""
+        machine = uncertain_machine(rule, None, starts)
         best, worst, _ = machine.answer(self._words(rule, machine, binding)[0])
         return best, worst
 
@@ -87,17 +89,20 @@ class UncertainRun:
         declared = self.vocabulary
         for binding in bindings(rule, declared, trace.objects, trace.present, len(trace.states)):
             objects, own = binding.objects, machine
-            if binding.first == 0:
+            perhaps_settled = False
+            if binding.first == 0 and self.past is not NO_PAST:
                 about = (rule.name, tuple(objects.values()))
                 if about in self.past.settled:
                     continue
-                if start := self.past.states.get(about, 0):
-                    own = uncertain_machine(rule, None, (start,))
+                perhaps_settled = about in self.past.perhaps_settled
+                own = uncertain_machine(rule, None, self.past.starts(about))
             words, constants, is_exact = self._words(rule, own, binding)
             answer = own.answer(words)
             if answer.worst == KEPT:
                 continue
-            if answer.best == VIOLATED:
+            if answer.best == VIOLATED and perhaps_settled:
+                yield OpenVerdict(rule.name, rule.strength, objects, ("began before",))
+            elif answer.best == VIOLATED:
                 step = None if answer.step is None else binding.first + answer.step
                 yield Violation(rule.name, rule.strength, objects, step)
             else:

@@ -70,7 +70,7 @@ def rule_probabilities(maneuvers: Maneuvers, maneuver: Maneuver) -> RuleProbabil
     """
     path = predicted_path(maneuvers.graph, maneuver.nodes)
     surely = perhaps = ViolationEvents(maneuvers, path)
-    if maneuvers.unknown:
+    if surely.in_doubt:
         perhaps = ViolationEvents(maneuvers, path, perhaps=True)
     not_judged = {rule.rule for rule in maneuvers.not_judged}
     rules, hard = [], []

@@ -53,6 +53,7 @@ class ViolationEvents:
         self._past = past_for(
             maneuvers.graph, maneuvers.paths, maneuvers.rules, (*HARD, *SOFT), maneuvers.after
         )
+        self.in_doubt = bool(maneuvers.unknown or self._past.doubtful_rules)
         self._everybody = self._columns(self._words.objects)
 
     @property
@@ -145,7 +146,7 @@ class ViolationEvents:
             objects=objects,
             present=self._words.present,
         )
-        if not self._unknown:
+        if not self.in_doubt:
             return _Columns(known)
         words = self._words
         there = {name: span for name, span in words.present.items() if name in objects}
@@ -153,7 +154,8 @@ class ViolationEvents:
         return _Columns(known, UncertainRun(trace, self._book))
 
     def _is_in_doubt(self, rule: CompiledRule) -> bool:
-        return not self._unknown.isdisjoint(names_in(rule.formula))
+        unknown = not self._unknown.isdisjoint(names_in(rule.formula))
+        return unknown or rule.name in self._past.doubtful_rules
 
     def _bindings(self, rule: CompiledRule) -> Iterator[Binding]:
         """Bindings whose objects' predictions can come true together."""
@@ -172,10 +174,13 @@ class ViolationEvents:
             return True
         if not self._path.hit.isdisjoint(names):
             return False
-        start = self._past.states.get(about, 0) if goes_on else 0
+        starts = self._past.starts(about) if goes_on else frozenset({0})
         if columns.uncertain is not None and self._is_in_doubt(rule):
-            best, worst = columns.uncertain.outcomes(rule, binding, start)
+            if self._perhaps and goes_on and about in self._past.perhaps_settled:
+                return True
+            best, worst = columns.uncertain.outcomes(rule, binding, starts)
             return (best if self._perhaps else worst) == KEPT
+        (start,) = starts
         word = columns.known.word(rule, binding.objects, binding.first, binding.last)
         return run(rule.machine, word, start)[0]
 

@@ -52,7 +52,8 @@ def instances(
     places = [f"a cell of layer {layer}".format for layer in range(len(graph.states))]
     partial = [validator.check(*layer) for layer in zip(graph.states, places, strict=True)]
     possible = None
-    if any(partial) or graph.told is not None:
+    doubtful = past.doubtful_rules
+    if any(partial) or graph.told is not None or doubtful:
         possible = PossibleNodes(graph, rulebook, places)
     columns = [
         LetterReader(
@@ -67,7 +68,7 @@ def instances(
         check_counting_axioms(rulebook, len(states), read.view, where, None)
     result: list[GraphInstance] = []
     for rule in rules:
-        if possible is not None and possible.concern(rule):
+        if possible is not None and (rule.name in doubtful or possible.concern(rule)):
             result += possible.instances(rule, past)
             continue
         alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
@@ -89,7 +90,7 @@ def instances(
 
 
 def violations(rules: Sequence[GraphInstance], nodes: Sequence[int]) -> tuple[Violation, ...]:
-    """Violations of a path, with the layer of each bad prefix."""
+    """Violations of a path whose letters are known, with the layer of each bad prefix."""
     result = []
     for rule in rules:
         path = nodes[rule.first : rule.last + 1]

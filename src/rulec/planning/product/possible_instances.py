@@ -8,7 +8,7 @@ made a machine of their own, so that paths can be counted by it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
@@ -28,7 +28,7 @@ from rulec.monitoring.uncertainty.suppositions import (
     with_supposed,
 )
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
-from rulec.monitoring.verdict import CarriedState, RuleNotJudged
+from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged
 from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine
 from rulec.trace import Trace, TraceGraph, Value
 
@@ -42,6 +42,24 @@ _Word: TypeAlias = tuple[tuple[int, ...], ...]
 """For each node of each layer the classes of its possible letters, as bits."""
 
 _Subject: TypeAlias = tuple[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Start:
+    """The states in which a machine may be, and whether the rule may be settled already."""
+
+    states: frozenset[int] = frozenset({0})
+    perhaps_settled: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Alike:
+    """What bindings of a rule have to have in common to be one instance."""
+
+    first: int
+    start: _Start
+    words: tuple[_Word, ...]
+    exact: bool
 
 
 class PossibleNodes:
@@ -80,7 +98,8 @@ class PossibleNodes:
 
     def untold(self, rule: CompiledRule, past: CarriedState) -> tuple[str, ...]:
         """Untold names for want of which no path can be known to violate a rule."""
-        if any(state for (name, _), state in past.states.items() if name == rule.name):
+        begun = [state for (name, _), state in past.states.items() if name == rule.name]
+        if any(begun) or rule.name in past.doubtful_rules:
             return ()
         return uncertain_machine(rule, None).untold(self._untold)
 
@@ -93,20 +112,18 @@ class PossibleNodes:
             return []
         graph, machine = self._graph, uncertain_machine(rule, None)
         n_layers = len(graph.states)
-        alike: dict[tuple[object, ...], tuple[tuple[_Word, ...], bool, list[Binding]]] = {}
+        alike: dict[_Alike, list[Binding]] = {}
         for binding in bindings(rule, self._vocabulary, graph.objects, graph.present, n_layers):
             about = (rule.name, tuple(binding.objects.values()))
             if binding.first == 0 and about in past.settled:
                 continue
-            start = past.states.get(about, 0) if binding.first == 0 else 0
+            start = _Start()
+            if binding.first == 0 and past is not NO_PAST:
+                start = _Start(past.starts(about), about in past.perhaps_settled)
             words, is_exact = self._words(rule, machine, binding)
-            key = binding.first, start, words, is_exact
-            alike.setdefault(key, (words, is_exact, []))[2].append(binding)
-        return [
-            self._instance(rule, machine, start, (words, is_exact), tuple(bound))
-            for (_, start, *_), (words, is_exact, bound) in alike.items()
-            if isinstance(start, int)
-        ]
+            key = _Alike(binding.first, start, words, is_exact)
+            alike.setdefault(key, []).append(binding)
+        return [self._instance(rule, machine, key, tuple(bound)) for key, bound in alike.items()]
 
     def _words(
         self, rule: CompiledRule, machine: UncertainMachine, binding: Binding
@@ -144,27 +161,34 @@ class PossibleNodes:
         self,
         rule: CompiledRule,
         machine: UncertainMachine,
-        start: int,
-        found: tuple[tuple[_Word, ...], bool],
+        alike: _Alike,
         bound: tuple[Binding, ...],
     ) -> GraphInstance:
-        words, is_exact = found
+        words, start = alike.words, alike.start
         symbols = [
             list(zip(*columns, strict=True)) for columns in zip(*words, strict=True)
         ]  # by layer and node: the classes for each choice of constants
         every = {symbol for layer in symbols for symbol in layer}
-        if all(len(symbol) == 1 and not symbol[0] & (symbol[0] - 1) for symbol in every):
+        known = all(len(symbol) == 1 and not symbol[0] & (symbol[0] - 1) for symbol in every)
+        if known and len(start.states) == 1 and not start.perhaps_settled:
             letters = tuple([tuple([x.bit_length() - 1 for (x,) in layer]) for layer in symbols])
-            return GraphInstance(rule, bound, letters, start)
+            return GraphInstance(rule, bound, letters, min(start.states))
         order = tuple(sorted(every))
         key = rule.name, start, order
         if key not in self._machines:
-            starts = (machine.monitor.number(start),) * len(words)
-            self._machines[key] = order, readings(machine.monitor, starts, order)
+            starts = (machine.monitor.number(*start.states),) * len(words)
+            made = readings(machine.monitor, starts, order)
+            if start.perhaps_settled:
+                kept = [[True] * len(order) for _ in made.perhaps.outputs]
+                made = replace(made, perhaps=replace(made.perhaps, outputs=kept))
+            self._machines[key] = order, made
         place = {symbol: number for number, symbol in enumerate(order)}
         letters = tuple([tuple([place[symbol] for symbol in layer]) for layer in symbols])
         own = self._machines[key][1]
-        return GraphInstance(rule, bound, letters, 0, replace(own, exact=own.exact and is_exact))
+        # That it was violated before and that it was just lost are not told apart.
+        vague = start.perhaps_settled and rule.machine.rejecting_sink in start.states
+        is_exact = own.exact and alike.exact and not vague
+        return GraphInstance(rule, bound, letters, 0, replace(own, exact=is_exact))
 
 
 def not_judged(

@@ -279,7 +279,7 @@ def _scene(maneuvers: Maneuvers, account: Account) -> SceneData:
 
 
 def _ranked(maneuvers: Maneuvers, answers: ManeuverAnswers, ranked: RankedManeuver) -> ManeuverData:
-    in_doubt = bool(maneuvers.unknown)
+    in_doubt = maneuvers.in_doubt or bool(ranked.open)
     return _maneuver(
         maneuvers.graph,
         ranked.maneuver,

@@ -116,12 +116,15 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
 
 def _doubts(maneuvers: Maneuvers) -> Iterator[str]:
     """What not all being known comes to."""
-    if maneuvers.unknown and maneuvers.judges:
+    if maneuvers.in_doubt and maneuvers.judges:
         more = "" if maneuvers.exact else ", or fewer: there was too much to look at"
         yield f"open        {styled(shown_count(maneuvers.open), 'bold')} more{more}"
     if maneuvers.unknown:
         names = first_of(maneuvers.unknown, MOST_DEFAULTS)
         yield visible(f"unknown     {names}: not, or not exactly, known")
+    if maneuvers.doubtful_past:
+        names = first_of(maneuvers.doubtful_past, MOST_DEFAULTS)
+        yield visible(f"unknown     what was before, for {names}")
     if maneuvers.not_judged:
         dark = first_of([rule.rule for rule in maneuvers.not_judged], MOST_DEFAULTS)
         number = f"{len(maneuvers.not_judged)} of {len(maneuvers.rules.rules)} rules"
