@@ -23,6 +23,18 @@ def _bodies(tree):
     return (one for moment in tree.getroot() for one in moment if one.tag in _BODIES)
 
 
+def thinned(files, folder, every=2):
+    """One moment in so many: half the work, and no less to see."""
+    copy = _copied(files, folder)
+    tree = ElementTree.parse(files.data)
+    root = tree.getroot()
+    for number, moment in enumerate(list(root)):
+        if number % every:
+            root.remove(moment)
+    tree.write(copy.data)
+    return copy
+
+
 def with_noise(files, folder, noise_m=0.0, rounded_m=0.0, seed=1):
     """Places with normal noise of each state's own, or rounded; speeds are left as they are."""
     copy, pick = _copied(files, folder), random.Random(seed)

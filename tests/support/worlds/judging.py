@@ -2,7 +2,7 @@
 
 from concurrent.futures import ProcessPoolExecutor
 
-from support.worlds.disturbances import at_frames, mirrored, with_noise
+from support.worlds.disturbances import at_frames, mirrored, thinned, with_noise
 from support.worlds.raw_labels import LABELLED, labels
 from support.worlds.raw_recordings import RawRecording
 from support.worlds.scoring import Score, answers, scores, true_facts
@@ -11,7 +11,9 @@ from support.worlds.stored import SMALL, StoredWorld
 from support.worlds.world_kinds import KINDS
 from support.worlds.world_state import WorldState
 
+USUAL = "thinned"
 DISTURBANCES = {
+    USUAL: thinned,
     "rounded": lambda files, folder: with_noise(files, folder, rounded_m=0.1),
     "noise": lambda files, folder: with_noise(files, folder, noise_m=0.3),
     "mirrored": mirrored,
@@ -27,8 +29,8 @@ def judged(sumo, name, seed, folder, disturbance=None):
     kind = KINDS[name]
     files = simulate(sumo, kind, seed, folder)
     facts = true_facts(WorldState(files, 0.1, kind.book))
-    if disturbance:
-        files = DISTURBANCES[disturbance](files, folder / disturbance)
+    seen = DISTURBANCES[disturbance or USUAL]
+    files = seen(files, folder / (disturbance or USUAL))
     found = answers(files.data, kind.book, files.net)
     return scores(facts, found, kind.book, f"{name} {seed}")
 
