@@ -9,7 +9,7 @@ from rulec.extraction.to_trace import Drive
 
 _EITHER = frozenset(
     (
-        *("CONGESTED", "about_to_overtake", "abreast_at_narrowing", "accelerating"),
+        *("CONGESTED", "about_to_overtake", "abreast_at_narrowing", "accelerating", "ahead_for"),
         *("arrived_together", "being_overtaken", "braking_hard", "broken_on_own_side"),
         *("built_up", "came_up_beside", "can_stop_at_once", "conflict_from_left"),
         *("conflict_from_right", "conflict_on_roundabout", "congested", "crosses_light_line"),

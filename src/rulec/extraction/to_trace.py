@@ -13,6 +13,7 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.clearance_signals import clearance_signals
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
+from rulec.extraction.signals.following_signals import following_signals
 from rulec.extraction.signals.intention_signals import intention_signals
 from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
@@ -81,6 +82,7 @@ def presences(context: DriveContext) -> Iterator[Presence]:
 _SIGNALS: tuple[Callable[[DriveContext], SignalColumns], ...] = (
     ego_signals,
     participant_signals,
+    following_signals,
     map_signals,
     road_signals,
     junction_signals,

@@ -21,6 +21,7 @@ RECORDED_UNITS = {
     "gap": "m",
     "time_headway": "s",
     "lateral_gap": "m",
+    "ahead_for": "s",
     "distance_to_crossing": "m",
     "ego_length": "m",
     "visibility": "m",

@@ -9,6 +9,8 @@ DRIVERS = frozenset({"car", "truck", "bus", "motorcycle", "taxi", "priorityVehic
 REACTION_S, BRAKING_MPS2 = 1.0, 8.0
 _SPEED_MPS, _SPEED_S = 0.6, 1.0
 _GAP_M, _GAP_S = 1.5, 0.8
+_CUT_IN_S = 2.0
+"""Of a pair that nobody has seen for longer, one may have cut in just before."""
 _IN_LANE_M, _ALIKE_DEG = 0.9, 15.0
 _BESIDE_LANE_M = 2.8
 _LIGHT_S = 0.5
@@ -82,7 +84,10 @@ def tailgating(recording, track):
         possible[rows[near]] = True
         same = _same_lanelet(recording, track, other, rows)
         alike = np.abs(turned) < _ALIKE_DEG
-        sure[rows[near & same & alike & (short > _GAP_M)]] = True
+        surely = near & same & alike & (short > _GAP_M)
+        for begin, end in runs(surely):
+            surely[begin : end + 1] = end * recording.step_s >= _CUT_IN_S
+        sure[rows[surely]] = True
     masks = (sure, possible, _GAP_S)
     yield from _graded(recording, track, "following_distance", masks)
 
