@@ -24,12 +24,13 @@ def right_facts(world):
 
 
 def give_way_facts(world):
-    """Where a sign makes a road give way, at junctions that are no roundabouts."""
+    """Where a sign makes a road give way; at roundabouts those on the ring come from many sides."""
     for crossing, other, grade, at in _conflicts(world):
         link = crossing.link
-        if _gives_way(world, link) and not _on_ring(world, link.end):
+        if _gives_way(world, link):
             side = abs(_comes_from(world, link, other.link))
             sure = grade and _SIDEWAYS_DEG[0] < side < _SIDEWAYS_DEG[1]
+            sure &= not _on_ring(world, link.end)
             yield Fact(crossing.track.id, "give_way_sign", *at, sure, other.track.id)
 
 
