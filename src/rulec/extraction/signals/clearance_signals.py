@@ -46,9 +46,9 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     """Does what comes towards ego leave room to overtake, and where is that unknown?
 
     It does where ego need not leave the lanes of its direction, on the far one of which it may be
-    already, and else if ego and the nearest one that comes would not meet within ``overtaking_s``.
-    Who is farther than ``near_m`` is not there: at speeds at which that is too near nothing is
-    known.
+    already. Else nobody that comes would meet ego within ``overtaking_s``, as fast as both are, nor
+    does meet it. Where the drive ends before, and ego is so fast that somebody may come from beyond
+    ``near_m``, it is unknown.
     """
     limits = context.thresholds
     own_lanes = (context.existing_lanes.sum(axis=1) > 1) & ~_beyond_own_lanes(context)
@@ -60,14 +60,27 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     alone = own_lanes | np.array([one_way is True for one_way in directions])
     own = np.maximum(context.ego_extents.along[0], 0.0)
     against = (context.extents.along * KMH < -limits.standing_kmh) & context.relevant
-    against &= (np.cos(context.extents.turned) < 0) & (
-        relations.station(context) == relations.BEHIND
-    )
+    against &= np.cos(context.extents.turned) < 0
     against &= np.array(context.tracks.of_type("vehicle"), dtype=bool)[:, None]
+    station = relations.station(context)
     closing: Floats = np.maximum(own - context.extents.along, 0.1)
-    meets = (against & (relations.gap(context) / closing < limits.overtaking_s)).any(axis=0)
+    would_meet = (station == relations.BEHIND) & (
+        relations.gap(context) / closing < limits.overtaking_s
+    )
+    steps = round(limits.overtaking_s / context.recording.step_s)
+    met = (against & (station == relations.BESIDE)).any(axis=0)
+    meets = (against & would_meet).any(axis=0) | _soon(met, steps)
+    ends = np.arange(context.states) + steps >= context.states
     far_enough = 2 * own * limits.overtaking_s <= limits.near_m
-    return alone | ~meets, ~alone & ~meets & ~far_enough
+    return alone | ~meets, ~alone & ~meets & ends & ~far_enough
+
+
+def _soon(flags: Flags, steps: int) -> Flags:
+    """Flags that hold now or at most so many states later."""
+    after = np.concatenate(([0], np.cumsum(flags)))
+    states = np.arange(len(flags))
+    soon: Flags = after[np.minimum(states + steps + 1, len(flags))] > after[states]
+    return soon
 
 
 def _beyond_own_lanes(context: DriveContext) -> Flags:
@@ -81,18 +94,24 @@ def _beyond_own_lanes(context: DriveContext) -> Flags:
 
 
 def _obstructed(context: DriveContext) -> Flags:
-    """Flags of states in which what stands ahead in ego's lane leaves no room within it."""
-    straight, lane = context.road.lanes.straight, context.ego_lane
-    width = context.ego_extents.d_max[0] - context.ego_extents.d_min[0] + _BESIDE_M
+    """Flags of states in which what stands in a lane that ego is in leaves no room within it.
+
+    Ahead, beside ego, or so near behind it that ego may still be on its way back.
+    """
+    straight, own = context.road.lanes.straight, context.ego_extents
+    width = own.d_max[0] - own.d_min[0] + _BESIDE_M
     stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    low, high = own.w_min[0][:, None], own.w_max[0][:, None]
+    used = np.minimum(high, straight[1:]) - np.maximum(low, straight[:-1]) > 0
+    used[np.arange(context.states), context.ego_lane] = True
+    counts = context.relevant & stands & (relations.gap(context) <= _OBSTACLE_M)
     others = context.extents
-    same = np.take_along_axis(context.touched, lane[None, :, None], axis=2)[..., 0]
-    room = np.maximum(others.w_min - straight[lane], straight[lane + 1] - others.w_max)
-    ahead = (relations.gap(context) <= _OBSTACLE_M) & (
-        relations.station(context) != relations.IN_FRONT_OF
-    )
-    blocks: Flags = (context.relevant & stands & same & ahead & (room < width)).any(axis=0)
-    return blocks
+    blocked = np.zeros(context.states, dtype=bool)
+    for lane in range(used.shape[1]):
+        room = np.maximum(others.w_min - straight[lane], straight[lane + 1] - others.w_max)
+        blocks = counts & context.touched[..., lane] & (room < width)
+        blocked |= used[:, lane] & blocks.any(axis=0)
+    return blocked
 
 
 def _room_on_near_side(context: DriveContext) -> Flags:
