@@ -34,13 +34,6 @@ def test_the_limit_of_the_lanelet_under_ego():
     assert "limit" not in map_signals(context([90, 110])).world
 
 
-def test_the_class_of_the_road_is_unknown_where_no_type_says_it():
-    found = map_signals(context([90, 110], first={"types": frozenset({"interstate"})}))
-    assert found.world["road_class"].tolist() == ["motorway", ""]
-    assert found.unknown["road_class"].tolist() == [False, True]
-    assert "road_class" not in map_signals(context([90, 110])).world
-
-
 def test_signs_of_lines_hold_until_the_line_is_crossed():
     signs = {"signs": frozenset({"STOP", "NO_OVERTAKING_START"})}
     # The front is at 92, 101, 105, the middle at 90, 99, 103

@@ -19,11 +19,16 @@ MOST_LANELETS = 24
 _FULL_TURN = 2 * np.pi
 _UNEVEN = 0.5
 
+_EVERY_M = 2.0
+_STRAIGHT_M, _LEAST_TURN = 30.0, 0.2
+"""A roundabout turns by more (rad) on each stretch of such a length."""
+
 
 def ring_lanelets(recording: Recording, side: Side) -> frozenset[str]:
     """The lanelets of roundabouts: the map's own, or else rings of its lanelets.
 
-    A ring leads round once, away from ``side``, is joined and left, and nobody crosses it.
+    A ring leads round once, away from ``side``, is nowhere straight for long, as the streets around
+    a block are, is joined and left, and nobody crosses it.
     """
     known = recording.lanelets
     marked = frozenset(name for name, lanelet in known.items() if "roundabout" in lanelet.types)
@@ -37,7 +42,7 @@ def ring_lanelets(recording: Recording, side: Side) -> frozenset[str]:
     for start in bent:
         if start not in found:
             for ring in _rings(lanes, turned, start, towards):
-                if not _crossed(ring, lanes) and _is_joined(ring, lanes):
+                if _is_round(ring, lanes) and not _crossed(ring, lanes) and _is_joined(ring, lanes):
                     found.update(ring)
                     break
     return frozenset(found)
@@ -87,6 +92,19 @@ def _corner(before: Lanelet, after: Lanelet) -> float:
 
 def _length(lanelet: Lanelet) -> float:
     return float(np.hypot(*np.diff(lanelet.centre, axis=0).T).sum())
+
+
+def _is_round(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
+    """True if a ring turns by a little on every stretch of some length."""
+    line = shapely.LinearRing(np.concatenate([lanes[name].centre for name in ring]))
+    count = max(int(line.length / _EVERY_M), 8)
+    places = shapely.get_coordinates(
+        shapely.line_interpolate_point(line, np.arange(count) / count, normalized=True)
+    )
+    headings = np.arctan2(*np.diff(places, axis=0, append=places[:1]).T[::-1])
+    apart = min(round(_STRAIGHT_M / (line.length / count)), count - 1)
+    turned = np.abs(np.angle(np.exp(1j * (np.roll(headings, -apart) - headings))))
+    return bool(turned.min() > _LEAST_TURN)
 
 
 def _crossed(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:

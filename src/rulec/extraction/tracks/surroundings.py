@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -65,13 +66,16 @@ class Surroundings:
         """Is its carriageway one-way, and do a strip or barrier part it from the opposite one?
 
         By the nearest lane beside its middle that leads the other way. Where a map has no such lane
-        anywhere it may have left them out.
+        anywhere it may have left them out. In a junction by the road that leads there.
         """
         if lanelet.id not in self._directions:
             self._directions[lanelet.id] = self._computed(lanelet)
         return self._directions[lanelet.id]
 
     def _computed(self, lanelet: Lanelet) -> Directions:
+        if "intersection" in lanelet.types:
+            found = {self.directions(road) for road in self._roads_before(lanelet)}
+            return found.pop() if len(found) == 1 else (None, None)
         nearest = self._nearest_opposite(lanelet)
         if nearest <= SAME_CARRIAGEWAY_M:
             return False, False
@@ -82,6 +86,18 @@ class Surroundings:
             True if complete or self._both_ways else None,
             False if complete else None,
         )
+
+    def _roads_before(self, lanelet: Lanelet) -> Iterator[Lanelet]:
+        """The lanelets that lead into a junction, and on to one in it."""
+        seen, waiting = {lanelet.id}, [lanelet]
+        while waiting:
+            for name in set(waiting.pop().predecessors) & self.recording.lanelets.keys() - seen:
+                seen.add(name)
+                before = self.recording.lanelets[name]
+                if "intersection" in before.types:
+                    waiting.append(before)
+                else:
+                    yield before
 
     def _nearest_opposite(self, lanelet: Lanelet) -> float:
         """The distance (m) from its carriageway to a lane that leads the other way."""

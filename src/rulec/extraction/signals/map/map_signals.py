@@ -1,4 +1,4 @@
-"""Signals of the map around ego: surface, limit, road class, signs, crossings."""
+"""Signals of the map around ego: surface, limit, signs, crossings."""
 
 from __future__ import annotations
 
@@ -27,9 +27,6 @@ _SIGNS = {
 }
 """Sign -> signal, and whether it is for the line at the lanelet's end."""
 
-_CLASSES = {"highway": "motorway", "interstate": "motorway", "country": "ordinary_road"}
-_CLASSES |= {"ordinary": "ordinary_road"}
-
 
 def map_signals(context: DriveContext) -> SignalColumns:
     """The signals of ego's road, as far as the map knows them."""
@@ -44,13 +41,6 @@ def map_signals(context: DriveContext) -> SignalColumns:
     unknown: dict[str, Flags] = {}
     if any(lanelet.limit_mps is not None for lanelet in context.recording.lanelets.values()):
         world["limit"] = rounded(np.minimum(context.limit_mps * KMH, NO_LIMIT_KMH))
-    classes = [
-        next((_CLASSES[kind] for kind in lanelet.types if kind in _CLASSES), "")
-        for lanelet in lanelets
-    ]
-    if any(classes):
-        world["road_class"] = np.array(classes)
-        unknown["road_class"] = world["road_class"] == ""
     for sign, (name, at_line) in _SIGNS.items():
         drawn = any(sign in lanelet.signs for lanelet in context.recording.lanelets.values())
         if drawn or sign in context.recording.complete:

@@ -6,18 +6,25 @@ What a map leaves out is unknown unless its format would have it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.tracks.surroundings import Directions
 from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.recording import Lanelet
+
+_Value = TypeVar("_Value")
 
 _OUTSIDE = frozenset({"country", "rural", "highway", "interstate"})
 _SETTINGS = _OUTSIDE | {"urban"}
 _URBAN_KMH = 70.0
 """In built-up areas limits are hardly higher."""
+
+_CLASSES = {"highway": "motorway", "interstate": "motorway", "country": "ordinary_road"}
+_CLASSES |= {"ordinary": "ordinary_road"}
 
 _LANE_KINDS = {
     "accessRamp": "entry_lane",
@@ -36,8 +43,13 @@ def road_signals(context: DriveContext) -> SignalColumns:
     is_town = _by_lanelet(own, _town(context))
     if any(_SETTINGS & lanelet.types for lanelet in context.recording.lanelets.values()):
         world["built_up"], unknown["built_up"] = _told(is_town)
+    classes = [_class(lanelet, town) for lanelet, town in zip(own, is_town, strict=True)]
+    if any(classes):
+        world["road_class"] = np.array(classes)
+        unknown["road_class"] = world["road_class"] == ""
+    both = _by_lanelet(own, _directions(context))
     for number, name in enumerate(("one_way", "divided")):
-        told = _by_lanelet(own, lambda x: context.surroundings.directions(x)[number])  # noqa: B023
+        told = [pair[number] for pair in both]
         if any(value is not None for value in told):
             world[name], unknown[name] = _told(told)
     lanelets = context.recording.lanelets.values()
@@ -63,10 +75,24 @@ def _told(values: Sequence[bool | None]) -> tuple[Flags, Flags]:
     return np.array([bool(x) for x in values]), np.array([x is None for x in values])
 
 
-def _by_lanelet(
-    own: Sequence[Lanelet], value: Callable[[Lanelet], bool | None]
-) -> list[bool | None]:
-    known: dict[str, bool | None] = {}
+def _class(lanelet: Lanelet, town: bool | None) -> str:
+    """The class of a road, empty if unknown; in a built-up area it is an ordinary one."""
+    told = next((_CLASSES[kind] for kind in _CLASSES if kind in lanelet.types), "")
+    return told or ("ordinary_road" if town else "")
+
+
+def _directions(context: DriveContext) -> Callable[[Lanelet], Directions]:
+    """A function that says whether a lanelet's road is one-way, and divided.
+
+    Across the island of a roundabout is not the other direction of a road.
+    """
+    ring = context.surroundings.ring(context.side)
+    of_road = context.surroundings.directions
+    return lambda lanelet: (True, False) if lanelet.id in ring else of_road(lanelet)
+
+
+def _by_lanelet(own: Sequence[Lanelet], value: Callable[[Lanelet], _Value]) -> list[_Value]:
+    known: dict[str, _Value] = {}
     for lanelet in own:
         if lanelet.id not in known:
             known[lanelet.id] = value(lanelet)
