@@ -30,6 +30,9 @@ _SURE_M = 0.4
 
 _LARGEST_TURN = np.pi / 3
 
+_ALIKE = 0.5
+"""Ways whose turns differ by less (rad) lead to the same road."""
+
 
 @dataclass(frozen=True, eq=False)
 class Passage:
@@ -51,12 +54,16 @@ class Passage:
 
 @dataclass(frozen=True, eq=False)
 class JunctionPassages:
-    """All passages of a recording, by participant and by junction."""
+    """All passages of a recording, by participant and by junction.
+
+    ``astray``: by junction the row, first and last column of who was in it on no way of the map.
+    """
 
     tracks: Tracks
     junctions: tuple[Junction, ...]
     of_row: Mapping[int, tuple[Passage, ...]]
     through: Mapping[int, tuple[Passage, ...]]
+    astray: Mapping[int, tuple[tuple[int, int, int], ...]]
 
     @cached_property
     def lengths(self) -> Floats:
@@ -147,6 +154,7 @@ def junction_passages(recording: Recording, tracks: Tracks) -> JunctionPassages:
     junctions = junctions_of(recording)
     of_row: dict[int, list[Passage]] = defaultdict(list)
     through: dict[int, list[Passage]] = defaultdict(list)
+    astray: dict[int, list[tuple[int, int, int]]] = defaultdict(list)
     moving = np.array(
         [
             not body.standing and "pedestrian" not in body.object_types
@@ -166,7 +174,9 @@ def junction_passages(recording: Recording, tracks: Tracks) -> JunctionPassages:
             for row in np.flatnonzero(inside.any(axis=1)).tolist():
                 for first, last in _runs(inside[row]):
                     passage = _passage(junctions[number].ways, tracks, row, (first, last), number)
-                    if passage is not None:
+                    if passage is None:
+                        astray[number].append((row, first, last))
+                    else:
                         of_row[row].append(passage)
                         through[number].append(passage)
     ordered = {
@@ -174,7 +184,20 @@ def junction_passages(recording: Recording, tracks: Tracks) -> JunctionPassages:
         for row, found in of_row.items()
     }
     by_junction = {number: tuple(found) for number, found in through.items()}
-    return JunctionPassages(tracks, junctions, ordered, by_junction)
+    strays = {number: tuple(found) for number, found in astray.items()}
+    return JunctionPassages(tracks, junctions, ordered, by_junction, strays)
+
+
+def _is_alike(one: JunctionWay, other: JunctionWay, place: shapely.Point) -> bool:
+    """True if ways lead to the same road, or are the same up to a place."""
+    same_road = abs(one.turned - other.turned) < _ALIKE
+    return same_road or _lanelets_until(one, place) == _lanelets_until(other, place)
+
+
+def _lanelets_until(way: JunctionWay, place: shapely.Point) -> tuple[str, ...]:
+    """The lanelets of a way up to the one whose middle a place is nearest to."""
+    away = shapely.distance([shapely.LineString(x.centre) for x in way.lanelets], place)
+    return tuple(lanelet.id for lanelet in way.lanelets[: int(np.argmin(away)) + 1])
 
 
 def _runs(flags: Flags) -> Iterator[tuple[int, int]]:
@@ -201,7 +224,7 @@ def _passage(
     if not len(away) or not away[best] <= _FARTHEST_M:
         return None
     close: NDArray[intp] = np.flatnonzero(away < away[best] + _SURE_M)
-    sure = whole or all(abs(ways[k].turned - ways[best].turned) < 0.5 for k in close.tolist())
+    sure = whole or all(_is_alike(ways[k], ways[best], points[-1]) for k in close.tolist())
     return Passage(
         row=row,
         junction=junction,

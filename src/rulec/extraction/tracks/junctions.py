@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
+from itertools import pairwise, takewhile
 
 import numpy as np
 import shapely
@@ -98,7 +98,7 @@ class Junction:
     def meeting(self, way: int, other: int) -> tuple[Interval, Interval] | None:
         """Where a way and another cross or join, along either (m), or None.
 
-        Ways from one lanelet, which part, do not cross.
+        Ways from one lanelet, which part, do not cross; those that share lanelets join before them.
         """
         if (way, other) not in self._met:
             self._met[way, other] = _meeting(self.ways[way], self.ways[other])
@@ -113,12 +113,34 @@ class Junction:
         )
 
 
+def before_joining(way: JunctionWay, other: JunctionWay) -> tuple[Lanelet, ...]:
+    """The lanelets of a way before the first of the other one's that both share."""
+    shared = next((x.id for x in other.lanelets if x.id in way.names), "")
+    return tuple(takewhile(lambda lanelet: lanelet.id != shared, way.lanelets))
+
+
 def _meeting(way: JunctionWay, other: JunctionWay) -> tuple[Interval, Interval] | None:
-    if way.names & other.names or way.entries & other.entries:
+    if way.entries & other.entries:
         return None
     foes = way.lanelets[0].foes
     if foes is not None and not foes & other.names:
         return None
+    for one in (way, other) if way.names & other.names else ():
+        # Where they have joined they follow each other: they meet before, as where they leave
+        shared = next(x.id for x in one.lanelets if x.id in way.names & other.names)
+        parts = [_until(x, shared) for x in (way, other)]
+        if all(part.lanelets for part in parts) and (met := _overlap(*parts)):
+            return met
+    return None if way.names & other.names else _overlap(way, other)
+
+
+def _until(way: JunctionWay, lanelet: str) -> JunctionWay:
+    """The part of a way before a lanelet."""
+    part = tuple(takewhile(lambda x: x.id != lanelet, way.lanelets))
+    return JunctionWay(part, frozenset(), frozenset())
+
+
+def _overlap(way: JunctionWay, other: JunctionWay) -> tuple[Interval, Interval] | None:
     both = shapely.intersection(way.area, other.area)
     if both.is_empty:
         return None

@@ -16,9 +16,10 @@ import shapely
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.oncoming_priority import gives_way_to, turns_far
+from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import Junction, approaches
+from rulec.extraction.tracks.junctions import Junction, approaches, before_joining
 from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.reference_line import turn
 
@@ -70,6 +71,7 @@ def priority_signals(context: DriveContext) -> SignalColumns:
         if not passage.sure:
             for name in _CONFLICTS:
                 unknown[name][_approach(context, passage)] = True
+    unknown[_RING] |= without_junction(context)
     world: dict[str, SignalColumn] = {**roads, **conflicts}
     world |= {"arrived_together": together, "other_in_junction": other_inside}
     either: Flags = np.any([unknown[name] & ~conflicts[name] for name in _SIDES], axis=0)
@@ -229,7 +231,9 @@ def _kinds(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ..
     side = _side(angle)
     if not side or (side == _ONCOMING and not gives_way_to(context, own, other)):
         return ()
-    ring = bool(way.entries & context.surroundings.ring(context.side))
+    own_way = passages.way(own)
+    came_on = way.entries | {lanelet.id for lanelet in before_joining(way, own_way)}
+    ring = bool(came_on & context.surroundings.ring(context.side))
     return (side, _RING) if ring else (side,)
 
 
@@ -241,15 +245,20 @@ def _side(angle: float) -> str:
 
 
 def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
-    """The sides from which somebody might still come whose track ends before the junction.
+    """The sides from which somebody might come whose way through the junction is not known.
 
-    In a simulation who is gone before the end has arrived somewhere.
+    Somebody who is on no way of the map, or whose track ends before the junction. In a simulation
+    who is gone before the end has arrived somewhere.
     """
     passages, shift = context.surroundings.passages, _shift(context)
     tracks, step_s = passages.tracks, context.recording.step_s
     area = passages.junctions[own.junction].area
     through = {x.row for x in passages.through[own.junction]}
     latest = _leaves_at_latest(context, own) + context.thresholds.yielding_s / step_s
+    for row, first, last in passages.astray.get(own.junction, ()):
+        if row != own.row and last >= own.first and first <= latest:
+            through.add(row)
+            yield _side(float(np.degrees(turn(own.heading, tracks.heading[row, first]))))
     simulated = "arrivals" in context.recording.complete
     for row, body in enumerate(tracks.participants):
         if body.standing or row in through or "pedestrian" in body.object_types:

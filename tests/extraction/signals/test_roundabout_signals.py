@@ -1,0 +1,271 @@
+"""Roundabouts: rings of lanelets that are round, who drives into one, and who comes around.
+
+The ring has a radius of 15 m about the origin and four arms; traffic keeps to the right. Ego comes
+from the west on y = -4 and gets to the ring at 200°.
+"""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
+from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.extraction.tracks.rings import ring_lanelets
+from support.builders.drive_contexts import context_of
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+RADIUS_M, STEP_S = 15.0, 0.25
+ARMS = (180, 270, 0, 90)
+INSIDE = frozenset({"intersection"})
+
+
+def around(first, last, count=13, radius=RADIUS_M):
+    angles = np.radians(np.linspace(first, last, count))
+    return radius * np.stack((np.cos(angles), np.sin(angles)), axis=1)
+
+
+def joining(start, heading, end, leaving):
+    """A curve from a place and direction (degrees) to another."""
+    start, end = np.array(start, dtype=float), np.array(end, dtype=float)
+    far = np.hypot(*(end - start)) / 2.5
+    first, last = (
+        far * np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+        for angle in (heading, leaving)
+    )
+    t = np.linspace(0, 1, 13)[:, None]
+    corners = start, start + first, end - last, end
+    shares = (1 - t) ** 3, 3 * (1 - t) ** 2 * t, 3 * (1 - t) * t**2, t**3
+    return sum(share * corner for share, corner in zip(shares, corners, strict=True))
+
+
+def turned(points, angle):
+    turn = np.radians(angle)
+    return np.asarray(points, dtype=float) @ np.array(
+        [(np.cos(turn), np.sin(turn)), (-np.sin(turn), np.cos(turn))]
+    )
+
+
+ENTRY = joining((-30, -4), 0, around(200, 200, 1)[0], 290)
+EXIT = joining(around(160, 160, 1)[0], 250 - 360 + 360, (-30, 4), 180)
+
+
+@cache
+def roundabout(style, signs=()):
+    """``style``: which lanelets are in junctions: none, those at the arms, or all of the ring."""
+    at_arms = {"types": INSIDE} if style in ("arms", "all") else {}
+    on_ring = {"types": INSIDE} if style == "all" else {}
+    lanes = []
+    for k, arm in enumerate(ARMS):
+        own = {"junction": f"arm {k}"} if style == "arms" else {}
+        after = (k + 1) % 4
+        way_in, way_out, before, inner, piece = (f"{name}{k}" for name in "abcde")
+        lanes += [
+            lanelet(
+                way_in,
+                turned([(-90, -4), (-30, -4)], arm - 180),
+                successors=(before,),
+                signs=frozenset(signs),
+            ),
+            lanelet(
+                before,
+                turned(ENTRY, arm - 180),
+                predecessors=(way_in,),
+                successors=(piece,),
+                **at_arms,
+                **own,
+            ),
+            lanelet(
+                inner,
+                around(arm - 20, arm + 20),
+                predecessors=(f"e{(k - 1) % 4}",),
+                successors=(piece,),
+                **at_arms,
+                **own,
+            ),
+            lanelet(
+                piece,
+                around(arm + 20, arm + 70),
+                predecessors=(before, inner),
+                successors=(f"d{after}", f"f{after}"),
+                **on_ring,
+            ),
+            lanelet(
+                f"f{k}",
+                turned(EXIT, arm - 180),
+                predecessors=(f"e{(k - 1) % 4}",),
+                successors=(way_out,),
+                **at_arms,
+                **own,
+            ),
+            lanelet(way_out, turned([(-30, 4), (-90, 4)], arm - 180), predecessors=(f"f{k}",)),
+        ]
+    return tuple(lanes)
+
+
+RING = {f"{name}{k}" for name in "de" for k in range(4)}
+
+
+@pytest.mark.parametrize("style", ["none", "arms", "all"])
+def test_the_ring_is_found_however_junctions_are_drawn(style):
+    found = recording(roundabout(style))
+    assert ring_lanelets(found, "right") == RING
+    # The other way round nobody drives around it
+    assert ring_lanelets(found, "left") == frozenset()
+    assert ring_lanelets(mirrored_recording(found), "left") == RING
+
+
+def block(side_m, corner_m=6.0):
+    """The left turns around a block of streets, and the streets that go on."""
+    half = side_m / 2
+    lanes = []
+    for k in range(4):
+        way = [(-half + corner_m, -half), (half - corner_m, -half)]
+        angles = np.radians(np.linspace(-90, 0, 10))
+        centre = half - corner_m
+        bend = np.stack(
+            (centre + corner_m * np.cos(angles), -centre + corner_m * np.sin(angles)), axis=1
+        )
+        on = [(half - corner_m, -half), (half + 60, -half)]
+        names = (f"s{k}", f"t{k}", f"o{k}")
+        after = f"s{(k + 1) % 4}"
+        lanes += [
+            lanelet(names[0], turned(way, 90 * k), successors=(names[1], names[2])),
+            lanelet(names[1], turned(bend, 90 * k), predecessors=(names[0],), successors=(after,)),
+            lanelet(names[2], turned(on, 90 * k), predecessors=(names[0],)),
+        ]
+    return lanes
+
+
+def test_streets_around_a_block_are_no_roundabout():
+    assert ring_lanelets(recording(block(60)), "right") == frozenset()
+    assert ring_lanelets(recording(block(70)), "right") == frozenset()
+
+
+def test_a_map_without_lanes_has_none():
+    walk = lanelet(1, [(0, 0), (9, 0)], types=frozenset({"sidewalk"}))
+    assert ring_lanelets(recording([walk]), "right") == frozenset()
+
+
+def test_a_net_names_its_own():
+    found = replace(recording(roundabout("arms")), complete=frozenset({"roundabout"}))
+    assert ring_lanelets(found, "right") == frozenset()
+    marked = [
+        replace(x, types=x.types | {"roundabout"}) if x.id[0] == "e" else x
+        for x in roundabout("arms")
+    ]
+    # What leads from one part of it to the next is of it, too
+    assert ring_lanelets(replace(recording(marked), complete=found.complete), "right") == RING
+
+
+TIMES = np.arange(0, 12, STEP_S)
+ENTERING = np.concatenate(
+    ([(-90.0, -4.0)], ENTRY, around(200, 340), turned(EXIT, -180), turned([(-90, 4)], -180))
+)
+CIRCLING = np.concatenate((turned([(-90, -4)], -90), turned(ENTRY, -90), around(110, 470, 200)))
+
+
+def along(number, line, way, kind="car"):
+    """A vehicle whose middle is so far along a line at each step."""
+    steps = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
+    place, ahead = (
+        [np.interp(way + more, steps, line[:, axis]) for axis in (0, 1)] for more in (0.0, 0.1)
+    )
+    heading = np.arctan2(ahead[1] - place[1], ahead[0] - place[0])
+    bodies = [
+        vehicle(number, {k: (place[0][k], place[1][k])}, kind, heading=heading[k])
+        for k in range(len(way))
+    ]
+    return replace(
+        bodies[0],
+        states={k: body.states[k] for k, body in enumerate(bodies)},
+        outlines={k: body.outlines[k] for k, body in enumerate(bodies)},
+    )
+
+
+# At 6 m/s: the middle is at the entry, 60 m along, at 3 s, and on the ring, 81 m along, at 6.5 s
+EGO = 42 + 6 * TIMES
+ROUTE = ("a0", "c0", "e0", "d1", "e1", "f2", "b2")
+
+
+def seen(style, *others, signs=(), ego=EGO, complete=()):
+    found = recording(roundabout(style, signs), [along(7, ENTERING, ego), *others])
+    return replace(found, step_s=STEP_S, complete=frozenset(complete))
+
+
+def both_sides(signals_of, found):
+    right = signals_of(context_of(found, ROUTE))
+    left = signals_of(context_of(mirrored_recording(found), ROUTE, "left"))
+    for name in ("enters_roundabout", "roundabout", "conflict_on_roundabout"):
+        if name in right.world:
+            assert right.world[name].tolist() == left.world[name].tolist()
+    return right
+
+
+@pytest.mark.parametrize("style", ["none", "arms", "all"])
+def test_where_ego_enters_it_and_is_on_it(style):
+    found = both_sides(roundabout_signals, seen(style))
+    (entered,) = np.flatnonzero(found.world["enters_roundabout"])
+    inside = np.flatnonzero(found.world["roundabout"])
+    # With a junction at the arm ego's front is there at 2.7 s; else it is on the ring at about 5.5 s
+    expected = 5.5 if style == "none" else 2.7
+    assert TIMES[entered] == pytest.approx(expected, abs=0.5)
+    assert TIMES[inside[0]] == pytest.approx(expected + 0.3, abs=0.6)
+    assert inside[-1] == len(TIMES) - 1
+
+
+def test_a_drive_that_begins_on_it_does_not_enter_it():
+    found = both_sides(roundabout_signals, seen("arms", ego=EGO[30:]))
+    assert not found.world["enters_roundabout"].any()
+    assert found.world["roundabout"].all()
+
+
+def test_signs_before_the_ring():
+    signed = roundabout_signals(context_of(seen("arms", signs=("YIELD",)), ROUTE))
+    assert signed.world["roundabout_signed"].any()
+    bare = roundabout_signals(context_of(seen("arms"), ROUTE))
+    assert not bare.world["roundabout_signed"].any()
+    assert bare.unknown["roundabout_signed"].any()
+    net = roundabout_signals(context_of(seen("arms", complete=["YIELD"]), ROUTE))
+    assert not (net.world["roundabout_signed"] | net.unknown["roundabout_signed"]).any()
+
+
+def circling(at_entry_s, mps=6.0):
+    """One that has come from the north, and is at 200°, where ego joins the ring, at a time."""
+    before = 60 + np.hypot(*np.diff(ENTRY, axis=0).T).sum() + np.radians(90) * RADIUS_M
+    way = before + mps * (TIMES - at_entry_s)
+    return along(8, CIRCLING, np.clip(way, 0.0, None))
+
+
+@pytest.mark.parametrize("style", ["arms", "all"])
+@pytest.mark.parametrize(
+    ("at_s", "conflict"), [(7.3, True), (4.5, False), (11.5, False)], ids=["next", "gone", "far"]
+)
+def test_who_comes_around(style, at_s, conflict):
+    # Ego's front gets to the ring at about 6 s, its rear leaves the place at about 7.5 s
+    found = both_sides(priority_signals, seen(style, circling(at_s)))
+    (entered,) = np.flatnonzero(
+        roundabout_signals(context_of(seen(style), ROUTE)).world["enters_roundabout"]
+    )
+    assert bool(found.world["conflict_on_roundabout"][entered]) == conflict
+    assert not found.unknown["conflict_on_roundabout"][entered]
+
+
+def test_without_a_junction_on_the_map_nobody_knows():
+    found = both_sides(priority_signals, seen("none", circling(7.3)))
+    (entered,) = np.flatnonzero(
+        roundabout_signals(context_of(seen("none"), ROUTE)).world["enters_roundabout"]
+    )
+    assert not found.world["conflict_on_roundabout"].any()
+    assert found.unknown["conflict_on_roundabout"][entered]
+
+
+def test_a_straight_road_has_nothing_of_it():
+    road = [straight(1, 0, 200)]
+    found = recording(road, [vehicle(7, {0: (10, 0), 1: (20, 0)})])
+    signals = roundabout_signals(context_of(found))
+    for name in ("roundabout", "enters_roundabout", "roundabout_signed"):
+        assert not signals.world[name].any()
+    assert not priority_signals(context_of(found)).unknown["conflict_on_roundabout"].any()
