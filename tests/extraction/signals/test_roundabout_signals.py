@@ -209,7 +209,7 @@ def test_where_ego_enters_it_and_is_on_it(style):
     found = both_sides(roundabout_signals, seen(style))
     (entered,) = np.flatnonzero(found.world["enters_roundabout"])
     inside = np.flatnonzero(found.world["roundabout"])
-    # With a junction at the arm ego's front is there at 2.7 s; else it is on the ring at about 5.5 s
+    # With a junction at the arm ego's front is there at 2.7 s; else on the ring at about 5.5 s
     expected = 5.5 if style == "none" else 2.7
     assert TIMES[entered] == pytest.approx(expected, abs=0.5)
     assert TIMES[inside[0]] == pytest.approx(expected + 0.3, abs=0.6)
