@@ -29,8 +29,10 @@ def intention_signals(context: DriveContext) -> SignalColumns:
     blue = _flashing(blue, context)
     called = context.tracks.of_type("emergency_vehicle")[:, None]
     kinds = np.array([body.type == "unknown" for body in context.tracks.participants], dtype=bool)
-    near: Flags = called & context.relevant & _comes_near(context)
-    comes: Flags = np.any(near & blue, axis=0)
+    not_told = (called & ~blue_told & ~blue) | kinds[:, None]
+    near, needs_way = context.relevant & _comes_near(context), _drives(context, stands)
+    comes: Flags = np.any(near & called & blue & needs_way, axis=0)
+    perhaps = np.any(near & (not_told | (called & blue & ~needs_way)), axis=0)
     signals = SignalColumns(
         {"emergency_vehicle_near": comes},
         {
@@ -40,8 +42,8 @@ def intention_signals(context: DriveContext) -> SignalColumns:
         },
         {
             "boarding": public & stands & ~doors_told,
-            "on_call": (called & ~blue_told) | kinds[:, None],
-            "emergency_vehicle_near": np.any(near & ~blue_told, axis=0) & ~comes,
+            "on_call": not_told,
+            "emergency_vehicle_near": perhaps & ~comes,
         },
     )
     if any("hazard_lights" in body.shows for body in context.recording.participants):
@@ -84,10 +86,28 @@ def _within(flags: Flags, steps: int, *, around: bool = False) -> Flags:
 
 
 def _comes_near(context: DriveContext) -> Flags:
-    """Flags of those who are behind ego or come towards it."""
-    behind = relations.station(context) != relations.BEHIND
-    comes: Flags = behind | (context.extents.along < 0)
+    """Flags of those who are behind or beside ego, or come towards it on its carriageway.
+
+    One that has come towards ego and is past it drives away.
+    """
+    station = relations.station(context)
+    against = context.extents.along * KMH < -context.thresholds.standing_kmh
+    pieces, lanes = context.road.piece(context.ego_extents.s[0]).tolist(), context.ego_lane.tolist()
+    own = [context.road.lanelet(*pair) for pair in zip(pieces, lanes, strict=True)]
+    divided = [context.surroundings.directions(lanelet)[1] is True for lanelet in own]
+    towards = against & (station != relations.IN_FRONT_OF) & ~np.array(divided)
+    comes: Flags = towards | (~against & (station != relations.BEHIND))
     return comes
+
+
+def _drives(context: DriveContext, stands: Flags) -> Flags:
+    """Flags of those who drive now, or have or will within ``preparing_s``: no more than held up.
+
+    One that stands for longer, lights on, may be where it was called to.
+    """
+    moves = ~stands & ~np.isnan(context.tracks.speed)
+    steps = round(context.thresholds.preparing_s / context.recording.step_s)
+    return _within(moves, steps, around=True)
 
 
 def _far_indicator(context: DriveContext) -> tuple[Flags, Flags]:
@@ -118,6 +138,9 @@ def _turning(context: DriveContext) -> SignalColumns:
             open_end[row, max(end - ahead, 0) :] |= _may_turn(context, rows[body.id])
     lit, told = _far_indicator(context)
     turns &= context.tracks.of_type("vehicle")[:, None]
+    if "arrivals" not in context.recording.complete:
+        # Who signals and leaves the map may turn beyond it
+        open_end |= lit & _ends_within(context, ahead)
     return SignalColumns(
         about={"turning_far": turns & lit},
         unknown={"turning_far": np.where(told, lit & open_end & ~turns, turns | open_end)},
@@ -147,10 +170,21 @@ def _leaving(context: DriveContext, stands: Flags) -> SignalColumns:
     doors, doors_told = _lit(context, "doors")
     at_stop = _within(doors[:, ::-1], steps)[:, ::-1]
     known = told & doors_told
+    # What it does after it is lost from sight nobody knows
+    lost = buses & stands & lit & at_stop & _ends_within(context, steps)
     return SignalColumns(
         about={"leaving_stop": leaves & lit & at_stop},
-        unknown={"leaving_stop": leaves & ~known},
+        unknown={"leaving_stop": (leaves & ~known) | (lost & ~leaves)},
     )
+
+
+def _ends_within(context: DriveContext, steps: int) -> Flags:
+    """Flags of states in which a participant's track goes on for fewer states than so many."""
+    states = np.arange(context.states)
+    present = ~np.isnan(context.tracks.speed)
+    last = np.where(present, states, -1).max(axis=1, initial=-1)
+    ends: Flags = states + steps > last[:, None]
+    return ends
 
 
 def _overtaking_soon(context: DriveContext) -> SignalColumns:
@@ -163,7 +197,7 @@ def _overtaking_soon(context: DriveContext) -> SignalColumns:
     pulls_out &= inside & np.roll(inside, -1, axis=1)
     soon = context.going_along & _within(pulls_out, steps)
     lit, told = _far_indicator(context)
-    ends = np.arange(context.states) + steps >= context.states
+    ends = _ends_within(context, steps)
     return SignalColumns(
         about={"about_to_overtake": soon & lit},
         unknown={"about_to_overtake": np.where(told, lit & ends & ~soon, soon)},
@@ -171,7 +205,10 @@ def _overtaking_soon(context: DriveContext) -> SignalColumns:
 
 
 def _came_up(context: DriveContext) -> SignalColumns:
-    """The signal of riders who came up beside ego while it waited at a junction."""
+    """The signal of riders who came up beside ego while it waited at a junction.
+
+    Of one that is beside it there when it is first seen nobody knows how it got there.
+    """
     riders = context.tracks.of_type("light_rider")
     station = relations.station(context)
     waits = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
@@ -179,11 +216,20 @@ def _came_up(context: DriveContext) -> SignalColumns:
     front = context.ego_extents.s_max[0]
     for start, end in context.road.junctions:
         at_junction |= (front >= start - context.thresholds.approach_m) & (front < end)
-    came = np.zeros(station.shape, dtype=bool)
+    came, unsure = np.zeros((2, *station.shape), dtype=bool)
+    there = ~np.isnan(context.extents.s_min)
     for row in np.flatnonzero(riders).tolist():
-        for state in range(1, context.states):
-            beside = station[row, state] == relations.BESIDE
-            before = station[row, state - 1] == relations.IN_FRONT_OF
+        for state in range(context.states):
+            if not there[row, state] or station[row, state] != relations.BESIDE:
+                continue
+            seen = state > 0 and there[row, state - 1]
+            before = seen and station[row, state - 1] == relations.IN_FRONT_OF
             arrives = before and waits[state] and at_junction[state]
-            came[row, state] = beside and (came[row, state - 1] or arrives)
-    return SignalColumns(about={"came_up_beside": came}, only={"came_up_beside": riders})
+            came[row, state] = arrives or (seen and came[row, state - 1])
+            appears = not seen and at_junction[state]
+            unsure[row, state] = appears or (seen and unsure[row, state - 1])
+    return SignalColumns(
+        about={"came_up_beside": came},
+        unknown={"came_up_beside": unsure},
+        only={"came_up_beside": riders},
+    )

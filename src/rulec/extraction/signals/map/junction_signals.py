@@ -5,12 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.map.priority_signals import own_passages
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.recording import Light
 
 STOP_SIGNS = frozenset({"STOP", "STOP_4_WAY"})
 _LINE_REACH_M = 40.0
+_SLOWEST_MPS = 5.0
+"""Who stands at the end of a drive goes on so fast."""
+
 _COLOURS = {
     "red": "red_light",
     "redYellow": "red_light",
@@ -35,9 +39,12 @@ def junction_signals(context: DriveContext) -> SignalColumns:
         "junction_zone": zone,
         "enters_junction": enters,
         "turn": turn,
-        "preparing_to_leave": _within_preparation(turn != "straight_on", context),
+        "preparing_to_leave": _within_preparation(turn != "straight_on", context)
+        | _within_preparation(_on_exit(context), context),
     }
-    unknown: dict[str, Flags] = {}
+    unknown: dict[str, Flags] = {"turn": _way_not_known(context)}
+    prepares = _within_preparation(unknown["turn"], context) | _may_turn_later(context)
+    unknown["preparing_to_leave"] = prepares & ~world["preparing_to_leave"]
     lanelets = context.recording.lanelets.values()
     complete = context.recording.complete
     if "STOP" in complete or any(STOP_SIGNS & lanelet.signs for lanelet in lanelets):
@@ -50,6 +57,70 @@ def junction_signals(context: DriveContext) -> SignalColumns:
         unknown["light"] = (world["light"] == "") | (unseen & nowhere & ("light" not in complete))
         unknown["crosses_light_line"] = changed
     return SignalColumns(world, unknown=unknown)
+
+
+def _on_exit(context: DriveContext) -> Flags:
+    """Flags of states in which ego is on a lane that leaves the road."""
+    pieces, lanes = context.road.piece(context.ego_extents.s[0]).tolist(), context.ego_lane.tolist()
+    own = [context.road.lanelet(*pair) for pair in zip(pieces, lanes, strict=True)]
+    return np.array(["exitRamp" in lanelet.types for lanelet in own], dtype=bool)
+
+
+def _way_not_known(context: DriveContext) -> Flags:
+    """Flags of states at a junction of whose ways the drive does not tell which ego takes."""
+    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    unknown = np.zeros(context.states, dtype=bool)
+    for start, end in context.road.junctions:
+        at_junction = (front >= start - context.thresholds.zone_m) & (rear < end)
+        ends = at_junction.any() and not (rear >= end).any()
+        if ends and _ways_part(context, start) and not _on_known_way(context, start, end):
+            unknown |= at_junction
+    return unknown
+
+
+def _ways_part(context: DriveContext, start: float) -> bool:
+    """True if ways lead to different sides from the lane on which ego gets to a junction."""
+    piece = max(int(context.road.piece(np.array(start - 1e-6))), 0)
+    near = int(np.abs(context.ego_extents.s_max[0] - start).argmin())
+    entry = context.road.lanelet(piece, int(context.ego_lane[near]))
+    ways = [
+        way
+        for junction in context.surroundings.passages.junctions
+        for way in junction.ways
+        if entry.id in way.entries
+    ]
+    turned = [way.turned for way in ways]
+    return bool(ways) and max(turned) - min(turned) > np.radians(context.thresholds.turned_deg)
+
+
+def _on_known_way(context: DriveContext, start: float, end: float) -> bool:
+    """True if ego's passage of a junction on its road shows which way it takes."""
+    road, passages = context.road, context.surroundings.passages
+    inside = {
+        lanelet.id
+        for row, low in zip(road.rows, road.borders.tolist(), strict=False)
+        if start - 0.1 <= low < end
+        for lanelet in row
+        if lanelet is not None
+    }
+    return any(
+        passage.sure and inside & passages.way(passage).names for passage in own_passages(context)
+    )
+
+
+def _may_turn_later(context: DriveContext) -> Flags:
+    """Flags of states so near the drive's end that ego may turn soon after it.
+
+    It does not if no junction is so near that it would get there, as fast as it is at the end.
+    """
+    thresholds, step_s = context.thresholds, context.recording.step_s
+    front, speed = float(context.ego_extents.s_max[0, -1]), float(context.ego.speed[0, -1])
+    ahead = [start - thresholds.zone_m - front for start, _ in context.road.junctions]
+    nearest = min((way for way in ahead if way > 0), default=np.inf)
+    soonest = nearest / max(speed, _SLOWEST_MPS)
+    left = np.arange(context.states)[::-1] * step_s
+    flags: Flags = left + soonest <= thresholds.preparing_s
+    return flags
 
 
 def _within_preparation(flags: Flags, context: DriveContext) -> Flags:

@@ -1,0 +1,296 @@
+"""What others show and do next: turning, overtaking, leaving a stop, being on call, coming up.
+
+Ego drives along y = 0 to a junction from x = 100 to 120; states are half a second apart.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from rulec.extraction.signals.intention_signals import intention_signals
+from rulec.extraction.tracks.mirror import mirrored_recording
+from support.builders.drive_contexts import context_of, steady
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
+INDICATORS = {"left_indicator", "right_indicator"}
+
+
+def arc(x, y, radius, first, last):
+    angles = np.radians(np.linspace(first, last, 19))
+    return np.stack((x + radius * np.cos(angles), y + radius * np.sin(angles)), axis=1)
+
+
+LEFT_TURN, RIGHT_TURN = arc(100, 14, 14, -90, 0), arc(100, -14, 14, 90, 0)
+
+
+def crossroads():
+    return [
+        straight(1, -200, 100, successors=(2, 3, 4)),
+        straight(2, 100, 120, predecessors=(1,), successors=(5,), **INSIDE),
+        lanelet(3, LEFT_TURN, predecessors=(1,), successors=(6,), **INSIDE),
+        lanelet(4, RIGHT_TURN, predecessors=(1,), successors=(7,), **INSIDE),
+        straight(5, 120, 300, predecessors=(2,)),
+        lanelet(6, [(114, 14), (114, 200)], predecessors=(3,)),
+        lanelet(7, [(114, -14), (114, -200)], predecessors=(4,)),
+    ]
+
+
+def along(number, line, way, kind="car", lamps=None, shows=INDICATORS):
+    """A vehicle so far along a line at each step; ``lamps``: step -> what is lit."""
+    steps = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
+    place, ahead = (
+        [np.interp(way + more, steps, line[:, axis]) for axis in (0, 1)] for more in (0.0, 0.1)
+    )
+    heading = np.arctan2(ahead[1] - place[1], ahead[0] - place[0])
+    bodies = [
+        vehicle(number, {k: (place[0][k], place[1][k])}, kind, heading=heading[k])
+        for k in range(len(way))
+    ]
+    return replace(
+        bodies[0],
+        states={k: body.states[k] for k, body in enumerate(bodies)},
+        outlines={k: body.outlines[k] for k, body in enumerate(bodies)},
+        lamps={} if lamps is None else {k: frozenset(lamps.get(k, ())) for k in range(len(way))},
+        shows=frozenset(shows) if lamps is not None else frozenset(),
+    )
+
+
+def told(word, road, *bodies, side="right", complete=(), route=("1", "2", "5")):
+    """A word's rows of those beside ego, or its values, with "?" where it is unknown."""
+    found = replace(recording(road, bodies, step_s=0.5), complete=frozenset(complete))
+    if side == "left":
+        found = mirrored_recording(found)
+    signals = intention_signals(context_of(found, route, side))
+    column = signals.world[word] if word in signals.world else signals.about[word]
+    unknown = signals.unknown.get(word, np.zeros(column.shape, dtype=bool))
+    values = np.where(unknown, "?", column).tolist()
+    return values[0] if values and isinstance(values[0], list) else values
+
+
+STEPS = 40
+EGO = steady(7, -60, 0, 2.5, STEPS)
+# At 5 m/s from x = -50: the middle is in the junction, 150 m along, from 30 s on
+WAY = -50 + 200 + 2.5 * np.arange(STEPS) - 50
+
+
+def other(turn, lamps=None, way=WAY):
+    line = {"left": LEFT_TURN, "right": RIGHT_TURN, "on": np.array([(100.0, 0.0), (130.0, 0.0)])}
+    ends = {"left": (114.0, 200.0), "right": (114.0, -200.0), "on": (300.0, 0.0)}
+    points = np.concatenate(([(-50.0, 0.0)], line[turn], [ends[turn]]))
+    return along(8, points, way, lamps=lamps)
+
+
+def lit(lamp, first=0, last=STEPS):
+    return {k: {lamp} for k in range(first, last)}
+
+
+# It begins 50 m before the junction and is in it from state 20 to 28 if it turns left
+def test_who_signals_and_turns_to_the_far_side():
+    found = told("turning_far", crossroads(), EGO, other("left", lit("left_indicator")))
+    first = found.index("True")
+    assert first == 0 or found[:first] == ["False"] * first
+    assert found[20:28] == ["True"] * 8
+    # 10 s are 20 states: from the beginning on; what it does after the drive is not known
+    assert first == 0
+    assert found[-1] == "?"
+    # In a simulation who is still there at the end may turn later, too
+    silent = told("turning_far", crossroads(), EGO, other("left", {}))
+    assert set(silent) == {"False"}
+
+
+def test_the_near_side_is_the_far_one_where_traffic_keeps_to_the_other():
+    near = other("right", lit("right_indicator"))
+    assert "True" not in told("turning_far", crossroads(), EGO, near)
+    assert "True" not in told("turning_far", crossroads(), EGO, near, side="left")
+    far = other("left", lit("left_indicator"))
+    assert "True" in told("turning_far", crossroads(), EGO, far, side="left")
+
+
+def test_without_lamps_who_turns_may_have_signalled():
+    found = told("turning_far", crossroads(), EGO, other("left"))
+    assert found[20:28] == ["?"] * 8
+    assert "True" not in found
+    assert set(told("turning_far", crossroads(), EGO, other("on"))[:20]) == {"False"}
+
+
+def test_whose_track_ends_before_the_junction():
+    # It ends in state 15, 12.5 m before the junction
+    ends = other("left", lit("left_indicator"), way=WAY[:16])
+    assert told("turning_far", crossroads(), EGO, ends)[:16] == ["?"] * 16
+    dark = other("left", {}, way=WAY[:16])
+    assert told("turning_far", crossroads(), EGO, dark)[:16] == ["False"] * 16
+    unlit = other("left", None, way=WAY[:16])
+    assert told("turning_far", crossroads(), EGO, unlit)[:16] == ["?"] * 16
+    # In a simulation it has arrived where it was going
+    road = [straight(1, -200, 300)]
+    gone = told("turning_far", road, EGO, ends, complete=["arrivals"], route=("1",))
+    assert gone[:16] == ["False"] * 16
+
+
+def lanes():
+    return [
+        straight(1, -200, 300, left_of=2),
+        straight(2, -200, 300, 4, right_of=1),
+    ]
+
+
+def pulling_out(lamps, steps=STEPS, at=30):
+    places = {k: (10 + 5.0 * k, 0.0 if k < at else 4.0) for k in range(steps)}
+    body = vehicle(8, places, speed=10)
+    lamps = None if lamps is None else {k: frozenset(lamps.get(k, ())) for k in range(steps)}
+    return replace(body, lamps=lamps or {}, shows=frozenset(INDICATORS if lamps else ()))
+
+
+def test_who_signals_and_pulls_out():
+    ego = steady(7, 0, 0, 10, STEPS)
+    body = pulling_out(lit("left_indicator"))
+    found = told("about_to_overtake", lanes(), ego, body, route=("1",))
+    # It is in the other lane from state 30 on, and 5 s are 10 states
+    assert found[:19] == ["False"] * 19
+    assert found[19:30] == ["True"] * 11
+    # Nobody knows what comes after the drive, only that it still signals
+    assert found[31:] == ["?"] * 9
+    silent = told("about_to_overtake", lanes(), ego, pulling_out({}), route=("1",))
+    assert set(silent) == {"False"} or set(silent) == {"False", "?"}
+    unlit = told("about_to_overtake", lanes(), ego, pulling_out(None), route=("1",))
+    assert unlit[:19] == ["False"] * 19
+    assert unlit[19:30] == ["?"] * 11
+
+
+def bus(lamps, starts=30, steps=STEPS, shows=(*INDICATORS, "doors")):
+    places = {k: (0 + max(0, k - starts) * 2.0, 0.0) for k in range(steps)}
+    body = vehicle(8, places, "bus", length=12)
+    return replace(
+        body,
+        lamps={k: frozenset(lamps.get(k, ())) for k in range(steps)},
+        shows=frozenset(shows),
+    )
+
+
+def lamps_of_a_stop(signals_from=24, doors_until=20):
+    return {
+        k: ({"doors"} if k < doors_until else set())
+        | ({"left_indicator"} if k >= signals_from else set())
+        for k in range(STEPS)
+    }
+
+
+def test_a_bus_that_signals_and_leaves_its_stop():
+    ego = steady(7, -100, 0, 2, STEPS)
+    leaves = told("leaving_stop", lanes(), ego, bus(lamps_of_a_stop()), route=("1",))
+    assert leaves[:24] == ["False"] * 24
+    assert leaves[24:30] == ["True"] * 6
+    assert leaves[32:] == ["False"] * 8
+    boards = told("boarding", lanes(), ego, bus(lamps_of_a_stop()), route=("1",))
+    assert boards == ["True"] * 20 + ["False"] * 20
+
+
+def test_a_bus_that_has_not_left_when_the_drive_ends():
+    ego = steady(7, -100, 0, 2, STEPS)
+    stays = told("leaving_stop", lanes(), ego, bus(lamps_of_a_stop(), starts=90), route=("1",))
+    assert stays[24:] == ["?"] * 16
+    unlit = told("leaving_stop", lanes(), ego, bus(lamps_of_a_stop(90), starts=90), route=("1",))
+    assert set(unlit) == {"False"}
+
+
+def test_a_bus_at_a_red_light_leaves_no_stop():
+    ego = steady(7, -100, 0, 2, STEPS)
+    lamps = {k: {"left_indicator"} for k in range(STEPS)}
+    assert set(told("leaving_stop", lanes(), ego, bus(lamps), route=("1",))) == {"False"}
+
+
+def ambulance(x, mps=15.0, y=0.0, lamps=(True,), kind="priorityVehicle", steps=STEPS):
+    heading = np.pi if mps < 0 else 0.0
+    places = {k: (x + mps * 0.5 * k, y) for k in range(steps)}
+    body = vehicle(8, places, kind, heading=heading, speed=abs(mps))
+    shown = {k: {"blue_light"} if lamps and lamps[k % len(lamps)] else set() for k in range(steps)}
+    return replace(
+        body,
+        lamps={k: frozenset(x) for k, x in shown.items()} if lamps is not None else {},
+        shows=frozenset({"blue_light"}) if lamps is not None else frozenset(),
+    )
+
+
+def near(*bodies, road=None, ego=None):
+    ego = ego or steady(7, 0, 0, 10, STEPS)
+    return told("emergency_vehicle_near", road or lanes(), ego, *bodies, route=("1",))
+
+
+def test_one_that_comes_from_behind_with_blue_lights():
+    assert near(ambulance(-60))[0] == "True"
+    # A flash that is dark for half a second is still a flash
+    assert near(ambulance(-60, lamps=(True, False)))[1] == "True"
+    assert set(near(ambulance(-60, lamps=()))) == {"False"}
+    assert near(ambulance(-60, kind="car"))[0] == "False"
+    assert near(ambulance(-200))[0] == "False"
+
+
+def test_one_that_is_ahead_and_drives_away_needs_nobody_s_way():
+    assert near(ambulance(30))[0] == "False"
+
+
+def test_one_that_comes_towards_ego():
+    against = [straight(1, -200, 300), lanelet(2, [(300, 4), (-200, 4)])]
+    found = near(ambulance(100, -15, 4), road=against)
+    # They meet after 4 s: then it drives away behind ego
+    assert found[:7] == ["True"] * 7
+    assert found[10:] == ["False"] * 30
+    # On the other carriageway of a divided road it has its own way
+    divided = [straight(1, -200, 300), lanelet(2, [(300, 7), (-200, 7)])]
+    assert set(near(ambulance(100, -15, 7), road=divided)) == {"False"}
+
+
+def test_one_that_stands_with_its_lights_on():
+    # At an accident, or held up for as long: nobody knows
+    stands = ambulance(20, 0.0)
+    found = near(stands)
+    assert "True" not in found
+    assert found[20] == "?"
+    # Behind ego in a queue for some seconds it does need the way
+    held = {k: (-20 + (5 * max(0, k - 10) if k > 10 else 0), 0.0) for k in range(STEPS)}
+    body = ambulance(-20, 0.0)
+    moving = vehicle(8, held, "priorityVehicle")
+    body = replace(body, states=moving.states, outlines=moving.outlines)
+    assert near(body, ego=steady(7, 0, 0, 10, STEPS))[0] == "True"
+
+
+def test_lights_that_a_file_does_not_tell():
+    assert near(ambulance(-60, lamps=None))[0] == "?"
+    assert set(near(ambulance(30, lamps=None))[:4]) == {"False"}
+    assert near()[0] == "False"
+
+
+def rider(places):
+    return vehicle(8, places, "bicycle", length=2, width=0.6)
+
+
+WAITS = vehicle(7, dict.fromkeys(range(12), (95.0, 0.0)))
+
+
+def came(places, ego=WAITS, road=None, route=("1", "2", "5")):
+    return told("came_up_beside", road or crossroads(), ego, rider(places), route=route)
+
+
+def test_a_rider_who_comes_up_beside_one_that_waits():
+    # Its front is level with ego's rear, at 93, in state 3
+    places = {k: (80 + 4.0 * k, -1.5) for k in range(4)}
+    places |= dict.fromkeys(range(4, 12), (95.0, -1.5))
+    found = came(places)
+    assert found == ["False"] * 4 + ["True"] * 8
+
+
+def test_a_rider_whom_ego_came_up_beside():
+    stands = dict.fromkeys(range(12), (95.0, -1.5))
+    ego = vehicle(7, {k: (75 + 2.0 * min(k, 10), 0.0) for k in range(12)})
+    assert set(came(stands, ego)) == {"False"}
+
+
+def test_a_rider_who_is_beside_ego_when_first_seen():
+    assert came(dict.fromkeys(range(12), (95.0, -1.5))) == ["?"] * 12
+    # It appears midway
+    late = came(dict.fromkeys(range(5, 12), (95.0, -1.5)))
+    assert late[5:] == ["?"] * 7
+    # Far from any junction nobody waits at one
+    far = vehicle(7, dict.fromkeys(range(12), (0.0, 0.0)))
+    assert set(came(dict.fromkeys(range(12), (0.0, -1.5)), far)) == {"False"}

@@ -1,0 +1,95 @@
+"""Where ego goes at a junction is not known if its drive ends before that shows.
+
+Ego comes along y = 0 to a junction from x = 100 to 120, from where ways lead on, left and right.
+"""
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.map.junction_signals import junction_signals
+from rulec.extraction.tracks.mirror import mirrored_recording
+from support.builders.drive_contexts import context_of
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
+
+
+def arc(x, y, radius, first, last):
+    angles = np.radians(np.linspace(first, last, 19))
+    return np.stack((x + radius * np.cos(angles), y + radius * np.sin(angles)), axis=1)
+
+
+def road(turns=True, leaves=False):
+    ways = (2, 3, 4) if turns else (2,)
+    ramp = {"types": frozenset({"exitRamp"})} if leaves else {}
+    lanes = [
+        straight(1, -200, 100, successors=ways),
+        straight(2, 100, 120, predecessors=(1,), successors=(5,), **INSIDE),
+        straight(5, 120, 300, predecessors=(2,), **ramp),
+    ]
+    if turns:
+        lanes += [
+            lanelet(3, arc(100, 14, 14, -90, 0), predecessors=(1,), successors=(6,), **INSIDE),
+            lanelet(4, arc(100, -14, 14, 90, 0), predecessors=(1,), successors=(7,), **INSIDE),
+            lanelet(6, [(114, 14), (114, 200)], predecessors=(3,)),
+            lanelet(7, [(114, -14), (114, -200)], predecessors=(4,)),
+        ]
+    return lanes
+
+
+def told(word, xs, lanes=None, **thresholds):
+    """A word's values by state, "?" where it is unknown; the same in the mirror."""
+    ego = vehicle(7, {k: (x, 0) for k, x in enumerate(xs)})
+    found = recording(lanes or road(), [ego])
+    values = []
+    for one, side in ((found, "right"), (mirrored_recording(found), "left")):
+        signals = junction_signals(context_of(one, ("1", "2", "5"), side, **thresholds))
+        column, unknown = signals.world[word], signals.unknown[word]
+        values.append(np.where(unknown, "?", column).tolist())
+    assert values[0] == values[1]
+    return values[0]
+
+
+def test_a_drive_that_ends_before_the_junction():
+    # Fronts are 2 m ahead; the zone begins at 95
+    assert told("turn", (80, 90, 94, 97)) == ["straight_on", "straight_on", "?", "?"]
+    assert told("turn", (97,)) == ["?"]
+    assert told("turn", (80,)) == ["straight_on"]
+
+
+def test_a_drive_that_ends_within_it():
+    # All ways begin alike: after 3 m nobody knows, after 18 m ego is on the one straight on
+    assert told("turn", (90, 97, 103))[-1] == "?"
+    assert told("turn", (90, 97, 105, 112, 118))[1:] == ["straight_on"] * 4
+
+
+def test_a_drive_that_goes_through_it():
+    assert told("turn", (90, 97, 105, 115, 125)) == ["straight_on"] * 5
+
+
+def test_where_there_is_one_way_only():
+    assert told("turn", (80, 97), road(turns=False)) == ["straight_on"] * 2
+
+
+def test_what_ego_prepares_for_is_not_known_near_the_drive_s_end():
+    # At 10 m/s, two states a second: the zone is 33 m ahead of the front when the drive ends
+    xs = [10 + 5.0 * k for k in range(11)]
+    found = told("preparing_to_leave", xs, preparing_s=5.0)
+    # It would get there 3.3 s later: in the last 1.7 s it may be preparing, before it is not
+    assert found == ["False"] * 7 + ["?"] * 4
+    assert set(told("preparing_to_leave", xs, preparing_s=3.0)) == {"False"}
+    assert told("preparing_to_leave", (90, 94, 97))[-1] == "?"
+    # A road without junctions gives nothing to prepare for
+    ego = vehicle(7, {k: (x, 0) for k, x in enumerate(xs)})
+    alone = junction_signals(context_of(recording([straight(1, -200, 300)], [ego])))
+    assert not alone.unknown["preparing_to_leave"].any()
+
+
+@pytest.mark.parametrize(("preparing_s", "first"), [(10.0, 0), (2.0, 4)])
+def test_who_leaves_by_a_ramp_has_prepared_for_it(preparing_s, first):
+    lanes = road(turns=False, leaves=True)
+    xs = [85 + 5.0 * k for k in range(10)]
+    found = told("preparing_to_leave", xs, lanes, preparing_s=preparing_s)
+    # The middle is on the ramp from 120 on, in state 8 (at 125; it is at its very end in state 7)
+    assert found.index("True") in (first - 1, first)
+    assert found[-1] == "True"
