@@ -6,15 +6,22 @@ from pathlib import Path
 
 from rulec.extraction.drives import Drives
 from rulec.extraction.selection import RequestedDrives, selected_drives
+from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals.following_signals import following_signals
+from rulec.extraction.signals.map.map_signals import map_signals
+from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
-from rulec.extraction.traffic_thresholds import USUAL
+from rulec.extraction.traffic_thresholds import LEAST_S, USUAL
 from rulec.rulebook.loader import load_rulebook
 from rulec.trace.vocabulary_projection import RECORDED_UNITS
 from rulec.vocabulary import Quantity
+from support.builders.drive_contexts import context_of
 from support.builders.recordings import recording, straight, vehicle
 
 PAGE = (Path(__file__).parents[2] / "docs/recordings.md").read_text()
 
+SIGNALS = (ego_signals, participant_signals, following_signals, map_signals)
+"""The passes that measure numbers."""
 
 NOT_IN_THAT = {
     *("light", "crosses_light_line", "indicator", "warning_lights"),
@@ -33,7 +40,7 @@ def test_every_threshold_with_its_value():
 
 
 def test_every_word():
-    section = PAGE[PAGE.index("## Words") : PAGE.index("## Thresholds")]
+    section = PAGE[PAGE.index("## Words") : PAGE.index("## Tolerances and durations")]
     cells = [line.split("|")[1] for line in section.splitlines() if line.startswith("| `")]
     documented = {word for cell in cells for word in re.findall(r"`(\w+)`", cell)}
     lane = straight(1, 0, 99, signs=frozenset({"STOP", "YIELD", "NO_OVERTAKING_START"}))
@@ -44,7 +51,7 @@ def test_every_word():
 
 
 def test_every_word_is_told_by_the_formats_that_the_page_says():
-    section = PAGE[PAGE.index("## Words") : PAGE.index("## Thresholds")]
+    section = PAGE[PAGE.index("## Words") : PAGE.index("## Tolerances and durations")]
     told = {"commonroad": set(), "sumo": set()}
     needs = ""
     for line in section.splitlines():
@@ -57,6 +64,35 @@ def test_every_word_is_told_by_the_formats_that_the_page_says():
             if "(CommonRoad)" not in needs:
                 told["sumo"] |= words
     assert told == TELLABLE_WORDS
+
+
+def rows_of_what_may_be_wrong():
+    """The words of each row, and its other cells."""
+    section = PAGE[PAGE.index("## What each word may get wrong") : PAGE.index("## Thresholds")]
+    for line in section.splitlines():
+        if line.startswith("| `"):
+            words, *cells = (cell.strip() for cell in line.strip("|").split("|"))
+            yield re.findall(r"`(\w+)`", words), cells
+
+
+def test_every_word_has_its_tolerance_its_duration_and_what_may_be_wrong():
+    rows = list(rows_of_what_may_be_wrong())
+    words = [word for own, _ in rows for word in own]
+    assert sorted(words) == sorted(set().union(*TELLABLE_WORDS.values()))
+    for own, (tolerance, duration, wrong) in rows:
+        assert tolerance in ("none", "unknown", "interval"), own
+        assert wrong, own
+        least = {LEAST_S.get(word) for word in own}
+        assert least == {None if duration == "none" else float(duration.removesuffix(" s"))}
+
+
+def test_numbers_that_are_intervals_are_those_that_the_page_says():
+    cars = [vehicle(k, {s: (9.0 + 11 * k + 5 * s, 0) for s in range(4)}) for k in (7, 8)]
+    context = context_of(recording([straight(1, 0, 99)], cars))
+    told = {name for signals_of in SIGNALS for name in signals_of(context).bounds}
+    rows = rows_of_what_may_be_wrong()
+    said = {word for own, cells in rows for word in own if cells[0] == "interval"}
+    assert told == said
 
 
 def test_a_recording_tells_what_files_of_its_format_can_tell():
