@@ -22,6 +22,8 @@ NUMBERS = frozenset({int, float})
 TRUTHS = frozenset({bool})
 """The plain types of quantities and signals; others, such as a library's, take longer."""
 
+_PLAIN = NUMBERS | TRUTHS | {str}
+
 _Look: TypeAlias = Callable[[Any], bool]
 
 
@@ -118,8 +120,15 @@ def has_partial_values(state: Mapping[str, Any]) -> bool:
 
 def partial_names(states: Iterable[Mapping[str, Any]]) -> set[str]:
     """The names of which some state has a value that is unknown, or an interval."""
-    given = {(name, id(value)): value for state in states for name, value in state.items()}
-    return {name for (name, _), value in given.items() if has_partial_values({name: value})}
+    found: set[str] = set()
+    for state in states:
+        for name, value in state.items():
+            if name in found:
+                continue
+            kind = type(value)
+            if kind in UNKNOWN_TYPES or (kind not in _PLAIN and has_partial_values({name: value})):
+                found.add(name)
+    return found
 
 
 def check_state(

@@ -77,7 +77,8 @@ def scene_title(
         return f"{name}: {graph.nodes:,} cells in {len(graph.layers)} layers"
     by = f"of {shown_count(maneuvers.satisfying)} that satisfy {maneuvers.rules.name}"
     if maneuver is None:
-        return f"{name}: no maneuver satisfies {maneuvers.rules.name}"
+        doubtful = f", {shown_count(maneuvers.open)} are open" if maneuvers.open else ""
+        return f"{name}: no maneuver satisfies {maneuvers.rules.name}{doubtful}"
     margin = "" if maneuver.margin_s is None else f", margin {maneuver.margin_s:g} s"
     return f"{name}: maneuver {number} {by}; cost {maneuver.cost:.4g} 1/s{margin}"
 
@@ -88,6 +89,8 @@ def graph_title(graph: NavigationGraph, found: Maneuvers | None, maneuvers: int)
     if found is None:
         return f"{counts}, {shown_count(maneuvers)} maneuvers"
     satisfying = f"{shown_count(maneuvers)} satisfying by {found.rules.name}"
+    if found.open:
+        satisfying += f", {shown_count(found.open)} open"
     return f"{counts}, {shown_count(found.traces)} maneuvers, {satisfying}"
 
 
