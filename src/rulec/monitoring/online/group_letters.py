@@ -17,7 +17,7 @@ from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView
 from rulec.trace import State
 from rulec.vocabulary import Enumeration
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES
+from rulec.vocabulary.partial_values import UNKNOWN
 
 MOST = 1 << 12
 """States of the world, and letters of each group in them, kept before all are forgotten."""
@@ -95,11 +95,7 @@ class _LetterTable(dict[Any, int]):
             read: read.digit(value, self._breakpoints)
             for read, value in zip(self._own, encoded, strict=True)
         }
-        digits = {**self._others, **digits}
-        if UNKNOWN_TYPES.isdisjoint(map(type, digits.values())):
-            letter = self._group.letter_of(digits)
-        else:
-            letter = self._group.letter_of_partial(digits)
+        letter = self._group.letter_of({**self._others, **digits})
         if len(self) >= MOST:
             self.clear()
         self[key] = letter

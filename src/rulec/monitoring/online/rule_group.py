@@ -20,6 +20,7 @@ from rulec.monitoring.online.encoding.encoded_values import (
     MonitorInput,
     breakpoints_of,
     monitor_inputs,
+    values_at,
 )
 from rulec.monitoring.online.four_valued import (
     FourValued,
@@ -36,6 +37,10 @@ if TYPE_CHECKING:
 
 MOST_CACHED = 1 << 18
 """Nodes, letters and transitions that are kept before all are forgotten."""
+
+
+MOST_CLASSES = 1 << 12
+"""Classes of a rule's letters that are kept before all are forgotten."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,6 +135,37 @@ class CacheSize:
     n = 0
 
 
+class _ClassTable(dict[tuple[Any, ...], "LetterClass"]):
+    """The classes that a rule reads, by its inputs' digits, or values that are partly known."""
+
+    def __init__(self, prepared: PreparedRule) -> None:
+        self._prepared = prepared
+
+    def __missing__(self, digits: tuple[Any, ...]) -> LetterClass:
+        prepared = self._prepared
+        inputs = zip(prepared.inputs, digits, strict=True)
+        if UNKNOWN_TYPES.isdisjoint(map(type, digits)):
+            number = sum([weight_of(digit) for (_, weight_of), digit in inputs])
+            letter_class: LetterClass | None = prepared.letters[number]
+        else:
+            if prepared.is_joint:
+                raise LookupError
+            for (_, weight_of), digit in inputs:
+                if type(digit) not in UNKNOWN_TYPES:
+                    weight_of(digit)
+            from rulec.monitoring.online.uncertain_steps import mask_of  # numpy, as above
+
+            reads = zip(prepared.rule.machine.reads, digits, strict=True)
+            cube = tuple([mask_of(read, digit) for read, digit in reads])
+            letter_class = prepared.uncertain.letter_class((cube,))
+        if letter_class is None or letter_class == IMPOSSIBLE:
+            raise LookupError
+        if len(self) >= MOST_CLASSES:
+            self.clear()
+        self[digits] = letter_class
+        return letter_class
+
+
 class RuleGroup:
     """Rules whose variables are of the same types, in the same order.
 
@@ -147,6 +183,10 @@ class RuleGroup:
         self.classes: list[tuple[LetterClass, ...]] = []
         self._letters: dict[tuple[LetterClass, ...], int] = {}
         self._nodes: dict[tuple[Edge, ...], GroupNode] = {}
+        self._tables = [
+            (_ClassTable(prepared), values_at([read for read, _ in prepared.inputs]))
+            for prepared in rules
+        ]
 
     def node(self, edges: tuple[Edge, ...]) -> GroupNode:
         """The node with these edges, one for each rule."""
@@ -163,43 +203,13 @@ class RuleGroup:
             self.cache_size.n += 1
         return self._letters[classes]
 
-    def letter_of(self, digits: dict[MonitorInput, Any]) -> int:
-        """The letter where inputs have these digits.
+    def letter_of(self, digits: Mapping[MonitorInput, Any]) -> int:
+        """The letter where inputs have these digits, or values that are partly known.
 
-        Raises LookupError or TypeError if one is missing or wrong, or if no state is such.
+        Raises LookupError or TypeError if one is missing or wrong, if no state is such, or if this
+        takes a closer look.
         """
-        classes = []
-        for prepared in self.rules:
-            number = sum([weight_of(digits[read]) for read, weight_of in prepared.inputs])
-            classes.append(prepared.letters[number])
-        if IMPOSSIBLE in classes:
-            raise LookupError
-        return self.letter(tuple(classes))
-
-    def letter_of_partial(self, digits: Mapping[MonitorInput, Any]) -> int:
-        """The letter where some inputs have, in place of digits, values that are partly known.
-
-        Raises LookupError or TypeError as ``letter_of``, or if this takes a closer look.
-        """
-        from rulec.monitoring.online.uncertain_steps import mask_of  # numpy, as above
-
-        classes: list[LetterClass] = []
-        for prepared in self.rules:
-            masks, is_partial = [], False
-            reads = prepared.rule.machine.reads
-            for (read, weight_of), machine_read in zip(prepared.inputs, reads, strict=True):
-                if type(digits[read]) in UNKNOWN_TYPES:
-                    is_partial = True
-                else:
-                    weight_of(digits[read])
-                masks.append(mask_of(machine_read, digits[read]))
-            if is_partial and prepared.is_joint:
-                raise LookupError
-            letter_class = prepared.uncertain.letter_class((tuple(masks),))
-            if letter_class is None:
-                raise LookupError
-            classes.append(letter_class)
-        return self.letter(tuple(classes))
+        return self.letter(tuple([table[pick(digits)] for table, pick in self._tables]))
 
 
 class RuleGroups:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from operator import itemgetter
 from typing import Any, Final, TypeAlias
 
@@ -146,9 +146,9 @@ DigitWeight: TypeAlias = Callable[[Any], int]
 """From an input's digit its weight in the number of a letter; LookupError if there is none."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class MonitorInput:
-    """Read of a rule, with variables given by their places.
+    """Read of a rule, with variables given by their places; equal ones are identical.
 
     ``name`` is the declaration; None if ``number`` is a count or a sum, whose ``variables`` these
     are. A number's digit is how many thresholds it passes; that of anything else is its value.
@@ -173,6 +173,17 @@ class MonitorInput:
         return bisect_right(scale(self.number).floors, reached)
 
 
+@lru_cache(maxsize=1 << 14)
+def _input(
+    name: str | None,
+    places: tuple[int, ...],
+    number: NumberRead | None = None,
+    variables: tuple[str, ...] = (),
+) -> MonitorInput:
+    # Inputs are looked up all the time, and hashing a sum takes long.
+    return MonitorInput(name, places, number, variables)
+
+
 def monitor_inputs(
     rule: CompiledRule, vocabulary: Vocabulary
 ) -> list[tuple[MonitorInput, DigitWeight]]:
@@ -191,13 +202,13 @@ def monitor_inputs(
                 declaration.values if isinstance(declaration, Enumeration) else (False, True)
             )
             weights = {value: stride * read.digit(value) for value in values}
-            inputs.append((MonitorInput(read.name, places_of(read.variables)), weights.__getitem__))
+            inputs.append((_input(read.name, places_of(read.variables)), weights.__getitem__))
         else:
             quantity, variables = scale(read).quantity, scale(read).variables
             if quantity is None:
-                number = MonitorInput(None, places_of(variables), read, variables)
+                number = _input(None, places_of(variables), read, variables)
             else:
-                number = MonitorInput(quantity.name, places_of(quantity.arguments), read)
+                number = _input(quantity.name, places_of(quantity.arguments), read)
             inputs.append((number, stride.__mul__))
         stride *= read.size
     return inputs
