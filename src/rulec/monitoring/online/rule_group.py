@@ -150,14 +150,7 @@ class _ClassTable(dict[tuple[Any, ...], "LetterClass"]):
         else:
             if prepared.is_joint:
                 raise LookupError
-            for (_, weight_of), digit in inputs:
-                if type(digit) not in UNKNOWN_TYPES:
-                    weight_of(digit)
-            from rulec.monitoring.online.uncertain_steps import mask_of  # numpy, as above
-
-            reads = zip(prepared.rule.machine.reads, digits, strict=True)
-            cube = tuple([mask_of(read, digit) for read, digit in reads])
-            letter_class = prepared.uncertain.letter_class((cube,))
+            letter_class = prepared.uncertain.class_of(digits, prepared.inputs)
         if letter_class is None or letter_class == IMPOSSIBLE:
             raise LookupError
         if len(self) >= MOST_CLASSES:

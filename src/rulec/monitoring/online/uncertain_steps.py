@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine
+from rulec.monitoring.online.encoding.encoded_values import DigitWeight
 from rulec.monitoring.online.four_valued import (
     WORST_FIRST,
     FourValued,
@@ -21,6 +22,7 @@ from rulec.monitoring.online.four_valued import (
     within,
 )
 from rulec.monitoring.uncertainty.letter_classes import LetterClasses, Letters
+from rulec.monitoring.uncertainty.letter_diagram import bits_of
 from rulec.monitoring.uncertainty.possible_letters import possible_digits
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 
@@ -57,6 +59,8 @@ class UncertainSteps:
         self._machine = machine
         self._classes = LetterClasses(machine)
         self._single = edges
+        self._masks: list[dict[Any, int]] = [{} for _ in machine.reads]
+        self._sets: dict[int, LetterClass | None] = {}
         self._edges: dict[tuple[frozenset[int], RunningVerdict], UncertainEdge] = {}
         self._steps: dict[tuple[Edge, LetterClass], Edge] = {}
 
@@ -93,10 +97,34 @@ class UncertainSteps:
 
     def letter_class(self, letters: Letters) -> LetterClass | None:
         """The classes of possible letters; None if facts exclude them all."""
-        mask = self._classes.of(letters)
-        if not mask & (mask - 1):
-            return mask.bit_length() - 1 if mask else None
-        return frozenset(n for n in range(mask.bit_length()) if mask >> n & 1)
+        return self._class_with(self._classes.of(letters))
+
+    def class_of(
+        self, digits: Sequence[Any], inputs: Sequence[tuple[object, DigitWeight]]
+    ) -> LetterClass | None:
+        """The classes of a letter whose reads have these digits, or values that are partly known.
+
+        Raises LookupError if one is wrong, None if facts exclude them all.
+        """
+        cube = []
+        for read, known, digit, (_, weight_of) in zip(
+            self._machine.reads, self._masks, digits, inputs, strict=True
+        ):
+            mask = known.get(digit)
+            if mask is None:
+                if type(digit) not in UNKNOWN_TYPES:
+                    weight_of(digit)
+                mask = mask_of(read, digit)
+                if type(digit) is not Interval:
+                    known[digit] = mask
+            cube.append(mask)
+        return self._class_with(self._classes.diagram.classes(cube))
+
+    def _class_with(self, mask: int) -> LetterClass | None:
+        if mask not in self._sets:
+            single = mask.bit_length() - 1 if mask else None
+            self._sets[mask] = single if mask & (mask - 1) == 0 else frozenset(bits_of(mask))
+        return self._sets[mask]
 
     def _verdict(self, state: int, symbol: int) -> FourValued:
         return _four_valued(self._machine, state, symbol)
