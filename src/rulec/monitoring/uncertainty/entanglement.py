@@ -14,8 +14,14 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import Unknown, holds
-from rulec.monitoring.uncertainty.completions import Subject, subjects_in, subjects_of_read
+from rulec.monitoring.uncertainty.completions import (
+    PartialView,
+    Subject,
+    subjects_in,
+    subjects_of_read,
+)
 from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +54,16 @@ class Entanglement:
 
     entangled: frozenset[Subject]
     counted: frozenset[Subject]
+
+    def is_met(self, view: PartialView) -> bool:
+        """Whether unknown values of a state have to do with each other, or one may be missing."""
+        there = view.objects.keys()
+        return any(type(view.given(*x)) in UNKNOWN_TYPES for x in self.entangled) or any(
+            type(view.given(*x)) in _NOT_COUNTED and there >= set(x[1]) for x in self.counted
+        )
+
+
+_NOT_COUNTED = frozenset({Interval, type(None)})
 
 
 def entanglement(

@@ -13,7 +13,7 @@ from rulec.automata.thresholds import exact, scale
 from rulec.diagnostics import RulecError
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
-from rulec.logic.kleene import Unknown, weighted_sum
+from rulec.logic.kleene import Unknown, holds, weighted_sum
 from rulec.monitoring.axiom_violations import StatePlace, impossible_state
 from rulec.monitoring.letter_reader import missing_value, present_in
 from rulec.monitoring.state_view import StateView
@@ -23,6 +23,7 @@ from rulec.monitoring.uncertainty.completions import (
     joint_digits,
     unknown_in_read,
 )
+from rulec.monitoring.uncertainty.entanglement import Entanglement, NothingKnown, entanglement
 from rulec.monitoring.uncertainty.letter_classes import Letters
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
@@ -82,6 +83,7 @@ class PossibleLetters:
         self._given: dict[tuple[str, tuple[str, ...]], list[PartialValue | None]] = {}
         self._columns: dict[tuple[object, ...], tuple[list[int], bool]] = {}
         self._joint: dict[str, bool] = {}
+        self._entangled: dict[tuple[str, tuple[str, ...]], Entanglement] = {}
 
     def view(self, number: int) -> StateView:
         """A state with the objects that are present."""
@@ -110,8 +112,11 @@ class PossibleLetters:
         states = states or [((),)] * (last - first + 1)
         is_exact = True
         if any(unknown) and self._is_joint(rule):
+            about = self._entanglement(rule, objects)
             for index, (cube,) in enumerate(states):
                 if all(mask & (mask - 1) == 0 for mask in cube):
+                    continue
+                if not about.is_met(self.view(first + index)):
                     continue
                 joint = self._joint_digits(rule, objects, first + index)
                 is_exact &= joint.exact
@@ -119,6 +124,14 @@ class PossibleLetters:
                     [tuple([1 << digit for digit in digits]) for digits in sorted(joint.digits)]
                 )
         return PossibleWord(tuple(states), tuple(unknown), is_exact)
+
+    def _entanglement(self, rule: CompiledRule, objects: Mapping[str, str]) -> Entanglement:
+        key = rule.name, tuple(objects.values())
+        if key not in self._entangled:
+            everybody = NothingKnown(self._trace.objects, self._vocabulary)
+            axioms = self._rulebook.axioms
+            self._entangled[key] = entanglement(rule.machine.reads, objects, axioms, everybody)
+        return self._entangled[key]
 
     def _joint_digits(
         self, rule: CompiledRule, objects: Mapping[str, str], number: int
@@ -177,7 +190,7 @@ class PossibleLetters:
         return self._columns[key]
 
     def _sum(self, read: NumberRead, objects: Mapping[str, str], number: int, rule: str) -> int:
-        """The digits of a sum or a count; all of them if what is counted is unknown."""
+        """The digits of a sum or a count; all of them if a sum has a count that is unknown."""
         view = self.view(number)
         total = weighted_sum(read.terms, objects, view)
         if not isinstance(total, Unknown):
@@ -203,7 +216,9 @@ class PossibleLetters:
                     if view.given(total.name, total.objects) is None:
                         subject = total.name, total.objects
                         raise missing_value(subject, self._where(number), rule, self._trace.place)
-                    return (1 << read.size) - 1
+                    if len(read.terms) > 1:
+                        return (1 << read.size) - 1
+                    low, high = counted_range(term, objects, view)
         return _digits_between(read, low, high)
 
     def _unknown_names(
@@ -248,6 +263,19 @@ def is_joint(rule: CompiledRule, axioms: Sequence[CompiledAxiom]) -> bool:
         or len(set(terms)) < len(terms)
         or not about_names.isdisjoint(names_in(rule.formula))
     )
+
+
+def counted_range(
+    count: ltl.Count, objects: Mapping[str, str], view: StateView
+) -> tuple[Fraction, Fraction]:
+    """How many objects count for sure, and how many may."""
+    low = high = 0
+    for item, kind in view.objects.items():
+        if view.vocabulary.is_subtype(kind, count.type):
+            truth = holds(count.body, {**objects, count.variable: item}, view)
+            low += truth is True
+            high += truth is not False
+    return Fraction(low), Fraction(high)
 
 
 def _digits_between(read: NumberRead, low: Fraction, high: Fraction) -> int:
