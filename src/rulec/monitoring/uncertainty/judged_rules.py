@@ -28,6 +28,10 @@ class JudgedRules:
     presumed: tuple[str, ...]
 
 
+_KNOWN: dict[tuple[int, frozenset[str] | None, bool], tuple[CompiledRulebook, JudgedRules]] = {}
+_MOST_KNOWN = 1 << 6
+
+
 def judged_rules(
     rulebook: CompiledRulebook, told: frozenset[str] | None, *, cut: bool
 ) -> JudgedRules:
@@ -35,8 +39,21 @@ def judged_rules(
 
     Left out are rules that no trace can be known to violate, and, of traces that are ``cut``, those
     whose machine would be too large. Raises RulecError R0403 if Spot is not installed, which makes
-    the machines for these.
+    the machines for these. The answer is remembered: it is asked for every trace.
     """
+    key = id(rulebook), told, cut
+    known = _KNOWN.get(key)
+    if known is None or known[0] is not rulebook:
+        if len(_KNOWN) >= _MOST_KNOWN:
+            _KNOWN.clear()
+        known = rulebook, _judged_rules(rulebook, told, cut=cut)
+        _KNOWN[key] = known
+    return known[1]
+
+
+def _judged_rules(
+    rulebook: CompiledRulebook, told: frozenset[str] | None, *, cut: bool
+) -> JudgedRules:
     prefixes: Mapping[str, OutcomeMachine | None] | None = None
     if cut:
         prefixes = {} if rulebook.prefixes is None else rulebook.prefixes(rulebook)

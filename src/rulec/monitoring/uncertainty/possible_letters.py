@@ -224,7 +224,7 @@ class PossibleLetters:
     def _unknown_names(
         self, read: Read | NumberRead, objects: Mapping[str, str], span: tuple[int, int]
     ) -> frozenset[str]:
-        names = (read.name,) if isinstance(read, Read) else scale(read).names
+        names = names_of_read(read)
         if len(names) == 1:
             return frozenset(names)
         numbers = range(span[0], span[1] + 1)
@@ -257,12 +257,17 @@ def is_joint(rule: CompiledRule, axioms: Sequence[CompiledAxiom]) -> bool:
         if isinstance(read, NumberRead)
         for _, term in read.terms
     ]
-    about_names = {name for axiom in axioms for name in names_in(axiom.formula)}
-    return (
-        any(isinstance(term, ltl.Count) for term in terms)
-        or len(set(terms)) < len(terms)
-        or not about_names.isdisjoint(names_in(rule.formula))
+    if any(isinstance(term, ltl.Count) for term in terms) or len(set(terms)) < len(terms):
+        return True
+    in_axioms = {name for axiom in axioms for name in names_in(axiom.formula)}
+    return not in_axioms.isdisjoint(
+        name for read in rule.machine.reads for name in names_of_read(read)
     )
+
+
+def names_of_read(read: Read | NumberRead) -> tuple[str, ...]:
+    """The names that a read depends on."""
+    return (read.name,) if isinstance(read, Read) else scale(read).names
 
 
 def counted_range(

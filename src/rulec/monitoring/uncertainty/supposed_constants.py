@@ -15,6 +15,7 @@ from rulec.logic.free_names import names_in
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.completions import Subject, subjects_of_read
 from rulec.monitoring.uncertainty.linear_arrangement import LinearPlane, sample_points
+from rulec.monitoring.uncertainty.possible_letters import names_of_read
 from rulec.trace import Value
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
@@ -48,6 +49,7 @@ class ConstantsReader:
         return self._of_facts.union(
             subject
             for read in rule.machine.reads
+            if any(declarations[name].constant for name in names_of_read(read))
             for subject in subjects_of_read(read, objects, self._everybody)
             if declarations[subject[0]].constant
         )

@@ -24,7 +24,7 @@ from rulec.automata.thresholds import scale
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.uncertainty.dependence import BEFORE, Dependence, PossibleAlternative
 from rulec.monitoring.uncertainty.letter_classes import LetterClasses, Letters
-from rulec.monitoring.uncertainty.possible_letters import PossibleWord
+from rulec.monitoring.uncertainty.possible_letters import PossibleWord, names_of_read
 from rulec.monitoring.verdict import ConditionalOutcome, OpenReasons, OutcomeName, Reason
 
 MOST_OUTCOMES = 1 << 4
@@ -224,7 +224,7 @@ class UncertainMachine:
 
         Empty if some word can, whatever the untold names may be.
         """
-        names = frozenset(name for read in self._reads for name in _names_of(read)) & untold
+        names = frozenset(name for read in self._reads for name in names_of_read(read)) & untold
         if not names:
             return ()
         if names not in self._untold:
@@ -235,7 +235,7 @@ class UncertainMachine:
     def _smallest_lack(self, names: frozenset[str]) -> tuple[str, ...]:
         """Untold names that would all have to be told, in the order in which they are read."""
         order = dict.fromkeys(
-            name for read in self._reads for name in _names_of(read) if name in names
+            name for read in self._reads for name in names_of_read(read) if name in names
         )
         lacking = list(order)
         for name in order:
@@ -246,7 +246,9 @@ class UncertainMachine:
 
     def _can_fire(self, untold: frozenset[str]) -> bool:
         sizes = [read.size for read in self._reads]
-        dark = [n for n, read in enumerate(self._reads) if not untold.isdisjoint(_names_of(read))]
+        dark = [
+            n for n, read in enumerate(self._reads) if not untold.isdisjoint(names_of_read(read))
+        ]
         table = np.array(self._machine.letters).reshape(sizes[::-1])
         last = len(sizes) - 1
         axes = [last - n for n in range(len(sizes)) if n not in dark] + [last - n for n in dark]
@@ -272,10 +274,6 @@ def _is_open(letters: Letters, read: int) -> bool:
     for cube in letters:
         union |= cube[read]
     return bool(union & (union - 1))
-
-
-def _names_of(read: Read | NumberRead) -> tuple[str, ...]:
-    return (read.name,) if isinstance(read, Read) else scale(read).names
 
 
 def _side(read: NumberRead, digit: int) -> str:
