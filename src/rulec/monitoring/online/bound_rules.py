@@ -24,6 +24,7 @@ from rulec.vocabulary.vocabulary_model import choices
 
 if TYPE_CHECKING:
     from rulec.monitoring.online.four_valued import LetterClass
+    from rulec.monitoring.online.partial_states import Entangled, PartialState
     from rulec.monitoring.online.uncertain_steps import Edge
 
 Letters: TypeAlias = list[int]
@@ -76,6 +77,7 @@ class BoundRules:
             for name in names_in(axiom.formula)
         )
         self._partial: dict[KnownState, Letters] = {}
+        self._entangled: Entangled = {}
         self._readers: dict[tuple[str, ...], GroupLetters | None] = {}
         self._bindings: list[tuple[RuleGroup, tuple[Items, ...]]] = []
         by_name: dict[str, BoundRule] = {}
@@ -105,7 +107,11 @@ class BoundRules:
                 encoded = reader.shape.encode(state)
                 known = reader.shape, encoded
                 if not self._counting:
-                    return reader.letters(state, encoded), known
+                    letters = reader.letters(state, encoded)
+                    if not any(group.closer for group, _ in self._bindings):
+                        return letters, known
+                    closely = self._looked_at_closer(letters, state, (f"state {number}", place))
+                    return closely, None if self._weighing else known
         except (LookupError, TypeError):
             pass
         with suppress(LookupError, TypeError):
@@ -135,6 +141,46 @@ class BoundRules:
             self._readers[names] = GroupLetters(shape, self._bindings)
         return self._readers[names]
 
+    def _looked_at_closer(
+        self, letters: Letters, state: State, where: tuple[str, SourceLocation | None]
+    ) -> Letters:
+        """Letters of which some rules' classes are not known, with those of the state."""
+        reader: PartialState | None = None
+        found, begin = list(letters), 0
+        for group, bindings in self._bindings:
+            for place, items in enumerate(bindings if group.closer else (), begin):
+                rules = group.closer.get(letters[place], ())
+                if rules and reader is None:
+                    reader = self._partial_state(state, where)
+                if rules and reader is not None:
+                    classes = list(group.classes[letters[place]])
+                    inexact = set()
+                    for number in rules:
+                        classes[number], is_exact = reader.letter_class(group.rules[number], items)
+                        inexact |= set() if is_exact else {number}
+                    found[place] = group.letter(tuple(classes), inexact)
+            begin += len(bindings)
+        return found
+
+    def _partial_state(
+        self, state: State, where: tuple[str, SourceLocation | None]
+    ) -> PartialState:
+        # numpy, a tenth of a second, is loaded only where something is unknown.
+        from rulec.monitoring.online.partial_states import PartialState
+
+        return PartialState(state, self._rulebook, self.objects, where, self._entangled)
+
+    def inexact(self, letters: Letters) -> frozenset[str]:
+        """Rules of which more is taken to be possible than is, in a state with these letters."""
+        found: frozenset[str] = frozenset()
+        begin = 0
+        for group, bindings in self._bindings:
+            if group.inexact:
+                for letter in letters[begin : begin + len(bindings)]:
+                    found |= group.inexact.get(letter, frozenset())
+            begin += len(bindings)
+        return found
+
     def _careful_letters(
         self, state: State, number: int, place: SourceLocation | None
     ) -> tuple[Letters, bool]:
@@ -147,24 +193,20 @@ class BoundRules:
         reader = LetterReader((state,), rulebook, name.format, place=place, objects=self.objects)
         check_counting_axioms(rulebook, 1, reader.view, name.format, place)
         is_partial = self.groups.is_partial or has_partial_values(state)
-        if is_partial:
-            # numpy, a tenth of a second, is loaded only where something is unknown.
-            from rulec.monitoring.online.partial_states import possible_classes
-
-            bound = [(bound_rule.prepared, bound_rule.bindings) for bound_rule in self.rules]
-            classes: Mapping[str, Sequence[LetterClass]] = possible_classes(
-                bound, state, rulebook, self.objects, (name, place)
-            )
-        else:
-            classes = {
-                bound_rule.prepared.name: [
-                    reader.word(bound_rule.prepared.rule, bound_rule.prepared.bound(items), 0, 0)[0]
-                    for items in bound_rule.bindings
-                ]
-                for bound_rule in self.rules
-            }
+        partial = self._partial_state(state, (name, place)) if is_partial else None
+        found: dict[str, list[tuple[LetterClass, bool]]] = {}
+        for bound_rule in self.rules:
+            prepared = bound_rule.prepared
+            found[prepared.name] = [
+                (reader.word(prepared.rule, prepared.bound(items), 0, 0)[0], True)
+                if partial is None
+                else partial.letter_class(prepared, items)
+                for items in bound_rule.bindings
+            ]
         letters = []
         for group in self.groups.groups:
-            words = [classes[prepared.name] for prepared in group.rules]
-            letters += [group.letter(classes_read) for classes_read in zip(*words, strict=True)]
+            columns = [found[prepared.name] for prepared in group.rules]
+            for classes in zip(*columns, strict=True):
+                inexact = {number for number, (_, is_exact) in enumerate(classes) if not is_exact}
+                letters.append(group.letter(tuple([own for own, _ in classes]), inexact))
         return letters, is_partial

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, TypeAlias
 
+from rulec.logic.formula import Count, QuantityTerm
 from rulec.logic.kleene import Unknown, weighted_sum
 from rulec.monitoring.online.encoding import encoded_values
 from rulec.monitoring.online.encoding.encoded_values import Encoded, MonitorInput
@@ -179,11 +180,24 @@ def _sum_column(read: MonitorInput, about: Sequence[Items], shape: StateShape) -
     assert number is not None
     bindings = [dict(zip(read.variables, items, strict=True)) for items in about]
 
-    def column(state: State, _: Sequence[Encoded]) -> Sequence[int]:
-        view = StateView(state, shape.objects, shape.vocabulary)
-        totals = [weighted_sum(number.terms, binding, view) for binding in bindings]
-        if any(isinstance(value, Unknown) for value in totals):
+    def digit(binding: Mapping[str, str], view: StateView) -> Any:
+        total = weighted_sum(number.terms, binding, view)
+        if not isinstance(total, Unknown):
+            return number.digit(total)
+        if isinstance(number.terms[0][1], Count):
+            return UNKNOWN
+        given = [
+            view.given(term.name, tuple([binding[variable] for variable in term.arguments]))
+            for _, term in number.terms
+            if isinstance(term, QuantityTerm)
+        ]
+        # Something may be missing, or the sum lie between two others.
+        if None in given or UNKNOWN not in given or len(given) < len(number.terms):
             raise LookupError
-        return [number.digit(value) for value in totals if not isinstance(value, Unknown)]
+        return UNKNOWN
+
+    def column(state: State, _: Sequence[Encoded]) -> Sequence[Any]:
+        view = StateView(state, shape.objects, shape.vocabulary)
+        return [digit(binding, view) for binding in bindings]
 
     return column

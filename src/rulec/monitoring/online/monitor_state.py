@@ -54,7 +54,8 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
 
     ``state`` is its number, from 0. ``verdict`` is that of all hard rules together, ``rules`` has
     each rule's, soft ones included, ``changes`` what is new, in the order of rules and objects.
-    Where not all is known a verdict may be a ``VerdictRange``.
+    Where not all is known a verdict may be a ``VerdictRange``; ``exact`` is false if of a rule with
+    such a verdict more was taken to be possible than is, so that it may be narrower after all.
     """
 
     __repr__ = short_repr
@@ -64,6 +65,7 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
     verdict: RunningVerdict
     rules: Mapping[str, RunningVerdict]
     changes: tuple[VerdictChange, ...] = ()
+    exact: bool = True
 
     @property
     def best(self) -> FourValued:
@@ -76,7 +78,7 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
         return worst_of(self.verdict)
 
     def __reduce__(self) -> tuple[type[SoFar], tuple[Any, ...]]:
-        return SoFar, (self.state, self.verdict, dict(self.rules), self.changes)
+        return SoFar, (self.state, self.verdict, dict(self.rules), self.changes, self.exact)
 
 
 class MonitorState(msgspec.Struct, frozen=True, eq=False):
@@ -84,8 +86,9 @@ class MonitorState(msgspec.Struct, frozen=True, eq=False):
 
     ``nodes`` are the states of each group's machines for each binding, in the order of the groups.
     ``n_violations`` is how many bindings have violated their rule for good; rules that are
-    ``doubted`` may have been violated by objects that have left. ``after`` is a cache of the steps
-    that follow, by the keys of states.
+    ``doubted`` may have been violated by objects that have left, and of those that are ``inexact``
+    more was taken to be possible than is. ``exact`` is as in ``SoFar``. ``after`` is a cache of the
+    steps that follow, by the keys of states.
     """
 
     bound_rules: BoundRules
@@ -94,6 +97,8 @@ class MonitorState(msgspec.Struct, frozen=True, eq=False):
     rules: Mapping[str, RunningVerdict]
     n_violations: int
     doubted: frozenset[str] = frozenset()
+    inexact: frozenset[str] = frozenset()
+    exact: bool = True
     after: dict[Hashable, StepResult] = msgspec.field(default_factory=dict)
 
 
@@ -138,7 +143,14 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
         else:
             verdict, n_violations = current.verdict, current.n_violations
             after = MonitorState(
-                bound_rules, nodes, verdict, current.rules, n_violations, doubted=current.doubted
+                bound_rules,
+                nodes,
+                verdict,
+                current.rules,
+                n_violations,
+                doubted=current.doubted,
+                inexact=current.inexact,
+                exact=current.exact,
             )
             return after, ()
     else:
@@ -157,6 +169,14 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
     known = {rule: current.rules[rule] for rule in unchanged}
     lost = violated_rules, doubted
     return state_at(bound_rules, nodes, lost, n_violations, known), tuple(changes)
+
+
+def with_inexact(state: MonitorState, rules: frozenset[str]) -> MonitorState:
+    """The state in which of these rules more was taken to be possible than is."""
+    if not rules:
+        return state
+    exact = not any(isinstance(state.rules[rule], VerdictRange) for rule in rules)
+    return msgspec.structs.replace(state, inexact=rules, exact=exact, after={})
 
 
 def carry_over(

@@ -2,40 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
 from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.rule_group import PreparedRule
+from rulec.monitoring.uncertainty.entanglement import Entanglement
 from rulec.monitoring.uncertainty.possible_letters import PossibleLetters
 from rulec.trace import State, Trace
 
+Entangled = dict[tuple[str, tuple[str, ...]], Entanglement]
+"""What of a rule is entangled, by its name and objects."""
 
-def possible_classes(
-    rules: Sequence[tuple[PreparedRule, Sequence[Items]]],
-    state: State,
-    rulebook: CompiledRulebook,
-    objects: Mapping[str, str],
-    where: tuple[str, SourceLocation | None],
-) -> dict[str, list[LetterClass]]:
-    """The classes that rules may read in a checked state, for each of their bindings.
 
-    ``where`` are what messages call the state, and where it was read. Raises RulecError R0504 if a
-    value without default is missing, R0508 if the state cannot be.
+class PartialState:
+    """A checked state, read as ``verify`` does.
+
+    ``where`` are what messages call the state, and where it was read. ``entangled`` is kept from
+    one state to the next while the same objects are there.
     """
-    name, place = where
-    trace = Trace("", 1.0, objects, (state,), place=place)
-    reader = PossibleLetters(trace, rulebook, rulebook.vocabulary, lambda _: name)
-    found: dict[str, list[LetterClass]] = {}
-    for prepared, bindings in rules:
-        classes = found[prepared.name] = []
-        for items in bindings:
-            bound = prepared.bound(items)
-            (letters,) = reader.word(prepared.rule, bound, 0, 0).states
-            letter_class = prepared.uncertain.letter_class(letters)
-            if letter_class is None:
-                raise reader.impossible(prepared.rule, bound, 0)
-            classes.append(letter_class)
-    return found
+
+    def __init__(
+        self,
+        state: State,
+        rulebook: CompiledRulebook,
+        objects: Mapping[str, str],
+        where: tuple[str, SourceLocation | None],
+        entangled: Entangled,
+    ) -> None:
+        name, place = where
+        trace = Trace("", 1.0, objects, (state,), place=place)
+        self._reader = PossibleLetters(
+            trace, rulebook, rulebook.vocabulary, lambda _: name, entangled=entangled
+        )
+
+    def letter_class(self, prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:
+        """The classes that a rule may read of objects, and whether no more are said than are.
+
+        Raises RulecError R0504 if a value without default is missing, R0508 if the state cannot be.
+        """
+        bound = prepared.bound(items)
+        word = self._reader.word(prepared.rule, bound, 0, 0)
+        letter_class = prepared.uncertain.letter_class(word.states[0])
+        if letter_class is None:
+            raise self._reader.impossible(prepared.rule, bound, 0)
+        is_constant = any(word.unknown[place] for place in prepared.constants)
+        return letter_class, word.exact and not is_constant

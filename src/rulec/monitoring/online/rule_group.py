@@ -7,13 +7,14 @@ when they are first met.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import IMPOSSIBLE
+from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
+from rulec.automata.thresholds import scale
 from rulec.monitoring.online.encoding.encoded_values import (
     Breakpoints,
     DigitWeight,
@@ -39,6 +40,9 @@ MOST_CACHED = 1 << 18
 """Nodes, letters and transitions that are kept before all are forgotten."""
 
 
+CLOSER = -2
+"""Stands for classes that it takes a closer look at the state to know."""
+
 MOST_CLASSES = 1 << 12
 """Classes of a rule's letters that are kept before all are forgotten."""
 
@@ -47,7 +51,8 @@ MOST_CLASSES = 1 << 12
 class PreparedRule:
     """A rule prepared for any objects: its monitor's ``start`` and ``edges``, and its inputs.
 
-    ``letters`` has the class of each letter. ``axioms`` are the rulebook's.
+    ``letters`` has the class of each letter. ``axioms`` are the rulebook's. ``constants`` are the
+    places of inputs that never change.
     """
 
     rule: CompiledRule
@@ -56,6 +61,7 @@ class PreparedRule:
     inputs: tuple[tuple[MonitorInput, DigitWeight], ...]
     letters: tuple[int, ...]
     axioms: tuple[CompiledAxiom, ...] = ()
+    constants: tuple[int, ...] = ()
 
     @cached_property
     def uncertain(self) -> UncertainSteps:
@@ -136,10 +142,15 @@ class CacheSize:
 
 
 class _ClassTable(dict[tuple[Any, ...], "LetterClass"]):
-    """The classes that a rule reads, by its inputs' digits, or values that are partly known."""
+    """The classes that a rule reads, by its inputs' digits, or values that are partly known.
+
+    ``inexact`` are digits of which some is of a constant that is not known, and may be another one
+    in each state.
+    """
 
     def __init__(self, prepared: PreparedRule) -> None:
         self._prepared = prepared
+        self.inexact: set[tuple[Any, ...]] = set()
 
     def __missing__(self, digits: tuple[Any, ...]) -> LetterClass:
         prepared = self._prepared
@@ -149,12 +160,18 @@ class _ClassTable(dict[tuple[Any, ...], "LetterClass"]):
             letter_class: LetterClass | None = prepared.letters[number]
         else:
             if prepared.is_joint:
-                raise LookupError
+                for (_, weight_of), digit in inputs:
+                    if type(digit) not in UNKNOWN_TYPES:
+                        weight_of(digit)
+                return CLOSER
             letter_class = prepared.uncertain.class_of(digits, prepared.inputs)
         if letter_class is None or letter_class == IMPOSSIBLE:
             raise LookupError
         if len(self) >= MOST_CLASSES:
             self.clear()
+            self.inexact.clear()
+        if any(type(digits[place]) in UNKNOWN_TYPES for place in prepared.constants):
+            self.inexact.add(digits)
         self[digits] = letter_class
         return letter_class
 
@@ -164,6 +181,8 @@ class RuleGroup:
 
     ``own`` are their inputs about variables, ``world`` those about none. ``classes`` are the letter
     classes of each letter, one for each rule; ``cache_size`` counts for all groups together.
+    Letters that are ``inexact`` have names of rules of which more is taken to be possible than is,
+    those that need a ``closer`` look the numbers of rules whose classes are ``CLOSER``.
     """
 
     def __init__(
@@ -174,7 +193,9 @@ class RuleGroup:
         self.own = tuple([read for read in inputs if read.places or read.name is None])
         self.world = tuple([read for read in inputs if read not in self.own])
         self.classes: list[tuple[LetterClass, ...]] = []
-        self._letters: dict[tuple[LetterClass, ...], int] = {}
+        self.inexact: dict[int, frozenset[str]] = {}
+        self.closer: dict[int, Sequence[int]] = {}
+        self._letters: dict[tuple[tuple[LetterClass, ...], frozenset[int]], int] = {}
         self._nodes: dict[tuple[Edge, ...], GroupNode] = {}
         self._tables = [
             (_ClassTable(prepared), values_at([read for read, _ in prepared.inputs]))
@@ -188,21 +209,37 @@ class RuleGroup:
             self.cache_size.n += 1
         return self._nodes[edges]
 
-    def letter(self, classes: tuple[LetterClass, ...]) -> int:
-        """The letter that has these classes, one for each rule."""
-        if classes not in self._letters:
-            self._letters[classes] = len(self.classes)
+    def letter(self, classes: tuple[LetterClass, ...], inexact: Set[int] = frozenset()) -> int:
+        """The letter that has these classes, one for each rule.
+
+        Of the rules with ``inexact`` numbers more is taken to be possible than is.
+        """
+        key = classes, frozenset(inexact)
+        letter = self._letters.get(key)
+        if letter is None:
+            letter = self._letters[key] = len(self.classes)
             self.classes.append(classes)
             self.cache_size.n += 1
-        return self._letters[classes]
+            if inexact:
+                self.inexact[letter] = frozenset(self.rules[number].name for number in inexact)
+        return letter
 
     def letter_of(self, digits: Mapping[MonitorInput, Any]) -> int:
         """The letter where inputs have these digits, or values that are partly known.
 
-        Raises LookupError or TypeError if one is missing or wrong, if no state is such, or if this
-        takes a closer look.
+        Raises LookupError or TypeError if one is missing or wrong, or if no state is such. Of a
+        letter in ``closer`` some rules' classes are not known.
         """
-        return self.letter(tuple([table[pick(digits)] for table, pick in self._tables]))
+        classes = tuple([table[pick(digits)] for table, pick in self._tables])
+        inexact = frozenset(
+            number
+            for number, (table, pick) in enumerate(self._tables)
+            if table.inexact and pick(digits) in table.inexact
+        )
+        letter = self.letter(classes, inexact)
+        if CLOSER in classes:
+            self.closer[letter] = [n for n, own in enumerate(classes) if own == CLOSER]
+        return letter
 
 
 class RuleGroups:
@@ -234,7 +271,7 @@ def rule_groups(
     rulebook: CompiledRulebook, cut: Mapping[str, OutcomeMachine] | None = None
 ) -> RuleGroups:
     """Prepare the rules of a rulebook; ``cut`` are their machines if the past is not known."""
-    rules = []
+    rules, names = [], set(rulebook.vocabulary.constants)
     for rule in rulebook.rules:
         prepared = PreparedRule(
             rule,
@@ -242,6 +279,13 @@ def rule_groups(
             tuple(monitor_inputs(rule, rulebook.vocabulary)),
             rule.machine.letters,
             rulebook.axioms,
+            constants=tuple(
+                place
+                for place, read in enumerate(rule.machine.reads)
+                if not names.isdisjoint(
+                    (read.name,) if isinstance(read, Read) else scale(read).names
+                )
+            ),
         )
         rules.append(prepared if cut is None else _of_cut(prepared, cut[rule.name]))
     defaults = [declaration.default for declaration in rulebook.vocabulary.declarations.values()]

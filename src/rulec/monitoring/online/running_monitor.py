@@ -19,6 +19,7 @@ from rulec.monitoring.online.monitor_state import (
     carry_over,
     initial_state,
     take_step,
+    with_inexact,
 )
 from rulec.monitoring.online.rule_group import MOST_CACHED, rule_groups
 from rulec.monitoring.online.snapshot import from_data, restored, to_data, with_source
@@ -106,7 +107,7 @@ class Monitor:
     def so_far(self) -> SoFar:
         """Verdicts as of the last state; number -1 before the first one."""
         current, number, changes, _ = self._now
-        return SoFar(number, current.verdict, current.rules, changes)
+        return SoFar(number, current.verdict, current.rules, changes, current.exact)
 
     @property
     def objects(self) -> Mapping[str, str]:
@@ -151,7 +152,7 @@ class Monitor:
             else:
                 number += 1
                 self._now = after, number, changes, cache
-                return SoFar(number, after.verdict, after.rules, changes)
+                return SoFar(number, after.verdict, after.rules, changes, after.exact)
         return self._step_slowly(state, objects, place, same_objects)
 
     def _step_slowly(
@@ -180,6 +181,8 @@ class Monitor:
             raise _no_object(f"state {number}", "names and values", place)
         letters, known = bound_rules.read(state, number, place)
         after, changes = take_step(current, bound_rules, letters)
+        inexact = current.inexact | bound_rules.inexact(letters)
+        after = with_inexact(after, inexact)
         n_before = current.n_violations
         same = bound_rules is current.bound_rules and after.n_violations == n_before
         if same and known is not None:
@@ -194,7 +197,7 @@ class Monitor:
             ]
         # All at once: whatever interrupts this, the state has been taken or it has not.
         self._now = after, number, changes, cache
-        return SoFar(number, after.verdict, after.rules, changes)
+        return SoFar(number, after.verdict, after.rules, changes, after.exact)
 
     def past(self, objects: Mapping[str, str]) -> CarriedState:
         """Past that affects verdicts on future states with these objects.

@@ -17,7 +17,13 @@ from rulec.diagnostics.json_problems import json_words
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.four_valued import FourValued, MonitorEdge, VerdictRange
-from rulec.monitoring.online.monitor_state import MonitorState, initial_state, nodes_at, state_at
+from rulec.monitoring.online.monitor_state import (
+    MonitorState,
+    initial_state,
+    nodes_at,
+    state_at,
+    with_inexact,
+)
 from rulec.monitoring.online.rule_group import PreparedRule, RuleGroups
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
@@ -56,7 +62,8 @@ class SavedMonitor(msgspec.Struct, forbid_unknown_fields=True):
     """Saved monitor: its number of ``states``, and states by rule and binding.
 
     Where not all is known there are several states, and the best and the worst verdict; ``doubted``
-    are rules that objects that have left may have violated, ``told`` and ``cut`` as of a trace.
+    are rules that objects that have left may have violated, ``inexact`` those of which more was
+    taken to be possible than is, ``told`` and ``cut`` as of a trace.
     """
 
     format: str
@@ -71,6 +78,7 @@ class SavedMonitor(msgspec.Struct, forbid_unknown_fields=True):
     told: list[str] | None = None
     cut: bool = False
     doubted: list[str] = []
+    inexact: list[str] = []
 
 
 def to_data(
@@ -83,10 +91,10 @@ def to_data(
     """JSON data of a monitor after a state, for ``from_data``."""
     edges = {rule: rule.edges(current.nodes) for rule in current.bound_rules.rules}
     single = all(isinstance(edge, MonitorEdge) for row in edges.values() for edge in row)
-    doubted = sorted(current.doubted)
+    doubted, inexact = sorted(current.doubted), sorted(current.inexact)
     return {
         "format": FORMAT,
-        "version": VERSION if single and not doubted else PARTIAL_VERSION,
+        "version": VERSION if single and not doubted and not inexact else PARTIAL_VERSION,
         "rulebook": rulebook.name,
         "machines": fingerprint(rulebook),
         "step_s": None if step_s is None else str(step_s),
@@ -103,6 +111,7 @@ def to_data(
             for rule in current.bound_rules.rules
         ],
         **({"doubted": doubted} if doubted else {}),
+        **({"inexact": inexact} if inexact else {}),
         "violations": [
             {"rule": violation.rule, "binding": dict(violation.binding), "step": violation.step}
             for violation in violations
@@ -204,7 +213,10 @@ def restored(
     nodes = nodes_at(bound_rules, edges)
     lost = violated_rules, frozenset(saved.doubted)
     current = state_at(bound_rules, nodes, lost, len(violations))
-    return saved.states - 1, current, violations
+    known = current.rules.keys()
+    if not known >= set(saved.inexact):
+        raise _refused("this saved monitor is damaged", place)
+    return saved.states - 1, with_inexact(current, frozenset(saved.inexact)), violations
 
 
 def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[Edge]]:

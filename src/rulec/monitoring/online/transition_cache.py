@@ -31,7 +31,7 @@ class TransitionCache:
         self._shape: StateShape | None = None
         self._rests_until = 0
         self._last_stranger = -1
-        self._by_nodes: dict[tuple[GroupNode, ...], MonitorState] = {}
+        self._by_nodes: dict[tuple[tuple[GroupNode, ...], frozenset[str]], MonitorState] = {}
         self._n_kept = 0
         self._n_tried = 0
         self._tried_since = 0
@@ -59,14 +59,14 @@ class TransitionCache:
             # One stranger changes nothing, two in a row do.
             if self._shape is not None and self._last_stranger != number - 1:
                 self._last_stranger = number
-                return self._by_nodes.setdefault(after.nodes, after)
+                return self._by_nodes.setdefault((after.nodes, after.inexact), after)
             self._forget(current)
             self._n_tried += TRIAL // 16
             self._shape = shape
         elif self._n_kept >= MOST:
             self._forget(current)
         self.key = shape.key
-        after = self._by_nodes.setdefault(after.nodes, after)
+        after = self._by_nodes.setdefault((after.nodes, after.inexact), after)
         current.after[shape.key_of(encoded)] = after, changes
         self._n_kept += 1
         self._n_tried += 1
@@ -75,7 +75,7 @@ class TransitionCache:
     def _forget(self, current: MonitorState) -> None:
         self.key = _key_of_none
         current.after.clear()
-        self._by_nodes = {current.nodes: current}
+        self._by_nodes = {(current.nodes, current.inexact): current}
         self._n_kept = 0
 
 

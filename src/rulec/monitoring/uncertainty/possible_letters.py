@@ -74,6 +74,8 @@ class PossibleLetters:
         rulebook: CompiledRulebook,
         vocabulary: Vocabulary,
         where: Callable[[int], str] = "state {}".format,
+        *,
+        entangled: dict[tuple[str, tuple[str, ...]], Entanglement] | None = None,
     ) -> None:
         self._trace = trace
         self._rulebook = rulebook
@@ -83,7 +85,7 @@ class PossibleLetters:
         self._given: dict[tuple[str, tuple[str, ...]], list[PartialValue | None]] = {}
         self._columns: dict[tuple[object, ...], tuple[list[int], bool]] = {}
         self._joint: dict[str, bool] = {}
-        self._entangled: dict[tuple[str, tuple[str, ...]], Entanglement] = {}
+        self._entangled = {} if entangled is None else entangled
 
     def view(self, number: int) -> StateView:
         """A state with the objects that are present."""
