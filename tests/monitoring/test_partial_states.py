@@ -229,3 +229,34 @@ def test_an_interval_is_no_truth_and_no_value_of_an_enumeration():
     with pytest.raises(RulecError) as refused:
         judge.step({"place": {"a": Interval(1, 2)}}, CAR)
     assert [one.code for one in refused.value.diagnostics] == ["R0503"]
+
+
+KINDS = """\
+rulebook kinds
+kind is one of a_car, a_truck default a_car
+quantity limit in m/s default 10
+quantity speed in m/s default 0
+signal fast default false
+constant kind
+hard rule truck { require always (a_truck implies not fast) }
+hard rule slow { require always (speed <= limit or speed <= 5 m/s) }
+"""
+
+
+def test_a_verdict_on_an_unknown_constant_is_not_exact_as_long_as_it_is_open():
+    judge = Monitor(rulec.compile_rulebook(parse_rulebook(KINDS)))
+    assert judge.step({"kind": UNKNOWN, "speed": Interval(4, 11)}).exact
+    assert not judge.step({"kind": UNKNOWN, "fast": True}).exact
+    again = Monitor.restore(judge.rulebook, json.loads(json.dumps(judge.snapshot())))
+    for one in (judge, again):
+        assert not one.so_far.exact
+        found = one.step({"kind": "a_truck", "fast": True})
+        assert (found.rules["truck"], found.exact) == ("violated", True)
+
+
+def test_values_that_several_sums_read_are_completed_together():
+    judge = Monitor(rulec.compile_rulebook(parse_rulebook(KINDS)))
+    assert judge.step({"speed": Interval(4, 8)}).rules["slow"] == "holds so far"
+    assert judge.step({"speed": Interval(3, 5), "limit": UNKNOWN}).rules["slow"] == "holds so far"
+    found = judge.step({"speed": UNKNOWN, "limit": Interval(1, 2)})
+    assert (found.best, found.worst, found.exact) == ("holds so far", "violated", True)

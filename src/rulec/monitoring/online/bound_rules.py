@@ -24,7 +24,7 @@ from rulec.vocabulary.vocabulary_model import choices
 
 if TYPE_CHECKING:
     from rulec.monitoring.online.four_valued import LetterClass
-    from rulec.monitoring.online.partial_states import Entangled, PartialState
+    from rulec.monitoring.online.partial_states import Entangled, PartialStateReader
     from rulec.monitoring.online.uncertain_steps import Edge
 
 Letters: TypeAlias = list[int]
@@ -145,7 +145,7 @@ class BoundRules:
         self, letters: Letters, state: State, where: tuple[str, SourceLocation | None]
     ) -> Letters:
         """Letters of which some rules' classes are not known, with those of the state."""
-        reader: PartialState | None = None
+        reader: PartialStateReader | None = None
         found, begin = list(letters), 0
         for group, bindings in self._bindings:
             for place, items in enumerate(bindings if group.closer else (), begin):
@@ -164,11 +164,11 @@ class BoundRules:
 
     def _partial_state(
         self, state: State, where: tuple[str, SourceLocation | None]
-    ) -> PartialState:
+    ) -> PartialStateReader:
         # numpy, a tenth of a second, is loaded only where something is unknown.
-        from rulec.monitoring.online.partial_states import PartialState
+        from rulec.monitoring.online.partial_states import PartialStateReader
 
-        return PartialState(state, self._rulebook, self.objects, where, self._entangled)
+        return PartialStateReader(state, self._rulebook, self.objects, where, self._entangled)
 
     def inexact(self, letters: Letters) -> frozenset[str]:
         """Rules of which more is taken to be possible than is, in a state with these letters."""

@@ -17,7 +17,7 @@ Entangled = dict[tuple[str, tuple[str, ...]], Entanglement]
 """What of a rule is entangled, by its name and objects."""
 
 
-class PartialState:
+class PartialStateReader:
     """A checked state, read as ``verify`` does.
 
     ``where`` are what messages call the state, and where it was read. ``entangled`` is kept from

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
@@ -29,6 +30,9 @@ from rulec.monitoring.verdict import CarriedState, RuleFor, Violation
 from rulec.trace import State
 from rulec.trace.trace_messages import NOT_A_TRACE
 from rulec.vocabulary.vocabulary_model import choices
+
+if TYPE_CHECKING:
+    from rulec.automata.outcome_machine import OutcomeMachine
 
 NO_OBJECTS: Mapping[str, str] = MappingProxyType({})
 
@@ -76,12 +80,16 @@ class Monitor:
         self._told = None if told is None else frozenset(told)
         check_told(self._told, rulebook.vocabulary)
         self._cut = cut
-        machines = None
+        machines: Mapping[str, OutcomeMachine] | None = None
         if self._told is not None or cut:
             # numpy, a tenth of a second, is loaded only where something is unknown.
-            from rulec.monitoring.online.dark_sources import judged_rules
+            from rulec.monitoring.uncertainty.judged_rules import judged_rules
 
-            rulebook, machines = judged_rules(rulebook, self._told, cut=cut)
+            judged = judged_rules(rulebook, self._told, cut=cut)
+            if cut:
+                machines = {rule.name: machine.machine for rule, machine in judged.machines}
+            rules = tuple(rule for rule, _ in judged.machines)
+            rulebook = replace(rulebook, vocabulary=judged.vocabulary, rules=rules)
         self._judged = rulebook
         start = initial_state(BoundRules(rulebook, rule_groups(rulebook, machines), NO_OBJECTS))
         self._now: _Now = start, -1, (), TransitionCache()

@@ -59,7 +59,7 @@ class UncertainMachine:
 
     def __init__(self, machine: OutcomeMachine) -> None:
         self._reads = machine.reads
-        self._machine = machine
+        self.machine = machine
         self.monitor = SetMonitor(machine)
         self.classes = LetterClasses(machine)
         self.correlated: dict[object, dict[object, int]] = {}
@@ -119,7 +119,7 @@ class UncertainMachine:
             {name for own in alternatives for name in own.constants} if alternatives[1:] else set()
         )
         names = [name for name in order if any(name in own for own in (*unknown, varying))]
-        if len(self._machine.starts) > 1:
+        if len(self.machine.starts) > 1:
             names.append(BEFORE)
         dependence = Dependence(self.monitor, self.classes, alternatives, unknown)
         found = dependence.smallest(names)
@@ -249,7 +249,7 @@ class UncertainMachine:
         dark = [
             n for n, read in enumerate(self._reads) if not untold.isdisjoint(names_of_read(read))
         ]
-        table = np.array(self._machine.letters).reshape(sizes[::-1])
+        table = np.array(self.machine.letters).reshape(sizes[::-1])
         last = len(sizes) - 1
         axes = [last - n for n in range(len(sizes)) if n not in dark] + [last - n for n in dark]
         rows = np.transpose(table, axes).reshape(-1, prod(sizes[n] for n in dark))
