@@ -10,7 +10,7 @@ from rulec.extraction.signals.participant_signals import (
     safe_distance,
 )
 from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording
+from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes
 
 
@@ -107,3 +107,13 @@ def test_in_the_road_is_about_vulnerable_users():
     )
     assert signals.about["in_the_road"][:, 0].tolist() == [False, True]
     assert signals.only["in_the_road"].tolist() == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("along", "across", "goes"), [(0, 1.5, True), (1, -1.5, True), (1.5, 1, False), (0, 0, False)]
+)
+def test_who_goes_across_the_road(along, across, goes):
+    places = {k: (30 + along * 0.5 * k, across * 0.5 * k) for k in range(3)}
+    walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
+    context = context_of(recording(lanes(2), [steady(7, 0, 0, steps=3), walker]))
+    assert participant_signals(context).about["goes_across"][0].tolist() == [goes] * 3

@@ -42,6 +42,7 @@ def participant_signals(context: DriveContext) -> SignalColumns:
             "safe_gap": ~follows | (short <= 0),
             "precedes": _precedes(context, follows, gap),
             "oncoming": is_oncoming(context) | _waits_oncoming(context),
+            "goes_across": _goes_across(context),
             "stopped": context.tracks.speed * KMH < context.thresholds.standing_kmh,
             "parked": _constant(context, [body.standing for body in bodies]),
             "two_wheeled": _constant(context, [body.type in _TWO_WHEELED for body in bodies]),
@@ -76,6 +77,13 @@ def is_oncoming(context: DriveContext) -> Flags:
     moves = np.abs(context.extents.along) * KMH >= context.thresholds.standing_kmh
     against: Flags = moves & (context.extents.along < 0)
     return against & _faces_ego(context)
+
+
+def _goes_across(context: DriveContext) -> Flags:
+    """Flags of participants that move across the road, more than along it."""
+    along, across = np.abs(context.extents.along), np.abs(context.extents.across)
+    goes: Flags = (across * KMH >= context.thresholds.standing_kmh) & (across > along)
+    return goes
 
 
 def _waits_oncoming(context: DriveContext) -> Flags:
