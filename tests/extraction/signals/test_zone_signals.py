@@ -83,6 +83,19 @@ def test_a_queue_within_the_junction_takes_the_room_behind_it():
     assert exit_clear(road(), ego, queue[0], queue[1]) == [True] * 6
 
 
+def test_ego_waits_before_the_road_that_it_would_block():
+    # The road across is 4 m wide, from x = 113 to 117; ego's front is at 112, and then at 114
+    across = [
+        lanelet(5, [(115, -40), (115, -10)], successors=(6,)),
+        lanelet(6, [(115, -10), (115, 10)], predecessors=(5,), successors=(7,), types=INSIDE),
+        lanelet(7, [(115, 10), (115, 40)], predecessors=(6,)),
+    ]
+    queue = going(8, (125,) * 7)
+    before, within = ((90, 105, x, x, x, 120, 140) for x in (110, 112))
+    assert exit_clear(road(None, None, *across), before, queue) == [True] * 7
+    assert False in exit_clear(road(None, None, *across), within, queue)
+
+
 def test_a_queue_on_the_lane_beside_is_not_ahead():
     lanes = road()
     lanes[2] = replace(lanes[2], left_of="5")

@@ -129,8 +129,9 @@ def _exit_clear(context: DriveContext, places: Stretches) -> tuple[Flags, Flags]
     """Is there room for ego behind what it enters, and where is that unknown?
 
     There is none if the one ahead leaves too little behind the place where it is at that time, and
-    it makes ego stand on it. Where the recording ends before ego is through it is unknown. What ego
-    enters is the last place that it has got to, and before any the next one.
+    it makes ego stand on it, where others cross or join its way. Where the recording ends before
+    ego is through it is unknown. What ego enters is the last place that it has got to, and before
+    any the next one.
     """
     clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
     own, size = context.ego_extents, context.ego_extents.s_max[0] - context.ego_extents.s_min[0]
@@ -150,12 +151,27 @@ def _exit_clear(context: DriveContext, places: Stretches) -> tuple[Flags, Flags]
         taken = np.where(inside, context.extents.s_max - context.extents.s_min + _ROOM_M, 0.0)
         free = room.min(axis=0, initial=np.inf) - taken.sum(axis=0)
         short = free < size + _ROOM_M
-        held = (front > start) & (rear < end) & stands & short
+        held = (front > _shared(context, start, end)) & (rear < end) & stands & short
         held_later = np.maximum.accumulate(held[::-1])[::-1]
         clear &= ~(nears & short & held_later)
         if not (rear >= end).any():
             unknown |= nears & short & ~held_later
     return clear, unknown & clear
+
+
+def _shared(context: DriveContext, start: float, end: float) -> float:
+    """Where others first cross or join ego's way in a junction; the beginning of any other place.
+
+    A map's junction often begins at its lanelets' ends, some metres before the other road.
+    """
+    road, passages = context.road, context.surroundings.passages
+    if (start, end) not in road.junctions:
+        return start
+    for piece in np.flatnonzero((road.borders[:-1] >= start) & (road.borders[:-1] < end)).tolist():
+        edge = passages.first_meeting(road.lanelet(piece, road.own_lanes[piece]).id)
+        if edge is not None:
+            return float(road.borders[piece]) + edge
+    return start
 
 
 def _entered(front: Floats, rear: Floats, places: Stretches, reach: float) -> NDArray[intp]:
