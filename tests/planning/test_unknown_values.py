@@ -3,6 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction
 from itertools import islice, pairwise, product
+from unittest.mock import patch
 
 import pytest
 from hypothesis import Phase, given, settings
@@ -12,6 +13,7 @@ from rulec.automata.compiler import compile_rulebook
 from rulec.logic.free_names import names_in
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.planning.maneuvers import evaluate
+from rulec.planning.product import possible_instances
 from rulec.trace import Trace, TraceGraph
 from rulec.trace.trace_model import trace_of
 from rulec.vocabulary import Quantity, Vocabulary
@@ -156,6 +158,16 @@ def test_counts_and_outcomes_are_those_of_all_paths_and_completions(chance):
     names = {name for one in rules.rules for name in names_in(one.formula)}
     partial = with_unknown(chance, graph, names)
     check(partial, partial, rules)
+
+
+@given(seeds)
+@settings(phases=[Phase.generate])
+def test_where_there_is_too_much_to_look_at_more_is_possible_and_said_to_be(chance):
+    graph, rules, _ = scene(chance, False)
+    names = {name for one in rules.rules for name in names_in(one.formula)}
+    partial = with_unknown(chance, graph, names)
+    with patch.object(possible_instances, "MOST_SETS", 1):
+        check(partial, partial, rules)
 
 
 @given(seeds)
