@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import rulec
 from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json, write_compiled
+from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import (
@@ -160,7 +162,8 @@ def test_numbers_are_written_exactly():
         (b"[" * 100_000, "not a compiled rulebook"),
         (b'{"format": "something else", "version": 1}', "not a compiled rulebook"),
         (b'{"format": "rulec compiled rulebook", "version": 1}', "of version 1"),
-        (b'{"format": "rulec compiled rulebook", "version": 4}', "of version 4"),
+        (b'{"format": "rulec compiled rulebook", "version": 5}', "of version 5"),
+        (b'{"format": "rulec compiled rulebook", "version": 4}', "damaged"),
         (b'{"format": "rulec compiled rulebook", "version": 3}', "damaged"),
     ],
 )
@@ -304,3 +307,48 @@ def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(RulecError) as caught:
         read_compiled(tmp_path / "missing.json")
     assert caught.value.diagnostics[0].code == "R0701"
+
+
+PAST = "rulebook past signal p, q hard rule recalled { require always (p implies once q) }"
+
+
+def test_machines_for_cut_traces_are_in_the_file(tmp_path, monkeypatch):
+    compiled = rulec.compile_rulebook(rulec.parse_rulebook(PAST))
+    *_, path = write_compiled(compiled, tmp_path)
+    monkeypatch.setattr("rulec.automata.prefix_machines.answers_to", None)
+    again = rulec.compile_rulebook(path)
+    assert isinstance(again.prefixes, StoredPrefixes)
+    for states in ([(True, False)], [(False, True), (True, False)], [(False, False)]):
+        trace = rulec.Trace("t", 1.0, {}, tuple({"p": p, "q": q} for p, q in states), ends="cut")
+        assert rulec.verify(trace, again) == rulec.verify(trace, compiled)
+    assert to_json(again) == path.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("letters", [0]),
+        ("following", []),
+        ("outcomes", [[3]]),
+        ("starts", []),
+        ("starts", [99]),
+        ("begins", [0]),
+    ],
+)
+def test_damaged_machines_for_cut_traces_are_refused(name, value):
+    compiled = rulec.compile_rulebook(rulec.parse_rulebook(PAST))
+    data = json.loads(to_json(replace(compiled, prefixes=stored(compiled))))
+    data["rules"][0]["cut"][name] = value
+    assert "damaged" in refused(json.dumps(data).encode())
+
+
+def test_a_machine_for_cut_traces_may_be_lacking_and_is_none_of_version_3():
+    compiled = rulec.compile_rulebook(rulec.parse_rulebook(PAST))
+    lacking = replace(compiled, prefixes=StoredPrefixes({"recalled": None}))
+    again = from_json(to_json(lacking).encode(), "past.json")
+    trace = rulec.Trace("t", 1.0, {}, ({"p": True, "q": False},), ends="cut")
+    (unjudged,) = rulec.verify(trace, again).not_judged
+    assert unjudged.rule == "recalled"
+    data = json.loads(to_json(replace(compiled, prefixes=stored(compiled))))
+    assert data["version"] == 4
+    assert "damaged" in refused(json.dumps({**data, "version": 3}).encode())

@@ -40,7 +40,7 @@ def machines(
 
 
 def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
-    """The machines for traces that are cut, which a compiled file does not have."""
+    """The machines for traces that are cut, which a compiled file of version 3 does not have."""
     from rulec.automata.prefix_machines import prefix_machines
 
     return prefix_machines(rulebook)
@@ -74,7 +74,9 @@ def compile_rulebook(
             )
         from rulec.automata.bundle.bundle_file import read_compiled
 
-        reference = replace(read_compiled(Path(reference)), prefixes=_prefixes)
+        reference = read_compiled(Path(reference))
+        if reference.prefixes is None:
+            reference = replace(reference, prefixes=_prefixes)
     if isinstance(reference, CompiledRulebook):
         return reference if step is None else reference.at_step(step)
     from rulec.automata.compiler import lower

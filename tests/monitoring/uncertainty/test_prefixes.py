@@ -1,10 +1,12 @@
 """Recordings are cut out of something longer: what was before, and comes after, is not seen."""
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
 from hypothesis import Phase, given, settings
 
+from rulec.automata.bundle.stored_prefixes import stored
 from rulec.logic.bounds import PAST, operations_of, range_of
 from rulec.logic.formula import Atom, Bound, Unary, UnaryOperator
 from rulec.monitoring.verify import verify
@@ -80,6 +82,8 @@ def test_outcomes_are_those_of_all_that_may_have_been(chance):
     word = chance.choices(LETTERS, k=chance.randint(1, 3))
     states = tuple({"p": P in letter, "q": Q in letter} for letter in word)
     verdict = verify(Trace("t", 1.0, {}, states, ends="cut"), compiled)
+    as_stored = replace(compiled, prefixes=stored(compiled))
+    assert verify(Trace("t", 1.0, {}, states, ends="cut"), as_stored) == verdict
     expected = reading(meant, semantics, word)
     if expected == {"violated"}:
         assert verdict.violations, (meant, word)

@@ -18,6 +18,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRulebook,
     alike,
 )
+from rulec.automata.bundle.stored_prefixes import StoredPrefixes
 from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
@@ -51,7 +52,24 @@ def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
         sources=tuple(SourceFile(source.name, source.sha256) for source in read.sources),
         priorities=_priorities(read),
         axioms=tuple(_axiom(fact, vocabulary) for fact in read.facts),
+        prefixes=_prefixes(read),
     )
+
+
+def _prefixes(read: schema.BundleFile) -> StoredPrefixes | None:
+    """The machines for cut traces, checked; None in a file that has none."""
+    if read.version != schema.WITH_CUT:
+        none = all(rule.cut is None for rule in read.rules)
+        _require(none, "it has machines for traces that are cut, which its version has not")
+        return None
+    for rule in read.rules:
+        if rule.cut is not None:
+            _check_table(rule.cut, len(rule.machine.letters), rule.name)
+            known = len(rule.cut.starts) > 0 and set(rule.cut.starts) <= set(
+                range(len(rule.cut.successors))
+            )
+            _require(known, f"the table of rule `{rule.name}` for cut traces begins nowhere")
+    return StoredPrefixes({rule.name: rule.cut for rule in read.rules})
 
 
 def _priorities(read: schema.BundleFile) -> frozenset[tuple[str, str]]:
@@ -213,18 +231,7 @@ def _step(rule: schema.BundleRule, formula: ltl.Formula) -> Fraction | None:
 
 def _machine(read: schema.MachineEntry, rule: str) -> monitors.MealyMonitor:
     reads = tuple(_read(item) for item in read.reads)
-    n_states = len(read.successors)
-    n_classes = len(read.successors[0]) if read.successors else 0
-    fits: list[bool] = [
-        n_states > 0,
-        len(read.letters) == prod(item.size for item in reads),
-        all(monitors.IMPOSSIBLE <= letter < n_classes for letter in read.letters),
-        all(len(row) == n_classes for row in read.successors),
-        all(len(row) == n_classes for row in read.outputs),
-        len(read.outputs) == n_states,
-        all(0 <= state < n_states for state in chain.from_iterable(read.successors)),
-    ]
-    _require(all(fits), f"the table of rule `{rule}` has a row or number that does not fit")
+    _check_table(read, prod(item.size for item in reads), rule)
     traps = [
         monitors.sink_of(read.successors, read.outputs, verdict=verdict)
         for verdict in (False, True)
@@ -234,6 +241,23 @@ def _machine(read: schema.MachineEntry, rule: str) -> monitors.MealyMonitor:
         f"rule `{rule}` names a wrong dead or safe state",
     )
     return monitors.MealyMonitor(reads, *astuple(read)[1:])
+
+
+def _check_table(
+    read: schema.MachineEntry | schema.CutMachineEntry, n_letters: int, rule: str
+) -> None:
+    n_states = len(read.successors)
+    n_classes = len(read.successors[0]) if read.successors else 0
+    fits: list[bool] = [
+        n_states > 0,
+        len(read.letters) == n_letters,
+        all(monitors.IMPOSSIBLE <= letter < n_classes for letter in read.letters),
+        all(len(row) == n_classes for row in read.successors),
+        all(len(row) == n_classes for row in read.outputs),
+        len(read.outputs) == n_states,
+        all(0 <= state < n_states for state in chain.from_iterable(read.successors)),
+    ]
+    _require(all(fits), f"the table of rule `{rule}` has a row or number that does not fit")
 
 
 def _read(read: schema.ReadEntry | schema.NumberReadEntry) -> monitors.Read | monitors.NumberRead:

@@ -1,4 +1,4 @@
-"""The compiled rulebook as a file: JSON, version 3, described in docs/compiled.md."""
+"""The compiled rulebook as a file: JSON, described in docs/compiled.md."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Iterable
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRulebook,
     alike,
 )
+from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
@@ -31,10 +33,16 @@ from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
 
 
 def to_json(rulebook: CompiledRulebook) -> str:
-    """Text of a compiled rulebook's file, one row of numbers per line."""
+    """Text of a compiled rulebook's file, one row of numbers per line.
+
+    Machines for cut traces are in it if the rulebook has them stored.
+    """
+    has_cut = isinstance(rulebook.prefixes, StoredPrefixes)
+    cut = rulebook.prefixes.entries if isinstance(rulebook.prefixes, StoredPrefixes) else {}
     vocabulary = rulebook.vocabulary
     file = schema.BundleFile(
         **alike(Rulebook, rulebook),
+        version=schema.WITH_CUT if has_cut else schema.VERSION,
         rulec=rulebook.rulec,
         spot=rulebook.spot,
         sources=[schema.SourceEntry(source.name, source.sha256) for source in rulebook.sources],
@@ -48,7 +56,7 @@ def to_json(rulebook: CompiledRulebook) -> str:
             ],
         ),
         facts=[_axiom(axiom) for axiom in rulebook.axioms],
-        rules=[_rule(rule) for rule in rulebook.rules],
+        rules=[_rule(rule, cut.get(rule.name)) for rule in rulebook.rules],
     )
     text = json.dumps(msgspec.to_builtins(file), indent=1, ensure_ascii=False)
     return _STRING_OR_ROW.sub(_on_one_line, text) + "\n"
@@ -78,11 +86,12 @@ def _variables(variables: Iterable[Variable]) -> list[tuple[str, str]]:
     return [(variable.name, variable.type) for variable in variables]
 
 
-def _rule(rule: CompiledRule) -> schema.BundleRule:
+def _rule(rule: CompiledRule, cut: schema.CutMachineEntry | None) -> schema.BundleRule:
     machine = rule.machine
     return schema.BundleRule(
         **alike(Rule, rule),
         hoa=rule.hoa,
+        cut=cut,
         weight=str(rule.weight),
         variables=_variables(rule.variables),
         step_s=None if rule.step_s is None else str(rule.step_s),
@@ -127,11 +136,11 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
         raise _damaged(file, f"this is not a compiled rulebook: {json_words(problem)}") from None
     except (RecursionError, UnicodeDecodeError):
         raise _damaged(file, "this is not a compiled rulebook") from None
-    if header.version != schema.VERSION:
+    if header.version not in (schema.VERSION, schema.WITH_CUT):
         raise _damaged(
             file,
             f"this compiled rulebook is of version {header.version}; "
-            f"this rulec reads version {schema.VERSION}",
+            f"this rulec reads versions {schema.VERSION} and {schema.WITH_CUT}",
         )
     try:
         return rulebook_of(msgspec.json.decode(data, type=schema.BundleFile))
@@ -154,9 +163,11 @@ def read_compiled(path: Path) -> CompiledRulebook:
 def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
     """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` to a folder.
 
-    All of them are written before the first appears, so that they fit together. Returns the files,
-    the compiled rulebook last. Raises RulecError R0702.
+    The latter has machines for traces that are cut, if they can be compiled. All files are written
+    before the first appears, so that they fit together. Returns the files, the compiled rulebook
+    last. Raises RulecError R0702, and R0403 if such machines take Spot and it is not installed.
     """
+    rulebook = replace(rulebook, prefixes=stored(rulebook))
     make_folder(folder)
     texts = {folder / f"{rule.name}.hoa": rule.hoa for rule in rulebook.rules}
     texts[folder / f"{rulebook.name}.json"] = to_json(rulebook)

@@ -1,4 +1,4 @@
-"""Fields of a compiled rulebook's file, version 3 (see docs/compiled.md)."""
+"""Fields of a compiled rulebook's file, versions 3 and 4 (see docs/compiled.md)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from rulec.rulebook.rulebook_model import Certainty, Semantics, Strength, Traffi
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 FORMAT = "rulec compiled rulebook"
-VERSION = 3
+VERSION, WITH_CUT = 3, 4
+"""Versions of files; the second has machines for traces that are cut."""
 
 
 class _Strict(msgspec.Struct, forbid_unknown_fields=True):
@@ -100,7 +101,7 @@ _WRITTEN_AS = {
     "rejecting_sink": "dead",
     "accepting_sink": "safe",
 }
-"""Fields of a Mealy monitor by the names that version 3 of the format gives them."""
+"""Fields of a Mealy monitor by the names that the format gives them."""
 
 
 class MachineEntry(_Strict, rename=_WRITTEN_AS):
@@ -114,8 +115,20 @@ class MachineEntry(_Strict, rename=_WRITTEN_AS):
     accepting_sink: int | None
 
 
-class BundleRule(_Strict):
-    """One rule."""
+class CutMachineEntry(_Strict, rename={"successors": "following", "outputs": "outcomes"}):
+    """The machine of a rule for traces that are cut, with the reads of its Mealy monitor.
+
+    ``outcomes`` are 0 (kept), 1 (pending) and 2 (violated); a run begins in any of the ``starts``.
+    """
+
+    letters: tuple[int, ...]
+    successors: tuple[tuple[int, ...], ...]
+    outputs: tuple[tuple[Literal[0, 1, 2], ...], ...]
+    starts: tuple[int, ...]
+
+
+class BundleRule(_Strict, omit_defaults=True):
+    """One rule; ``cut`` is null in version 4 if that machine would be too large."""
 
     name: str
     strength: Strength
@@ -132,6 +145,7 @@ class BundleRule(_Strict):
     tree: Any
     machine: MachineEntry
     hoa: str
+    cut: CutMachineEntry | None = None
 
 
 class AxiomEntry(_Strict):

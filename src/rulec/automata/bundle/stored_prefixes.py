@@ -1,0 +1,67 @@
+"""Machines for traces that are cut, as a compiled rulebook's file has them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rulec.automata.bundle.bundle_schema import CutMachineEntry
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.automata.outcome_machine import OutcomeMachine
+
+_MADE: dict[int, tuple[CutMachineEntry, OutcomeMachine]] = {}
+_MOST_MADE = 1 << 10
+
+
+@dataclass(frozen=True, slots=True)
+class StoredPrefixes:
+    """A ``PrefixCompiler`` of machines that have been stored, by the rule's name."""
+
+    entries: Mapping[str, CutMachineEntry | None]
+
+    def __call__(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
+        """The machines of the rulebook's rules; None where one would have got too large."""
+        # numpy, a tenth of a second, is loaded only where a trace is cut.
+        from rulec.automata.outcome_machine import OutcomeMachine
+
+        found: dict[str, OutcomeMachine | None] = {}
+        for rule in rulebook.rules:
+            entry = self.entries.get(rule.name)
+            found[rule.name] = None
+            if entry is not None:
+                known = _MADE.get(id(entry))
+                if known is None or known[0] is not entry:
+                    if len(_MADE) >= _MOST_MADE:
+                        _MADE.clear()
+                    machine = OutcomeMachine(
+                        rule.machine.reads,
+                        entry.letters,
+                        entry.successors,
+                        entry.outputs,
+                        frozenset(entry.starts),
+                    )
+                    known = _MADE[id(entry)] = entry, machine
+                found[rule.name] = known[1]
+        return found
+
+
+def stored(rulebook: CompiledRulebook) -> StoredPrefixes | None:
+    """What a file can store; None if nobody can compile machines for cut traces.
+
+    Raises RulecError R0403 if that takes Spot, and it is not installed.
+    """
+    if rulebook.prefixes is None or isinstance(rulebook.prefixes, StoredPrefixes):
+        return rulebook.prefixes
+    machines = rulebook.prefixes(rulebook)
+    return StoredPrefixes({name: _entry(machine) for name, machine in machines.items()})
+
+
+def _entry(machine: OutcomeMachine | None) -> CutMachineEntry | None:
+    if machine is None:
+        return None
+    outputs: Any = tuple(map(tuple, machine.outputs))
+    successors = tuple(map(tuple, machine.successors))
+    return CutMachineEntry(machine.letters, successors, outputs, tuple(sorted(machine.starts)))
