@@ -13,6 +13,8 @@ from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes
 
+STEP_S = 0.5
+
 
 def context(*others, ego_speed=10.0, **thresholds):
     ego = steady(7, 0, 0, speed=ego_speed)
@@ -61,6 +63,17 @@ def test_the_safe_distance_is_that_of_two_emergency_brakings():
     assert about(steady(8, 18.7, 0, speed=5))["safe_gap"]  # 14.7 m
     assert not about(steady(8, 18.5, 0, speed=5))["safe_gap"]  # 14.5 m
     assert not about(steady(8, 18.7, 0, speed=5), reaction_s=1.1)["safe_gap"]
+
+
+@pytest.mark.parametrize(("degrees", "needed"), [(0, 10.0), (45, 10.0), (90, 16.25)])
+def test_who_turns_off_is_as_fast_as_it_is(degrees, needed):
+    """Both drive at 10 m/s; who drives across ego's way does not take itself out of it."""
+    way = np.radians(degrees)
+    places = {
+        k: (30 + 10 * STEP_S * k * np.cos(way), 10 * STEP_S * k * np.sin(way)) for k in range(4)
+    }
+    other = vehicle(8, places, speed=10.0, heading=float(way))
+    assert safe_distance(context(other))[0, 0] == pytest.approx(needed)
 
 
 def test_a_safe_gap_is_asked_for_in_egos_lane_only():

@@ -18,6 +18,9 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 LONGEST_S = 1000.0
 """The longest headway (s), also that of an ego that stands."""
 
+_ALIKE = 0.5
+"""The cosine of the angle to the road up to which one goes about ego's way."""
+
 _AT_LIMIT_MPS = 0.01
 """Limits are written to a hundredth: a simulated speed so near to one is at it."""
 
@@ -99,4 +102,11 @@ def safe_distance_error(context: DriveContext) -> Floats:
 
 
 def _ahead(context: DriveContext) -> tuple[Floats, Floats]:
-    return np.maximum(context.ego_extents.along, 0.0), np.maximum(context.extents.along, 0.0)
+    """The speeds (m/s) of ego and of others, from which they brake.
+
+    Who turns off brakes on its own way, so its whole speed counts while it still goes about ego's.
+    """
+    others = np.maximum(context.extents.along, 0.0)
+    alike = np.cos(context.extents.turned) > _ALIKE
+    others = np.where(alike & (others > 0), np.maximum(context.tracks.speed, others), others)
+    return np.maximum(context.ego_extents.along, 0.0), others

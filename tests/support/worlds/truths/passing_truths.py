@@ -8,6 +8,8 @@ from support.worlds.world_state import LENGTH_M
 
 _QUEUE_M, _QUEUE = 110.0, 3
 _SLOW_MPS = 18.0
+_ABOUT_M = 0.5
+"""Where two are so nearly level nobody can say whether they are."""
 
 
 def near_side_facts(world):
@@ -34,7 +36,9 @@ def _passes(world, track, other, changes):
         ]
     )
     nearer = _index(world, track, own) < _index(world, other, theirs)
-    for begin, end in runs((np.abs(ahead) <= LENGTH_M) & same):
+    level = runs((np.abs(ahead) <= LENGTH_M) & same)
+    about = runs((np.abs(ahead) <= LENGTH_M + _ABOUT_M) & same)
+    for begin, end in sorted({*level, *about}):
         if begin == 0 or end == len(ahead) - 1 or ahead[begin] > 0 or ahead[end] < 0:
             continue
         # Who changes lanes beside the other may be there for some of the time only
@@ -43,7 +47,7 @@ def _passes(world, track, other, changes):
         if not nearer[around].any() and not moves:
             continue
         sure = nearer[around].all() and not moves
-        sure &= not _in_queues(world, track, other, first + begin)
+        sure &= (begin, end) in level and not _in_queues(world, track, other, first + begin)
         at = ((first + begin - 10) * world.step_s, (first + end + 10) * world.step_s)
         yield Fact(track.id, "near_side_passing", *at, bool(sure), other.id)
 
