@@ -4,18 +4,10 @@ Everywhere else every violation has to be found, and nobody accused who did noth
 mended is taken out; nothing is added.
 """
 
-STORED = {
-    "priority": {"give_way_sign"},
-    "all_way_stop": {"stop_sign"},
-}
+STORED = {}
 """Rules under which somebody is accused falsely, or a violation counts as kept."""
 
-STORED_UNDECIDED = {
-    "spider_left": {"following_distance"},
-    "stop_signs_left": {"stop_sign", "following_distance"},
-    "all_way_stop": {"stop_sign"},
-    "motorway": {"near_side_passing"},
-}
+STORED_UNDECIDED = {}
 """Rules under which a true violation is open, or not judged."""
 
 SIMULATED = {}
