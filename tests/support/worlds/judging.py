@@ -3,7 +3,7 @@
 from concurrent.futures import ProcessPoolExecutor
 
 from support.worlds.disturbances import at_frames, mirrored, thinned, with_noise
-from support.worlds.raw_labels import LABELLED, labels
+from support.worlds.raw_labels import DRIVERS, LABELLED, labels
 from support.worlds.raw_recordings import RawRecording
 from support.worlds.scoring import Score, answers, scores, true_facts
 from support.worlds.simulate import simulate
@@ -64,6 +64,8 @@ def judged_recordings(files):
         except RuntimeError as error:
             total[file.stem] = {"refused": Score(missed=[str(error).splitlines()[0]])}
             continue
+        labelled = {key for key, track in recording.tracks.items() if track.type in DRIVERS}
+        found = {key: answer for key, answer in found.items() if key in labelled}
         by_rule = scores(facts, found, "de", file.stem)
         total[file.stem] = {rule: by_rule[rule] for rule in LABELLED}
     return total
