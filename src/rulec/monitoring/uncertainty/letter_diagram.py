@@ -80,6 +80,7 @@ class LetterSets:
         # Places of sets of nodes behind each read, and before all.
         self._places: list[dict[int, int]] = [{} for _ in range(len(meanings))]
         self._places.append({diagram.start: 0})
+        self._several = [np.array([mask & (mask - 1) != 0 for mask in row]) for row in meanings]
         self._tables = [np.full((0, len(row)), -1, dtype=np.intp) for row in meanings]
 
     @property
@@ -95,8 +96,7 @@ class LetterSets:
     def are_partial(self, columns: Sequence[Numbers]) -> NDArray[np.bool_]:
         """Whether some read may have several digits."""
         found: NDArray[np.bool_] = np.zeros(1, dtype=bool)
-        for row, column in zip(self._meanings, columns, strict=True):
-            several = np.array([mask & (mask - 1) != 0 for mask in row])
+        for several, column in zip(self._several, columns, strict=True):
             found = found | several.take(column)
         return found
 
@@ -115,11 +115,12 @@ class LetterSets:
             table = self._tables[read] = np.concatenate([table, more])
         entry = here * width + column
         result: Numbers = table.take(entry)
-        unmet = np.unique(np.asarray(entry)[np.asarray(result) < 0])
-        if not len(unmet):
+        unmet = np.asarray(result) < 0
+        if not unmet.any():
             return result
+        missing = np.unique(np.asarray(entry)[unmet])
         before, places = list(self._places[read + 1]), self._places[read]
-        for number in unmet.tolist():
+        for number in missing.tolist():
             nodes = self._diagram.step(
                 read, before[number // width], self._meanings[read][number % width]
             )
