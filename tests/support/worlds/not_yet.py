@@ -10,7 +10,14 @@ STORED = {}
 STORED_UNDECIDED = {}
 """Rules under which a true violation is open, or not judged."""
 
-SIMULATED = {}
-SIMULATED_UNDECIDED = {}
+SIMULATED = {
+    "all_way_stop": {"oncoming_priority"},
+    "all_way_stop_left": {"oncoming_priority"},
+}
+"""Who drives into the side of one who was there first counts as having let it pass."""
+
+SIMULATED_UNDECIDED = {"motorway": {"near_side_passing"}}
+"""Where the map begins nobody knows whether there are queues."""
+
 LABELS = {}
 """Rule -> how many are accused falsely, and not found, in all of the recordings at hand."""

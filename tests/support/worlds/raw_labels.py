@@ -17,8 +17,8 @@ _LIGHT_S = 0.5
 _QUEUE_M, _QUEUE, _FLOWS_MPS = 110.0, 3, 18.0
 _BESIDE_M, _AWAY_M, _LEVEL_M = (2.2, 5.5), 16.0, 1.0
 _AROUND_S = 2.0
-_COUNTRY_MPS = 100 / 3.6
-"""Where there is no sign one may not know the limit; so fast it may be broken."""
+_TOWN_MPS = 50 / 3.6
+"""Where there is no sign one does not know the limit; so fast it may be broken, as in towns."""
 
 
 def labels(recording):
@@ -50,7 +50,7 @@ def speeding(recording, track):
     lowest, highest = _around(lowest, reach, min), _around(highest, reach, max)
     speed = track.speeds(recording.step_s)
     if not recording.motorway or recording.abroad:
-        lowest[np.isinf(lowest)] = _COUNTRY_MPS
+        lowest[np.isinf(lowest)] = _TOWN_MPS
     masks = (speed > highest + _SPEED_MPS, speed > lowest - 0.1, _SPEED_S)
     yield from _graded(recording, track, "speed_limit", masks)
 
