@@ -1,13 +1,15 @@
 """A mirrored recording gives mirrored words."""
 
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
 
 import numpy as np
 from hypothesis import given
 
 from rulec.extraction.drives import Drive, Drives
 from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.vocabulary.partial_values import Interval
 from support.generators.random_recordings import scenes
+from support.measured import middle
 
 _MIRRORED = {
     "left_of": "right_of",
@@ -35,8 +37,11 @@ def assert_alike(one, other):
     for name, value in one.items():
         if isinstance(value, dict):
             assert_alike(value, other[name])
-        elif isinstance(value, float):
-            assert abs(value - other[name]) <= 0.011, name
+        elif isinstance(value, Interval) and isinstance(other[name], Interval):
+            assert_alike({"low": value.low, "high": value.high}, asdict(other[name]))
+        elif isinstance(value, float | Interval):
+            value, seen = middle([value, other[name]])
+            assert abs(value - seen) <= 0.011, name
         else:
             assert value == other[name], name
 

@@ -8,6 +8,7 @@ import pytest
 from rulec.extraction.drives import Drive, Drives
 from rulec.scenario.recorded.recording import Participant, TrackState
 from support.builders.recordings import lanelet, recording, rectangle
+from support.measured import middle
 
 RADIUS_M = 60.0
 LENGTH_M = 2 * pi * RADIUS_M
@@ -62,9 +63,9 @@ def test_the_shorter_way_round_says_who_is_ahead(start, count):
         assert state["station"] == {"8": "behind", "9": "in_front_of"}
         assert state["lateral"] == {"8": "same_lane", "9": "same_lane"}
         # Bodies of 4 m on a bend reach a little farther than along a line
-        assert state["gap"] == {"8": pytest.approx(46, abs=0.5), "9": pytest.approx(46, abs=0.5)}
+        assert middle(state["gap"]) == pytest.approx({"8": 46, "9": 46}, abs=0.5)
         assert state["precedes"] == {"8": True, "9": False}
-        assert state["speed"] == pytest.approx(36, abs=0.5)
+        assert middle(state["speed"]) == pytest.approx(36, abs=0.5)
 
 
 def test_who_stands_is_passed_on_every_lap():

@@ -4,7 +4,7 @@ import pytest
 
 from rulec.extraction.to_trace import TraceWriter, to_trace
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
@@ -61,7 +61,12 @@ def test_the_types_and_names_are_those_of_the_vocabulary():
     # Ego sets out after a second, when the truck is at 30 m. A truck is a vehicle; a cyclist is
     # no more than a road user, of whom `gap` says nothing
     assert found.trace.objects == {"8": "vehicle", "9": "road_user"}
-    assert found.trace.states[0] == {"speed": 36.0, "gap": {"8": 26.0}, "stopped": {"8": False}}
+    # Speeds are known to 0.1 m/s, over half a second to twice as much, and places to 0.05 m
+    assert found.trace.states[0] == {
+        "speed": Interval(35.28, 36.72),
+        "gap": {"8": Interval(25.95, 26.05)},
+        "stopped": {"8": False},
+    }
     assert found.words == {"gap", "stopped", "speed"}
     assert found.kinds == {"gap": float, "stopped": bool, "speed": float}
 
@@ -89,7 +94,19 @@ def test_surfaces_are_spelled_as_the_vocabulary_does():
 def test_only_the_names_asked_for_are_written():
     words = vocabulary(Quantity("speed", (), "km/h"), Signal("braking_hard", ()))
     found = drive(writer=TraceWriter(words, frozenset({"speed", "gap"})))
-    assert found.trace.states[0] == {"speed": 36.0}
+    assert found.trace.states[1] == {"speed": Interval(35.64, 36.36)}
+
+
+def test_with_defaults_numbers_are_as_measured():
+    words = vocabulary(Quantity("speed", (), "km/h"))
+    found = drive(writer=TraceWriter(words, defaults=True))
+    assert [dict(state) for state in found.trace.states] == [{"speed": 36.0}] * 4
+
+
+def test_what_is_known_exactly_is_a_number():
+    words = vocabulary(Quantity("speed", (), "km/h"))
+    states = drive(writer=TraceWriter(words), ego=steady(7, 0, 0, speed=0.1)).trace.states
+    assert [dict(state) for state in states] == [{"speed": 0.0}] * 4
 
 
 def test_assumptions_hold_in_every_state_whatever_was_recorded():

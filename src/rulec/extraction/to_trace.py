@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
+from math import hypot
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,13 +24,14 @@ from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.road_signals import road_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.map.zone_signals import zone_signals
+from rulec.extraction.signals.measured_numbers import safe_distance_error
 from rulec.extraction.signals.merge_signals import merge_signals
 from rulec.extraction.signals.participant_signals import (
     gap_beside_safe_distance,
     participant_signals,
 )
 from rulec.extraction.signals.settling import settled
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_columns import Bounds, SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
@@ -39,7 +41,7 @@ from rulec.trace import State, Trace, Value
 from rulec.trace.vocabulary_projection import fits, is_about, known_type, known_types
 from rulec.value_display import short_repr
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +109,7 @@ class DecidedBy:
     """The numbers by which a signal about objects was decided: whether a value reaches a limit.
 
     ``quantity`` is the value's, ``rows`` are the objects' in the arrays, by state; NaN where
-    nothing was compared.
+    nothing was compared. The errors of values and limits are independent.
     """
 
     quantity: str
@@ -115,6 +117,8 @@ class DecidedBy:
     rows: Mapping[str, int]
     values: Floats
     limits: Floats
+    value_error: float
+    limit_errors: Floats
 
     def margin(self, item: str, state: int) -> Margin | None:
         """The margin for an object in a state, if there is one."""
@@ -123,7 +127,17 @@ class DecidedBy:
             return None
         value, limit = float(self.values[row, state]), float(self.limits[row, state])
         relation: Relation = ">=" if value >= limit else "<"
-        return Margin(f"{self.quantity}({item})", value, relation, limit, self.unit)
+        limit_error = float(self.limit_errors[row, state])
+        return Margin(
+            f"{self.quantity}({item})",
+            value=value,
+            relation=relation,
+            limit=limit,
+            unit=self.unit,
+            value_error=self.value_error,
+            limit_error=limit_error,
+            error=hypot(self.value_error, limit_error),
+        )
 
 
 class Place(NamedTuple):
@@ -189,9 +203,7 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     types = [body.object_types for body in context.tracks.participants]
     if writer.vocabulary is not None:
         signals = _projected(signals, types, writer.vocabulary, writer.names)
-    signals |= SignalColumns(
-        {name: np.full(context.states, value) for name, value in writer.assumed.items()}
-    )
+    signals = _with_assumed(signals, writer.assumed, context.states)
     present = list(presences(context))
     own_types = {presence.name: types[presence.row] for presence in present}
     if writer.vocabulary is None:
@@ -216,10 +228,20 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     decided_by = {}
     if "safe_gap" in signals.about:
         rows = {presence.name: presence.row for presence in present}
-        distances = gap_beside_safe_distance(context)
-        decided_by["safe_gap"] = DecidedBy("gap", "m", rows, *distances)
+        gap, safe = gap_beside_safe_distance(context)
+        errors = context.tolerances.place_m, safe_distance_error(context)
+        decided_by["safe_gap"] = DecidedBy("gap", "m", rows, gap, safe, *errors)
     places = tuple(_places(context))
     return Drive(ego, start_s, trace, kinds, decided_by=decided_by, places=places)
+
+
+def _with_assumed(
+    signals: SignalColumns, assumed: Mapping[str, Value], states: int
+) -> SignalColumns:
+    values = {name: np.full(states, value) for name, value in assumed.items()}
+    unknown = {name: rows for name, rows in signals.unknown.items() if name not in assumed}
+    bounds = {name: rows for name, rows in signals.bounds.items() if name not in assumed}
+    return replace(signals, world={**signals.world, **values}, unknown=unknown, bounds=bounds)
 
 
 def _places(context: DriveContext) -> Iterator[Place]:
@@ -277,25 +299,38 @@ def _states(
     signals: SignalColumns, present: Sequence[Presence], count: int, *, defaults: bool
 ) -> tuple[State, ...]:
     states: list[dict[str, Any]] = [{} for _ in range(count)]
+    known_bounds = {} if defaults else signals.bounds
     for name, column in signals.world.items():
-        unknown = signals.unknown.get(name)
-        for state, value in enumerate(column.tolist()):
+        unknown, bounds = signals.unknown.get(name), known_bounds.get(name)
+        for state, value in enumerate(_values(column, bounds, ())):
             if unknown is None or not unknown[state]:
                 states[state][name] = value
             elif not defaults:
                 states[state][name] = UNKNOWN
     for name, rows in signals.about.items():
         only, unknown = signals.only.get(name), signals.unknown.get(name)
+        bounds = known_bounds.get(name)
         by_state: list[dict[str, Any]] = [{} for _ in range(count)]
         for presence in present:
             if only is None or only[presence.row]:
                 span = range(presence.first, presence.last + 1)
-                for state, value in zip(span, rows[presence.row, span].tolist(), strict=True):
+                values = _values(rows, bounds, (presence.row, span))
+                for state, value in zip(span, values, strict=True):
                     if unknown is None or not unknown[presence.row, state]:
                         by_state[state][presence.name] = value
                     elif not defaults:
                         by_state[state][presence.name] = UNKNOWN
-        for state, values in enumerate(by_state):
-            if values:
-                states[state][name] = values
+        for state, of_objects in enumerate(by_state):
+            if of_objects:
+                states[state][name] = of_objects
     return tuple(states)
+
+
+def _values(column: SignalColumn, bounds: Bounds | None, part: Any) -> list[Any]:
+    """The values in a part of a column; intervals where bounds are apart."""
+    if bounds is None:
+        values: list[Any] = column[part].tolist()
+        return values
+    low, high = bounds
+    ends = zip(low[part].tolist(), high[part].tolist(), strict=True)
+    return [first if first == last else Interval(first, last) for first, last in ends]

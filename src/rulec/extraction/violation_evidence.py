@@ -12,17 +12,17 @@ from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.verdict import Violation
 from rulec.trace import Value
-from rulec.vocabulary.partial_values import UNKNOWN_TYPES
+from rulec.vocabulary.partial_values import UNKNOWN
 
 
 @dataclass(frozen=True, slots=True)
 class ViolationEvidence:
     """What a violation rests on.
 
-    The names that its rule reads were ``measured`` in all states, ``assumed`` by the user, presumed
-    (or taken by default, if that was asked for), or ``unknown`` in some state without making a
-    difference. It lasts from ``from_s`` to ``to_s`` (s of the recording); ``margins`` say by how
-    much, ``place`` where ego is when it begins.
+    The names that its rule reads were ``measured`` in all states, be it to a tolerance, ``assumed``
+    by the user, presumed (or taken by default, if that was asked for), or ``unknown`` in some state
+    without making a difference. It lasts from ``from_s`` to ``to_s`` (s of the recording);
+    ``margins`` say by how much, ``place`` where ego is when it begins.
     """
 
     measured: tuple[str, ...]
@@ -68,6 +68,6 @@ def _is_partial(drive: Drive, name: str) -> bool:
     for state in drive.trace.states:
         value = state.get(name)
         values = value.values() if isinstance(value, Mapping) else (value,)
-        if any(type(inner) in UNKNOWN_TYPES for inner in values):
+        if any(inner is UNKNOWN for inner in values):
             return True
     return False

@@ -14,7 +14,7 @@ from typing import Protocol, TypeAlias
 
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
-from rulec.logic.linear_comparison import stands
+from rulec.logic.linear_comparison import stands, surely_stands
 from rulec.vocabulary import Vocabulary
 
 _MOST = 1 << 12
@@ -30,6 +30,14 @@ class Unknown:
 
     name: str
     objects: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Between(Unknown):
+    """A number that is unknown but for its bounds, which are included."""
+
+    low: Fraction
+    high: Fraction
 
 
 class PartialState(Protocol):
@@ -56,14 +64,21 @@ _Evaluator: TypeAlias = Callable[[ObjectBinding, PartialState], bool | Unknown]
 def weighted_sum(
     terms: Sequence[tuple[Fraction, ltl.Term]], binding: ObjectBinding, state: PartialState
 ) -> Fraction | Unknown:
-    """The sum of coefficient times term: exact."""
-    weighted_sum = Fraction(0)
+    """The sum of coefficient times term: exact, or its bounds if those of all terms are known."""
+    total = width = Fraction(0)
+    unknown: Unknown | None = None
     for coefficient, term in terms:
         number = number_of(term, binding, state)
         if isinstance(number, Unknown):
-            return number
-        weighted_sum += coefficient * number
-    return weighted_sum
+            if not isinstance(number, Between):
+                return number
+            unknown = unknown or number
+            width += abs(coefficient) * (number.high - number.low)
+            number = number.low if coefficient > 0 else number.high
+        total += coefficient * number
+    return (
+        total if unknown is None else Between(unknown.name, unknown.objects, total, total + width)
+    )
 
 
 def number_of(term: ltl.Term, binding: ObjectBinding, state: PartialState) -> Fraction | Unknown:
@@ -157,7 +172,12 @@ def _comparison(comparison: ltl.Comparison) -> _Evaluator:
 
     def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
         number = weighted_sum(terms, binding, state)
-        return number if isinstance(number, Unknown) else stands(number, relation, limit)
+        if not isinstance(number, Unknown):
+            return stands(number, relation, limit)
+        if not isinstance(number, Between):
+            return number
+        surely = surely_stands(number.low, number.high, relation, limit)
+        return Unknown(number.name, number.objects) if surely is None else surely
 
     return evaluate
 

@@ -47,3 +47,14 @@ _RELATIONS: dict[Relation, Callable[[Fraction, Fraction], bool]] = dict(
 def stands(number: Fraction, relation: Relation, limit: Fraction) -> bool:
     """True if a number stands in a relation to a limit."""
     return _RELATIONS[relation](number, limit)
+
+
+def surely_stands(
+    low: Fraction, high: Fraction, relation: Relation, limit: Fraction
+) -> bool | None:
+    """Whether all numbers between two stand in a relation to a limit; None if some do."""
+    within = low <= limit <= high
+    if relation in ("=", "!=") and within:
+        return relation == "=" if low == high else None
+    first, last = stands(low, relation, limit), stands(high, relation, limit)
+    return first if first is last else None

@@ -9,7 +9,7 @@ from typing import Any
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace, Value
 from rulec.trace.trace_model import Ending
-from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +17,8 @@ class Assumptions:
     """How traces end, and values of what is unknown in them.
 
     ``values`` are of names that are about no object. With ``defaults`` all else that is unknown has
-    its default, and the end of a trace is the end of what happened, unless ``ends`` says otherwise.
+    its default, a number within bounds is their middle, and the end of a trace is the end of what
+    happened, unless ``ends`` says otherwise.
     """
 
     ends: Ending | None = None
@@ -28,7 +29,7 @@ class Assumptions:
         return self.ends is not None or bool(self.values) or self.defaults
 
     def applied(self, trace: Trace) -> Trace:
-        """The trace with these assumptions; what it tells stays, intervals too."""
+        """The trace with these assumptions; what it tells stays."""
         told = trace.told
         untold = {} if told is None else {k: v for k, v in self.values.items() if k not in told}
         states = trace.states
@@ -60,8 +61,10 @@ class Assumptions:
 
 
 def _without_unknown(values: Mapping[str, Any]) -> dict[str, Any]:
-    return {
-        name: _without_unknown(value) if isinstance(value, Mapping) else value
-        for name, value in values.items()
-        if value is not UNKNOWN
-    }
+    return {name: _plain(value) for name, value in values.items() if value is not UNKNOWN}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Interval):
+        return value.middle
+    return _without_unknown(value) if isinstance(value, Mapping) else value

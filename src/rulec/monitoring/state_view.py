@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from rulec.automata.thresholds import exact
-from rulec.logic.kleene import Unknown
+from rulec.logic.kleene import Between, Unknown
 from rulec.trace import State, Value
 from rulec.vocabulary import Declaration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
@@ -45,10 +45,15 @@ class StateView:
         return value_in(self.state, name, items, self.vocabulary.declarations[name])
 
     def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
-        """The quantity's value: exact."""
+        """The quantity's value: exact, or its bounds."""
         value = self.value(name, items)
         assert not isinstance(value, str), "check_state has refused it"
-        return value if isinstance(value, Unknown) else exact(value)
+        if not isinstance(value, Unknown):
+            return exact(value)
+        given = self.given(name, items)
+        if type(given) is not Interval:
+            return value
+        return Between(name, items, exact(given.low), exact(given.high))
 
 
 def value_in(

@@ -28,6 +28,9 @@ RECORDED_UNITS = {
 }
 """The units of the quantities that recordings supply."""
 
+MEASURED = RECORDED_UNITS.keys() - {"limit", "ego_length", "visibility"}
+"""Those of them that are measured, to a tolerance."""
+
 _Signal = PartialValue | Mapping[str, PartialValue]
 
 

@@ -40,6 +40,18 @@ class Interval:
         if not float("-inf") < self.low <= self.high < float("inf"):
             raise ValueError("an interval has finite bounds, the lower one first")
 
+    @property
+    def middle(self) -> float:
+        """The number half-way between the bounds, with no more decimals than it takes."""
+        middle = (self.low + self.high) / 2
+        short = round(middle, 9)
+        return short if self.low <= short <= self.high else middle
+
+    @property
+    def error(self) -> float:
+        """How far the middle may be wrong."""
+        return (self.high - self.low) / 2
+
 
 UNKNOWN_TYPES = frozenset({UnknownValue, Interval})
 

@@ -123,7 +123,7 @@ def test_the_map(scene):
 def test_a_violation_is_measured(scene):
     (violation,) = scene.violations
     assert (violation.rule, violation.state, violation.time_s) == ("following_distance", 3, 1.5)
-    assert violation.measured == ("gap(9) 20.0 m < 21.5 m",)
+    assert violation.measured == ("gap(9) 20.00±0.05 m < 21.5±0.4 m, by at least 1.1 m",)
     assert violation.told == ("station(9) behind", "lateral(9) same_lane")
     assert violation.against == ("9",)
     assert violation.short == "hard, § 4(1), for 9"
@@ -154,7 +154,7 @@ def test_a_picture_is_right_side_up(scene):
     assert max(y for _, y in crossing) < tops["road"]
     texts = [mark.text for mark in picture.marks if isinstance(mark, LabelText)]
     assert {"1.5 s", "20.0 m", "1 · 54 km/h", "9 · 40 km/h"} <= set(texts)
-    assert "measured: gap(9) 20.0 m < 21.5 m" in texts
+    assert "measured: gap(9) 20.00±0.05 m < 21.5±0.4 m, by at least 1.1 m" in texts
     # Nothing is drawn outside of the map but words.
     for mark in picture.marks:
         if isinstance(mark, Area):

@@ -113,7 +113,8 @@ def _write_drives(
     from rulec.extraction.to_trace import Drive
     from rulec.scenario.scenario_files import read_recording
     from rulec.scenario.scenario_messages import NOT_IN_RECORDING
-    from rulec.trace.formats.trace_files import format_of, write_traces
+    from rulec.trace.formats.trace_files import format_of, with_bounds, write_traces
+    from rulec.trace.vocabulary_projection import MEASURED
 
     if (option := _given_maneuvers_option(options)) is not None:
         raise click.UsageError(f"{option} is for maneuvers, not for what is --recorded.")
@@ -138,7 +139,7 @@ def _write_drives(
                     count += 1
                     yield drive.trace
 
-    kinds = result.drives.kinds()
+    kinds = with_bounds(result.drives.kinds(), MEASURED)
     if not kinds:
         message = "nobody in this recording drives on a lane"
         raise NOT_IN_RECORDING.error(SourceLocation(str(file)), message)

@@ -29,6 +29,7 @@ from rulec.monitoring.verify import letter_reader_of
 from rulec.trace import Trace, Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Quantity, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 
 _Known = TypeVar("_Known")
 
@@ -37,15 +38,15 @@ _Known = TypeVar("_Known")
 class Observation:
     """Read of a rule, such as ``position(v1)``, with its values by state.
 
-    A value that is unknown is None. ``unit`` is a quantity's. ``objects`` are, for a count, those
-    that counted in each state. ``margins`` are, for a signal that was decided by a number, by how
-    much, as far as is known.
+    A value that is unknown is None, a number may be an interval. ``unit`` is a quantity's.
+    ``objects`` are, for a count, those that counted in each state. ``margins`` are, for a signal
+    that was decided by a number, by how much, as far as is known.
     ``changed``: does the rule tell the value in the decisive state from the one before?
     ``decides``: does a part that decides read it?
     """
 
     text: str
-    values: tuple[Value | None, ...]
+    values: tuple[Value | Interval | None, ...]
     changed: bool
     decides: bool
     unit: str = ""
@@ -120,7 +121,8 @@ def explain(
     """Explain a violation that ``verify`` reported for this trace and rulebook.
 
     What is unknown is shown as such; as every completion violates the rule, one stands for all.
-    ``decided_by``: signal -> the numbers behind it, for those that were decided by any.
+    Numbers have their middles there. ``decided_by``: signal -> the numbers behind it, for those
+    that were decided by any.
     """
     given, declared = trace, rulebook.vocabulary
     untold = untold_names(declared, trace.told)
@@ -297,7 +299,7 @@ def _facts(
         passes = isinstance(read, ltl.Atom) or any(
             observed.changes(truths[proposition]) for proposition in propositions
         )
-        values: list[Value | None]
+        values: list[Value | Interval | None]
         unit, objects = "", None
         if isinstance(read, ltl.Count):
             text = term_text(read)
@@ -308,8 +310,9 @@ def _facts(
             values = [observed.value(read.name, read.arguments, view) for view in views]
             items = observed.items(read.arguments)
             for index, view in enumerate(observed.given):
-                if isinstance(view.value(read.name, items), Unknown):
-                    values[index] = None
+                given = view.given(read.name, items)
+                if given is None or type(given) in UNKNOWN_TYPES:
+                    values[index] = given if isinstance(given, Interval) else None
             declaration = vocabulary.declarations[read.name]
             unit = declaration.unit if isinstance(declaration, Quantity) else ""
         yield Observation(

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, floor
 
 from rulec.logic import formula as ltl
-from rulec.logic.kleene import Unknown, weighted_sum
+from rulec.logic.kleene import Between, Unknown, weighted_sum
 from rulec.logic.linear_comparison import stands
 from rulec.logic.printing import term_text
 from rulec.monitoring.state_view import StateView
 from rulec.vocabulary import Quantity
 
 _Quantity = ltl.QuantityTerm
+_MOST_PLACES, _ROUNDED_UP, _HAIR = 7, 1.5, 1e-6
 _OTHERWISE: Mapping[ltl.Relation, ltl.Relation] = {
     "<": ">=",
     "<=": ">",
@@ -27,7 +30,8 @@ _OTHERWISE: Mapping[ltl.Relation, ltl.Relation] = {
 class Margin:
     """What stands on the left, its value, the relation that holds, and the other value.
 
-    ``against`` is what stands on the right, if that is a quantity and nothing else.
+    ``against`` is what stands on the right, if that is a quantity and nothing else. Both values may
+    be wrong by their errors, their difference by ``error``.
     """
 
     text: str
@@ -36,18 +40,42 @@ class Margin:
     limit: float
     unit: str
     against: str = ""
+    value_error: float = 0.0
+    limit_error: float = 0.0
+    error: float = 0.0
+
+    @property
+    def by(self) -> float:
+        """By how much, as measured."""
+        return abs(self.value - self.limit)
+
+    @property
+    def at_least(self) -> float:
+        """By how much for sure."""
+        return max(self.by - self.error, 0.0)
 
     @property
     def sides(self) -> str:
-        """Both values and the relation between them, such as ``12.3 < 15.5``."""
-        value, limit = _apart(self.value, self.limit)
+        """Both values and the relation between them, such as ``12.3 < 15.5`` or ``12.3±0.4``."""
+        value, limit = self._texts()
         return f"{value} {self.relation} {limit}"
 
     def __str__(self) -> str:
-        value, limit = _apart(self.value, self.limit)
+        value, limit = self._texts()
         unit = f" {self.unit}" if self.unit else ""
         right = f"{self.against} {limit}".lstrip()
-        return f"{self.text} {value}{unit} {self.relation} {right}{unit}"
+        text = f"{self.text} {value}{unit} {self.relation} {right}{unit}"
+        least = _rounded_down(self.at_least) if self.error else ""
+        return f"{text}, by at least {least}{unit}" if least else text
+
+    def _texts(self) -> tuple[str, str]:
+        value, limit = _apart(self.value, self.limit)
+        places = len(value.partition(".")[2])
+        if self.value_error:
+            value = number_with_error(self.value, self.value_error, places)
+        if self.limit_error:
+            limit = number_with_error(self.limit, self.limit_error, places)
+        return value, limit
 
 
 def margin_in(
@@ -57,10 +85,11 @@ def margin_in(
     left = tuple(term for term in comparison.terms if term[0] > 0)
     right = tuple((-coefficient, term) for coefficient, term in comparison.terms if coefficient < 0)
     value, rest = weighted_sum(left, bound, view), weighted_sum(right, bound, view)
-    if isinstance(value, Unknown):
+    if isinstance(value, Unknown) and not isinstance(value, Between):
         return value
-    if isinstance(rest, Unknown):
+    if isinstance(rest, Unknown) and not isinstance(rest, Between):
         return rest
+    (value, value_error), (rest, limit_error) = _middle(value), _middle(rest)
     limit = comparison.limit + rest
     holds = stands(value, comparison.relation, limit)
     relation = comparison.relation if holds else _OTHERWISE[comparison.relation]
@@ -72,8 +101,41 @@ def margin_in(
         against = _named(right[0][1], bound)
     text = _named(lead, bound) + (" + …" if more else "")
     return Margin(
-        text, value=float(value), relation=relation, limit=float(limit), unit=unit, against=against
+        text,
+        value=float(value),
+        relation=relation,
+        limit=float(limit),
+        unit=unit,
+        against=against,
+        value_error=float(value_error),
+        limit_error=float(limit_error),
+        error=float(value_error + limit_error),
     )
+
+
+def _middle(number: Fraction | Between) -> tuple[Fraction, Fraction]:
+    """A number, and how far it may be wrong."""
+    if isinstance(number, Between):
+        return (number.low + number.high) / 2, (number.high - number.low) / 2
+    return number, Fraction(0)
+
+
+def _rounded_down(number: float) -> str:
+    """A positive number with two digits that count, empty for none."""
+    for places in range(1, _MOST_PLACES):
+        rounded = floor(number * 10**places + _HAIR)
+        if rounded >= 10:
+            return f"{rounded / 10**places:.{places}f}"
+    return ""
+
+
+def number_with_error(value: float, error: float, places: int = 0) -> str:
+    """A number with how far it may be wrong, rounded up by a half at most: ``12.3±0.4``."""
+    for more in range(places, places + _MOST_PLACES):
+        rounded = ceil(error * 10**more - _HAIR) / 10**more
+        if rounded <= _ROUNDED_UP * error:
+            return f"{value:.{more}f}±{rounded:.{more}f}"
+    return f"{value:g}±{error:g}"
 
 
 def _named(term: ltl.Term, bound: Mapping[str, str]) -> str:

@@ -17,7 +17,14 @@ from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
-from rulec.logic.kleene import PartialState, Unknown, holds, number_of, weighted_sum
+from rulec.logic.kleene import (
+    Between,
+    PartialState,
+    Unknown,
+    holds,
+    number_of,
+    weighted_sum,
+)
 from rulec.monitoring.uncertainty.linear_arrangement import LinearPlane, sample_points
 from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Quantity, Vocabulary
@@ -175,8 +182,17 @@ def _links_of_reads(
                     else:
                         counted[number] += value
             case _:
-                if about := unknown_in_read(read, binding, view):
+                about = unknown_in_read(read, binding, view)
+                if about and not _is_sure(read, binding, view):
                     yield _Link(about, number, binding)
+
+
+def _is_sure(read: Read | NumberRead, binding: Mapping[str, str], view: PartialView) -> bool:
+    """Whether all numbers that a sum may be have one digit."""
+    total = weighted_sum(read.terms, binding, view) if isinstance(read, NumberRead) else None
+    if not (isinstance(total, Between) and isinstance(read, NumberRead)):
+        return False
+    return read.digit(total.low) == read.digit(total.high)
 
 
 def unknown_in_read(
@@ -356,6 +372,7 @@ def _digit(
         assert not isinstance(value, Unknown), "it has been supposed, or is known"
         return read.digit(value)
     total = weighted_sum(read.terms, binding, view)
+    total = total.low if isinstance(total, Between) else total
     assert not isinstance(total, Unknown), "it has been supposed, or is known"
     return read.digit(total)
 

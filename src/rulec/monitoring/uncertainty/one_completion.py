@@ -12,7 +12,7 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 
 def completed(trace: Trace, vocabulary: Vocabulary) -> Trace:
-    """The trace with defaults for what is unknown, or the least that a value can be."""
+    """The trace with defaults, or least values, for what is unknown, and the middles of bounds."""
     declarations = vocabulary.declarations
     states = tuple(
         {
@@ -39,7 +39,7 @@ def _known(value: Any, declaration: Declaration, depth: int) -> Any:
     if depth:
         return {}  # unknown of all objects
     if isinstance(value, Interval):
-        return value.low
+        return value.middle
     return any_value(declaration) if value is UNKNOWN else value
 
 

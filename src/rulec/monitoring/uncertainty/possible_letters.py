@@ -9,11 +9,11 @@ from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.automata.thresholds import exact, scale
+from rulec.automata.thresholds import scale
 from rulec.diagnostics import RulecError
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
-from rulec.logic.kleene import Unknown, holds, weighted_sum
+from rulec.logic.kleene import Between, Unknown, holds, weighted_sum
 from rulec.monitoring.axiom_violations import StatePlace, impossible_state
 from rulec.monitoring.letter_reader import missing_value, present_in
 from rulec.monitoring.state_view import StateView
@@ -197,31 +197,16 @@ class PossibleLetters:
         total = weighted_sum(read.terms, objects, view)
         if not isinstance(total, Unknown):
             return 1 << read.digit(total)
-        low = high = Fraction(0)
-        for factor, term in read.terms:
-            match term:
-                case ltl.QuantityTerm(name, arguments):
-                    items = tuple([objects[variable] for variable in arguments])
-                    given = view.given(name, items)
-                    if given is None:
-                        raise missing_value(
-                            (name, items), self._where(number), rule, self._trace.place
-                        )
-                    if given is UNKNOWN:
-                        return (1 << read.size) - 1
-                    ends = (
-                        (given.low, given.high) if isinstance(given, Interval) else (given, given)
-                    )
-                    numbers = [factor * exact(end) for end in ends if not isinstance(end, str)]
-                    low, high = low + min(numbers), high + max(numbers)
-                case ltl.Count():
-                    if view.given(total.name, total.objects) is None:
-                        subject = total.name, total.objects
-                        raise missing_value(subject, self._where(number), rule, self._trace.place)
-                    if len(read.terms) > 1:
-                        return (1 << read.size) - 1
-                    low, high = counted_range(term, objects, view)
-        return _digits_between(read, low, high)
+        if isinstance(total, Between):
+            return _digits_between(read.digit(total.low), read.digit(total.high))
+        if view.given(total.name, total.objects) is None:
+            subject = total.name, total.objects
+            raise missing_value(subject, self._where(number), rule, self._trace.place)
+        match read.terms:
+            case ((_, ltl.Count() as count),):
+                low, high = counted_range(count, objects, view)
+                return _digits_between(read.digit(low), read.digit(high))
+        return (1 << read.size) - 1
 
     def _unknown_names(
         self, read: Read | NumberRead, objects: Mapping[str, str], span: tuple[int, int]
@@ -247,7 +232,8 @@ def possible_digits(read: Read | NumberRead, value: PartialValue | None) -> int:
         return (1 << read.size) - 1
     if isinstance(value, Interval):
         assert isinstance(read, NumberRead)
-        return _digits_between(read, exact(value.low), exact(value.high))
+        known = scale(read)
+        return _digits_between(known.digit(value.low), known.digit(value.high))
     return 1 << (read if isinstance(read, Read) else scale(read)).digit(value)
 
 
@@ -285,6 +271,5 @@ def counted_range(
     return Fraction(low), Fraction(high)
 
 
-def _digits_between(read: NumberRead, low: Fraction, high: Fraction) -> int:
-    first, last = read.digit(low), read.digit(high)
+def _digits_between(first: int, last: int) -> int:
     return ((1 << (last - first + 1)) - 1) << first

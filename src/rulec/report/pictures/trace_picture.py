@@ -210,4 +210,5 @@ def _title(row: RibbonRow) -> str:
     if row.values:
         return text
     low, high = map(in_words, extremes(row))
-    return f"{text}: {low}" if low == high else f"{text}: {low} to {high}"
+    error = f" ±{row.error:.2g}" if row.error else ""
+    return f"{text}: {low}{error}" if low == high else f"{text}: {low} to {high}{error}"

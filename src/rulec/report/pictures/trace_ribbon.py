@@ -14,7 +14,7 @@ from rulec.monitoring.verdict import Verdict, Violation
 from rulec.report.verdicts.violation_table import shown
 from rulec.trace import State, Trace, Value
 from rulec.vocabulary import Enumeration, Quantity, Vocabulary
-from rulec.vocabulary.partial_values import PartialValue
+from rulec.vocabulary.partial_values import Interval, PartialValue
 
 WORD_STYLES = 6
 """So many styles there are for the values of enumerations."""
@@ -37,13 +37,15 @@ class ValueRun:
 class RibbonRow:
     """One thing that rules read, such as ``position(v1)``, over a whole trace.
 
-    ``values`` are those that there can be, in the vocabulary's order; none for a quantity.
+    ``values`` are those that there can be, in the vocabulary's order; none for a quantity. A number
+    that is known within bounds is their middle, which may be wrong by up to ``error``.
     """
 
     title: str
     objects: tuple[str, ...]
     values: tuple[Value, ...]
     runs: tuple[ValueRun, ...]
+    error: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,10 +130,12 @@ def _row(
         all(first <= number <= last for first, last in presences)
         for number in range(len(trace.states))
     ]
-    values = [
-        _known(value_in(state, name, objects, declaration)) if present else None
+    given = [
+        value_in(state, name, objects, declaration) if present else None
         for state, present in zip(trace.states, there, strict=True)
     ]
+    values = list(map(_known, given))
+    error = max((value.error for value in given if isinstance(value, Interval)), default=0.0)
     if not any(there):
         return None
     title = f"{name}({', '.join(objects)})" if objects else name
@@ -142,7 +146,7 @@ def _row(
         case Quantity():
             possible = ()
             title += f" in {declaration.unit}" if declaration.unit else ""
-    return RibbonRow(title, objects, possible, tuple(_runs(values, there)))
+    return RibbonRow(title, objects, possible, tuple(_runs(values, there)), error)
 
 
 def _about_objects(value: Any) -> Iterable[tuple[str, Any]]:
@@ -150,6 +154,8 @@ def _about_objects(value: Any) -> Iterable[tuple[str, Any]]:
 
 
 def _known(value: PartialValue | None) -> Value | None:
+    if isinstance(value, Interval):
+        return value.middle
     return value if isinstance(value, bool | int | float | str) else None
 
 

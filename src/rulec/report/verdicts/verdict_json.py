@@ -14,12 +14,21 @@ from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.verdicts.violation_table import repaired_states
+from rulec.vocabulary.partial_values import Interval, PartialValue, UnknownValue
 
-Value = bool | int | float | str | None
+
+class BoundsData(JsonPart, frozen=True, kw_only=True, rename={"low": "from", "high": "to"}):
+    """A number that lies between two others."""
+
+    low: float
+    high: float
+
+
+Value = bool | int | float | str | BoundsData | None
 
 
 class FactData(JsonPart, frozen=True, kw_only=True):
-    """Something that the rule reads, and its value in each state, null where it is unknown.
+    """Something that the rule reads, and its value or bounds in each state, null if unknown.
 
     ``unit`` is a quantity's; ``objects`` are, for a count, those that counted in each state.
     """
@@ -72,13 +81,20 @@ class ErrorData(JsonPart, frozen=True, kw_only=True):
 
 
 class MarginData(JsonPart, frozen=True, kw_only=True):
-    """A comparison that decides: ``value`` stands in ``relation`` to ``limit``, in ``unit``."""
+    """A comparison that decides: ``value`` stands in ``relation`` to ``limit``, in ``unit``.
+
+    Both may be wrong by their errors. They differ ``by`` so much, for sure by ``at_least``.
+    """
 
     text: str
     value: float
     relation: str
     limit: float
     unit: str
+    value_error: float
+    limit_error: float
+    by: float
+    at_least: float
 
 
 class DrivePlaceData(JsonPart, frozen=True, kw_only=True):
@@ -236,6 +252,12 @@ def error_data(error: RulecError) -> ErrorData:
     return filled(ErrorData, diagnostic, file=file, line=line)
 
 
+def _value_data(value: PartialValue | None) -> Value:
+    if isinstance(value, Interval):
+        return BoundsData(low=value.low, high=value.high)
+    return None if isinstance(value, UnknownValue) else value
+
+
 def explanation_data(explanation: Explanation) -> ExplanationData:
     """The explanation with all its facts, parts and states."""
     return filled(
@@ -249,6 +271,7 @@ def explanation_data(explanation: Explanation) -> ExplanationData:
                 FactData,
                 fact,
                 reads=fact.text,
+                values=tuple([_value_data(value) for value in fact.values]),
                 unit=fact.unit or UNSET,
                 objects=UNSET if fact.objects is None else fact.objects,
             )

@@ -12,11 +12,12 @@ from textwrap import wrap
 from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.explain.explanation import Explanation, Observation
-from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.guard_text import GuardWording, runs
 from rulec.report.text.terminal_text import styled, table_lines, visible
 from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
 from rulec.trace import Value
+from rulec.vocabulary.partial_values import Interval
 
 WIDTH = 100
 """A wider table is folded, a longer sentence broken, where no terminal says how wide it is."""
@@ -165,10 +166,12 @@ def _with_margins(cells: Iterable[str], margins: Sequence[Margin | None]) -> lis
     return [f"{cell} {margin.sides}" if margin else cell for cell, margin in zip(cells, beside)]  # noqa: B905
 
 
-def shown(value: Value | None) -> str:
-    """A value as a cell of a table; None is unknown."""
+def shown(value: Value | Interval | None) -> str:
+    """A value as a cell of a table; None is unknown, ``12.3±0.4`` what may be as far from 12.3."""
     if value is None:
         return "?"
+    if isinstance(value, Interval):
+        return number_with_error(value.middle, value.error)
     if isinstance(value, bool):
         return "T" if value else "F"
     if isinstance(value, str):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from pathlib import Path, PurePath
 from typing import IO, Any, Literal, get_args
@@ -104,6 +104,12 @@ def kinds_in(states: Iterable[State]) -> dict[str, type]:
                 else:
                     kinds.setdefault(name, float if type(leave) is int else type(leave))
     return {**unknown, **kinds}
+
+
+def with_bounds(kinds: Kinds, names: Collection[str]) -> dict[str, type]:
+    """The kinds with those of the bounds of numbers among these names."""
+    bounds = {name + end: float for name in kinds if name in names for end in (FROM, TO)}
+    return {**kinds, **bounds}
 
 
 def is_partial(trace: Trace) -> bool:

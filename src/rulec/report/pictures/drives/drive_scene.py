@@ -14,9 +14,11 @@ import numpy as np
 from numpy import float64, intp
 from numpy.typing import NDArray
 
+from rulec.monitoring.explain.margins import number_with_error
 from rulec.report.pictures.trace_ribbon import Ribbon
 from rulec.rulebook.rulebook_model import Strength
 from rulec.scenario.recorded.recording import Points
+from rulec.vocabulary.partial_values import Interval
 
 Surface = Literal["lane", "crossing", "footway"]
 MarkKind = Literal["solid", "broken", "unsaid"]
@@ -124,7 +126,7 @@ class SceneViolation:
     decides: frozenset[str]
     narrowly: Mapping[str, tuple[str, ...]]
     links: NDArray[float64]
-    gaps: tuple[float | None, ...]
+    gaps: tuple[float | Interval | None, ...]
 
     def gap_text(self, state: int) -> str:
         """The distance to the other one in a state, empty if there is none."""
@@ -132,6 +134,8 @@ class SceneViolation:
         gap = self.gaps[state]
         if np.isnan(ax):
             return ""
+        if isinstance(gap, Interval):
+            return f"{number_with_error(gap.middle, gap.error, 1)} m"
         # Beside each other bodies have no gap along the road; what is drawn is measured then.
         return f"{gap or np.hypot(bx - ax, by - ay):.1f} m"
 

@@ -24,6 +24,7 @@ from rulec.report.pictures.trace_ribbon import in_words, ribbon
 from rulec.report.text.terminal_text import first_of
 from rulec.report.verdicts.verdict_report import in_a_line, open_in_words
 from rulec.scenario.recorded.recording import Points
+from rulec.vocabulary.partial_values import Interval
 
 SIGHT_M = 120.0
 """A participant that is farther from ego is not drawn."""
@@ -226,8 +227,8 @@ def _sides(numbers: Deciding, item: str, states: int) -> Iterator[str]:
         yield f"{margin.sides} {margin.unit}" if margin else ""
 
 
-def _gaps(drive: Drive, objects: Sequence[str]) -> Iterator[float | None]:
+def _gaps(drive: Drive, objects: Sequence[str]) -> Iterator[float | Interval | None]:
     for state in drive.trace.states:
         gaps = state.get("gap")
         gap = gaps.get(objects[0]) if objects and isinstance(gaps, Mapping) else None
-        yield gap if isinstance(gap, float) else None
+        yield gap if isinstance(gap, float | Interval) else None
