@@ -9,6 +9,7 @@ from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.margins import number_with_error
 from rulec.monitoring.verify import verify
 from rulec.report.verdicts import verdict_json, violation_table
+from rulec.report.verdicts.verdict_report import open_in_words
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
@@ -49,9 +50,24 @@ def test_a_comparison_is_sure_if_it_is_for_all_numbers_within_bounds(rules):
     assert outcomes(judged(rules, (far, 50.0, False))[1]) == {}
     assert outcomes(judged(rules, (30.0, Interval(50.1, 51.0), False))[1]) == {"slow": "violated"}
     assert outcomes(judged(rules, (30.0, Interval(49.0, 50.0), False))[1]) == {}
+    across = Interval(24.0, 26.0)
+    assert outcomes(judged(rules, (across, 50.0, False))[1]) == {"half": ("tolerance",)}
+    assert outcomes(judged(rules, (across, 50.0, UNKNOWN))[1]) == {
+        "half": ("not told", "tolerance")
+    }
     # Of a count, too
     assert "alone" not in outcomes(judged(rules, (Interval(10.0, 11.0), 1.0, False))[1])
     assert "alone" in outcomes(judged(rules, (Interval(9.0, 9.9), 1.0, False))[1])
+
+
+def test_an_open_verdict_says_that_the_limit_is_within_the_tolerance(rules):
+    _, verdict = judged(rules, (30.0, Interval(49.5, 50.5), False))
+    (result,) = verdict.open
+    assert (result.depends_on, result.because) == (("speed",), ("tolerance",))
+    assert open_in_words(result) == (
+        "open, depends on speed and a limit is within the tolerance of what was measured: "
+        "kept if speed <= 50, violated if speed > 50"
+    )
 
 
 def test_sides_have_errors_and_what_is_sure_is_said(rules):

@@ -30,9 +30,10 @@ class Violation:
 
 OutcomeName: TypeAlias = Literal["kept", "violated", "open"]
 
-Reason: TypeAlias = Literal["not told", "not over", "began before", "step"]
-"""Why a verdict is open: values are unknown, a duty is pending, the past has not been seen, or a
-bound that is no multiple of the step comes out one way if rounded down and the other if rounded up.
+Reason: TypeAlias = Literal["not told", "tolerance", "not over", "began before", "step"]
+"""Why a verdict is open: values are unknown, or they are numbers known within bounds between which
+a limit lies, a duty is pending, the past has not been seen, or a bound that is no multiple of the
+step comes out one way if rounded down and the other if rounded up.
 """
 
 

@@ -19,6 +19,7 @@ from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.possible_letters import PossibleLetters, PossibleWord
 from rulec.monitoring.uncertainty.suppositions import Suppositions, spelled_out, with_supposed
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
+from rulec.monitoring.uncertainty.within_tolerance import told_within_bounds
 from rulec.monitoring.verdict import (
     NO_PAST,
     CarriedState,
@@ -27,7 +28,8 @@ from rulec.monitoring.verdict import (
     Verdict,
     Violation,
 )
-from rulec.trace import Trace, Value
+from rulec.trace import State, Trace, Value
+from rulec.vocabulary import Vocabulary
 
 
 def uncertain_verdict(
@@ -106,8 +108,8 @@ class UncertainRun:
                 step = None if answer.step is None else binding.first + answer.step
                 yield Violation(rule.name, rule.strength, objects, step)
             else:
-                order = tuple(declared.declarations)
-                why = partial(_reasons, own, words, constants, (order, is_exact))
+                states = trace.states[binding.first : binding.last + 1]
+                why = partial(_reasons, own, words, constants, (declared, states, is_exact))
                 yield OpenVerdict.explained_later(rule.name, rule.strength, objects, why)
 
     def _words(
@@ -149,8 +151,9 @@ def _reasons(
     machine: UncertainMachine,
     words: Sequence[PossibleWord],
     constants: Sequence[Mapping[str, object]],
-    order: tuple[Sequence[str], bool],
+    about: tuple[Vocabulary, Sequence[State], bool],
 ) -> OpenReasons:
-    names, is_exact = order
-    found = machine.reasons(words, constants, names)
-    return found._replace(exact=found.exact and is_exact)
+    declared, states, is_exact = about
+    found = machine.reasons(words, constants, tuple(declared.declarations))
+    found = found._replace(exact=found.exact and is_exact)
+    return told_within_bounds(found, states, declared)

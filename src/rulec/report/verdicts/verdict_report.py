@@ -74,6 +74,8 @@ def open_in_words(result: OpenVerdict) -> str:
     parts = []
     if result.depends_on:
         parts.append(f"depends on {', '.join(result.depends_on)}")
+    if "tolerance" in result.because:
+        parts.append("a limit is within the tolerance of what was measured")
     if "began before" in result.because:
         parts.append("depends on what was before the first state")
     if "not over" in result.because:

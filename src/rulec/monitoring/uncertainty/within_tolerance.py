@@ -1,0 +1,42 @@
+"""Names whose numbers are known, but only within bounds between which a limit lies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from rulec.monitoring.verdict import OpenReasons, Reason
+from rulec.trace import State
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+
+
+def told_within_bounds(
+    found: OpenReasons, states: Sequence[State], vocabulary: Vocabulary
+) -> OpenReasons:
+    """The reasons, apart for names that are not told, and for those told within bounds."""
+    if "not told" not in found.because:
+        return found
+    within = [name for name in found.depends_on if _is_within_bounds(name, states, vocabulary)]
+    if not within:
+        return found
+    first: tuple[Reason, ...] = ("tolerance",)
+    if len(within) < len(found.depends_on):
+        first = ("not told", *first)
+    others = [reason for reason in found.because if reason != "not told"]
+    return found._replace(because=(*first, *others))
+
+
+def _is_within_bounds(name: str, states: Sequence[State], vocabulary: Vocabulary) -> bool:
+    """Whether some number is an interval, and none is unknown altogether."""
+    default = vocabulary.declarations[name].default
+    values = [value for state in states for value in _leaves(state.get(name, default))]
+    return UNKNOWN not in values and any(isinstance(value, Interval) for value in values)
+
+
+def _leaves(value: Any) -> Iterator[Any]:
+    if isinstance(value, Mapping):
+        for inner in value.values():
+            yield from _leaves(inner)
+    else:
+        yield value
