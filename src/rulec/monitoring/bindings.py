@@ -33,8 +33,16 @@ def bindings(
     """
     names = [variable.name for variable in rule.variables]
     for chosen in choices([variable.type for variable in rule.variables], objects, vocabulary):
-        stretches = [present.get(item, (0, n_states - 1)) for item in chosen]
-        first = max((start for start, _ in stretches), default=0)
-        last = min((end for _, end in stretches), default=n_states - 1)
-        if first <= last:
-            yield Binding(dict(zip(names, chosen, strict=True)), first, last)
+        binding = binding_of(dict(zip(names, chosen, strict=True)), present, n_states)
+        if binding.first <= binding.last:
+            yield binding
+
+
+def binding_of(
+    objects: Mapping[str, str], present: Mapping[str, tuple[int, int]], n_states: int
+) -> Binding:
+    """The binding to these objects, which ends before it begins if they never meet."""
+    stretches = [present.get(item, (0, n_states - 1)) for item in objects.values()]
+    first = max((start for start, _ in stretches), default=0)
+    last = min((end for _, end in stretches), default=n_states - 1)
+    return Binding(objects, first, last)

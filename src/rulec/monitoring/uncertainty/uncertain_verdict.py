@@ -13,7 +13,7 @@ from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED
-from rulec.monitoring.bindings import Binding, bindings
+from rulec.monitoring.bindings import Binding, binding_of, bindings
 from rulec.monitoring.uncertainty.completions import Subject
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.possible_letters import PossibleLetters, PossibleWord
@@ -87,30 +87,45 @@ class UncertainRun:
     def _answers(
         self, rule: CompiledRule, machine: UncertainMachine
     ) -> Iterator[Violation | OpenVerdict]:
-        trace = self.trace
-        declared = self.vocabulary
+        trace, declared = self.trace, self.vocabulary
         for binding in bindings(rule, declared, trace.objects, trace.present, len(trace.states)):
-            objects, own = binding.objects, machine
-            perhaps_settled = False
-            if binding.first == 0 and self.past is not NO_PAST:
-                about = (rule.name, tuple(objects.values()))
-                if about in self.past.settled:
-                    continue
-                perhaps_settled = about in self.past.perhaps_settled
-                own = uncertain_machine(rule, None, self.past.starts(about))
-            words, constants, is_exact = self._words(rule, own, binding)
-            answer = own.answer(words)
-            if answer.worst == KEPT:
-                continue
-            if answer.best == VIOLATED and perhaps_settled:
-                yield OpenVerdict(rule.name, rule.strength, objects, ("began before",))
-            elif answer.best == VIOLATED:
-                step = None if answer.step is None else binding.first + answer.step
-                yield Violation(rule.name, rule.strength, objects, step)
-            else:
-                states = trace.states[binding.first : binding.last + 1]
-                why = partial(_reasons, own, words, constants, (declared, states, is_exact))
-                yield OpenVerdict.explained_later(rule.name, rule.strength, objects, why)
+            answer = self._answer(rule, machine, binding)
+            if answer is not None:
+                yield answer
+
+    def reasons(self, rule_name: str, objects: Mapping[str, str]) -> OpenReasons:
+        """Why the verdict on a rule and these objects is open."""
+        trace = self.trace
+        rule, machine = next(own for own in self.judged.machines if own[0].name == rule_name)
+        own = binding_of(objects, trace.present, len(trace.states))
+        answer = self._answer(rule, machine, own)
+        assert isinstance(answer, OpenVerdict)
+        return OpenReasons(answer.because, answer.depends_on, answer.outcomes, answer.exact)
+
+    def _answer(
+        self, rule: CompiledRule, machine: UncertainMachine, binding: Binding
+    ) -> Violation | OpenVerdict | None:
+        """What is not kept of a binding, None if all is."""
+        objects, own = binding.objects, machine
+        perhaps_settled = False
+        if binding.first == 0 and self.past is not NO_PAST:
+            about = (rule.name, tuple(objects.values()))
+            if about in self.past.settled:
+                return None
+            perhaps_settled = about in self.past.perhaps_settled
+            own = uncertain_machine(rule, None, self.past.starts(about))
+        words, constants, is_exact = self._words(rule, own, binding)
+        answer = own.answer(words)
+        if answer.worst == KEPT:
+            return None
+        if answer.best == VIOLATED and perhaps_settled:
+            return OpenVerdict(rule.name, rule.strength, objects, ("began before",))
+        if answer.best == VIOLATED:
+            step = None if answer.step is None else binding.first + answer.step
+            return Violation(rule.name, rule.strength, objects, step)
+        states = self.trace.states[binding.first : binding.last + 1]
+        why = partial(_reasons, own, words, constants, (self.vocabulary, states, is_exact))
+        return OpenVerdict.explained_later(rule.name, rule.strength, objects, why)
 
     def _words(
         self, rule: CompiledRule, machine: UncertainMachine, binding: Binding

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.monitoring.batch.uncertain.uncertain_engine import uncertain_outcomes
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules
 from rulec.monitoring.uncertainty.suppositions import spelled_out
-from rulec.monitoring.uncertainty.uncertain_verdict import presumed_in, uncertain_verdict
+from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun, presumed_in
 from rulec.monitoring.verdict import OpenReasons, OpenVerdict, Verdict, Violation
 from rulec.trace import Trace
 from rulec.trace.trace_columns import TraceColumns
@@ -82,17 +82,15 @@ def _are_partial(columns: TraceColumns) -> NDArray[np.bool_]:
 
 
 class _LaterReasons:
-    """Why verdicts on a trace are open, found when it is first asked of one of them."""
+    """Why verdicts on a trace are open, found for each of them when it is first asked for."""
 
     def __init__(self, trace: Trace, rulebook: CompiledRulebook) -> None:
         self._trace = trace
         self._rulebook = rulebook
-        self._open: dict[tuple[str, tuple[str, ...]], OpenVerdict] | None = None
+
+    @cached_property
+    def _run(self) -> UncertainRun:
+        return UncertainRun(spelled_out(self._trace, self._rulebook.vocabulary), self._rulebook)
 
     def of(self, rule: str, binding: Mapping[str, str]) -> OpenReasons:
-        if self._open is None:
-            whole = spelled_out(self._trace, self._rulebook.vocabulary)
-            verdict = uncertain_verdict(whole, self._rulebook)
-            self._open = {(one.rule, tuple(one.binding.values())): one for one in verdict.open}
-        found = self._open[rule, tuple(binding.values())]
-        return OpenReasons(found.because, found.depends_on, found.outcomes, found.exact)
+        return self._run.reasons(rule, binding)
