@@ -42,7 +42,7 @@ class Assumptions:
         if self.defaults:
             told = None
         elif told is not None:
-            told |= untold.keys()
+            told = told.union(untold)
         return replace(trace, states=states, ends=ends, told=told)
 
     def of(self, traces: Sequence[Trace | RulecError]) -> Sequence[Trace | RulecError]:
