@@ -103,6 +103,10 @@ def test_what_does_not_hinge_on_a_number_is_not_by_any_amount(rules):
         (21.32, 0.316, "21.3±0.4"),
         (100.0, 20.0, "100±20"),
         (-3.0, 0.5, "-3.0±0.5"),
+        # More than half of it: both bounds
+        (502.0, 498.1, "3.9 to 1000.1"),
+        (0.2, 0.3, "-0.1 to 0.5"),
+        (0.0, 0.25, "-0.25 to 0.25"),
     ],
 )
 def test_as_many_decimals_as_the_error_has(value, error, text):

@@ -56,6 +56,16 @@ def test_whom_nobody_is_ahead_of_is_in_no_queue(complete):
     assert signals.unknown["dense_all_lanes"][0] == (not complete)
 
 
+@pytest.mark.parametrize(("front", "queues"), [(26, True), (30, False)])
+def test_who_is_far_behind_the_next_one_leads_too(front, queues):
+    # Vehicles are 4 m long: 22 m of gap are allowed at 11 m/s, and 26 m are not
+    behind = [*line(11, 2, start=-30), *line(11, 3, y=4.0, start=-30, number=30)]
+    found = recording(lanes(2), [steady(7, 0, 0, speed=11), steady(9, front, 0, speed=11), *behind])
+    signals = flow_signals(context_of(found))
+    assert signals.world["dense_all_lanes"][0] == queues
+    assert not signals.unknown["dense_all_lanes"][0]
+
+
 @pytest.mark.parametrize(("stood_s", "known"), [(9, False), (11, True)])
 def test_who_sets_off_beside_others_is_not_told_to_be_overtaken(stood_s, known):
     # Ego stands for 2 s, and goes at 10 m/s for so long, when one at 15 m/s is beside it

@@ -3,6 +3,7 @@
 from itertools import groupby
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -34,6 +35,26 @@ def test_flicker_is_settled_by_what_it_began_with():
 
 def test_what_is_said_of_one_line_is_settled_alike():
     assert len({LEAST_S[x] for x in ("on_solid_line", "broken_on_own_side", "single_line")}) == 1
+
+
+@pytest.mark.parametrize(
+    ("values", "unknown", "settled_unknown"),
+    [
+        # What it becomes is as little known as what is beside it on either side
+        ([1, 1, 1, 0, 1, 1, 1], "..?....", "..??..."),
+        ([1, 1, 1, 0, 1, 1, 1], "....?..", "...??.."),
+        ([1, 1, 1, 0, 0, 1, 1, 1], "..?.....", "..???..."),
+        ([1, 1, 1, 0, 1, 1, 1], ".?...?.", ".?...?."),
+        ([1, 1, 1, 0, 0, 0, 1, 1], "..?...?.", "..?...?."),
+    ],
+)
+@pytest.mark.parametrize("rows", [1, 2])
+def test_what_is_settled_is_no_better_known(values, unknown, settled_unknown, rows):
+    column = np.array([values] * rows, dtype=bool)
+    flags = np.array([[sign == "?" for sign in unknown]] * rows)
+    found = settled(SignalColumns(about={"p": column}, unknown={"p": flags}), {"p": 0.3}, 0.1)
+    for row in found.unknown["p"]:
+        assert "".join("?" if known else "." for known in row.tolist()) == settled_unknown
 
 
 def test_rows_are_settled_by_themselves():

@@ -120,23 +120,23 @@ def pressed(key, more=""):
 def test_a_drive_opens_at_its_first_violation(drive_page):
     dom = after_drive(drive_page, "")
     assert '<html lang="en" class="scripted">' in dom
-    assert ">3.5 s of 5.0 s</output>" in dom
+    assert ">2.5 s of 5.0 s</output>" in dom
     assert dom.count('aria-current="true"') == 1
-    assert "gap(2) 15.82±0.05 m &lt; 21.3±0.4 m, by at least 5.1 m" in dom
+    assert "gap(2) 19.80±0.05 m &lt; 21.3±0.4 m, by at least 1.1 m" in dom
 
 
 def test_keys_of_a_drive(drive_page):
-    assert told(drive_page, pressed("ArrowRight"), "time") == "4.0 s of 5.0 s"
-    assert told(drive_page, pressed("ArrowRight", ", shiftKey: true"), "time") == "4.5 s of 5.0 s"
-    assert told(drive_page, pressed("ArrowLeft") * 2, "time") == "2.5 s of 5.0 s"
+    assert told(drive_page, pressed("ArrowRight"), "time") == "3.0 s of 5.0 s"
+    assert told(drive_page, pressed("ArrowRight", ", shiftKey: true"), "time") == "3.5 s of 5.0 s"
+    assert told(drive_page, pressed("ArrowLeft") * 2, "time") == "1.5 s of 5.0 s"
     assert told(drive_page, pressed("End"), "time") == "5.0 s of 5.0 s"
     assert told(drive_page, pressed(" "), "play") == "Pause"
 
 
 def test_a_violation_in_the_list_jumps_to_its_moment(drive_page):
     click = pressed("Home") + "document.querySelector('#violations button').click()"
-    assert told(drive_page, click, "time") == "3.5 s of 5.0 s"
-    assert "false: 15.82±0.05 &lt; 21.3±0.4 m" in after_drive(drive_page, click)
+    assert told(drive_page, click, "time") == "2.5 s of 5.0 s"
+    assert "false: 19.80±0.05 &lt; 21.3±0.4 m" in after_drive(drive_page, click)
 
 
 def test_a_drive_in_another_theme(drive_page):

@@ -31,9 +31,10 @@ def flow_signals(context: DriveContext) -> SignalColumns:
     decides = context.existing_lanes & (_seen(context) | queues)
     dense = np.all(queues | ~decides, axis=1) & np.any(decides, axis=1)
     # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more
-    leads = dense & ~_follows(context)
-    dense &= ~leads
-    cut_off = leads & ("light" not in context.recording.complete)
+    ahead = _ahead_in_lane(context)
+    near = relations.gap(context) <= _longest_gap(context)
+    cut_off = dense & ~ahead.any(axis=0) & ("light" not in context.recording.complete)
+    dense &= (ahead & near).any(axis=0)
     # Lanes that move off beside each other do not overtake
     moot = cut_off | _sets_off(context)
     return SignalColumns(
@@ -55,12 +56,11 @@ def flow_signals(context: DriveContext) -> SignalColumns:
     )
 
 
-def _follows(context: DriveContext) -> Flags:
-    """Flags of states in which somebody is ahead of ego in its lane, as far as traffic reaches."""
+def _ahead_in_lane(context: DriveContext) -> Flags:
+    """Flags of who is ahead of ego in its lane, as far as traffic reaches."""
     own_lane = context.road.lane_of(context.extents.w) == context.ego_lane
-    ahead = _close(context) & (relations.station(context) == relations.BEHIND)
-    follows: Flags = (ahead & own_lane).any(axis=0)
-    return follows
+    ahead: Flags = _close(context) & (relations.station(context) == relations.BEHIND) & own_lane
+    return ahead
 
 
 def _sets_off(context: DriveContext) -> Flags:
@@ -92,10 +92,16 @@ def _seen(context: DriveContext) -> Flags:
 
 def _shortest_queue(context: DriveContext) -> Floats:
     """How much (m) ``fewest`` vehicles take up at the largest distances of a queue, by state."""
-    limits = context.thresholds
-    gap = np.maximum(limits.queue_gap_m, limits.queue_headway_s * context.ego_extents.along[0])
-    length: Floats = limits.fewest * (gap + _BODY_M)
+    length: Floats = context.thresholds.fewest * (_longest_gap(context) + _BODY_M)
     return length
+
+
+def _longest_gap(context: DriveContext) -> Floats:
+    """The longest gap (m) in a queue at ego's speed, by state."""
+    limits = context.thresholds
+    speed = context.ego_extents.along[0]
+    gap: Floats = np.maximum(limits.queue_gap_m, limits.queue_headway_s * speed)
+    return gap
 
 
 def _reach(context: DriveContext) -> Floats:

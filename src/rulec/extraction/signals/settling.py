@@ -10,6 +10,7 @@ from math import ceil
 import numpy as np
 
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.tracks.tracks import Flags
 
 _HAIR = 1e-6
 
@@ -17,14 +18,34 @@ _HAIR = 1e-6
 def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float) -> SignalColumns:
     """The signals without values that are shorter than their word's least duration (s).
 
-    Such a value between two equal ones becomes theirs; at the ends of a recording it stays.
+    Such a value between two equal ones becomes theirs, and no better known than they; at the ends
+    of a recording it stays.
     """
     own = {name: ceil(seconds / step_s - _HAIR) for name, seconds in least_s.items()}
     world, about = (
         {name: without_blips(column, own.get(name, 1)) for name, column in columns.items()}
         for columns in (signals.world, signals.about)
     )
-    return replace(signals, world=world, about=about)
+    unknown = dict(signals.unknown)
+    for name, flags in unknown.items():
+        before = signals.world[name] if name in signals.world else signals.about[name]
+        after = world[name] if name in world else about[name]
+        unknown[name] = flags | _beside((before != after) & ~flags, flags)
+    return replace(signals, world=world, about=about, unknown=unknown)
+
+
+def _beside(changed: Flags, flags: Flags) -> Flags:
+    """Flags of changed states next to flagged ones, across others that have changed, too."""
+    if not changed.any():
+        return changed
+    places = np.broadcast_to(np.arange(changed.shape[-1]), changed.shape)
+    earlier = np.maximum.accumulate(np.where(changed, 0, places), axis=-1)
+    last = changed.shape[-1] - 1
+    turned = np.where(changed, last, places)[..., ::-1]
+    later = np.minimum.accumulate(turned, axis=-1)[..., ::-1]
+    beside = [np.take_along_axis(flags, where, axis=-1) for where in (earlier, later)]
+    found: Flags = changed & (beside[0] | beside[1])
+    return found
 
 
 def without_blips(column: SignalColumn, least: int) -> SignalColumn:

@@ -130,7 +130,13 @@ def _rounded_down(number: float) -> str:
 
 
 def number_with_error(value: float, error: float, places: int = 0) -> str:
-    """A number with how far it may be wrong, rounded up by a half at most: ``12.3±0.4``."""
+    """A number with how far it may be wrong, rounded up by a half at most: ``12.3±0.4``.
+
+    If that is more than half of the number, both bounds instead: ``3.9 to 1000``.
+    """
+    if error > abs(value) / 2:
+        low, high = floor((value - error) * 100 + _HAIR), ceil((value + error) * 100 - _HAIR)
+        return f"{low / 100:.6g} to {high / 100:.6g}"
     for more in range(places, places + _MOST_PLACES):
         rounded = ceil(error * 10**more - _HAIR) / 10**more
         if rounded <= _ROUNDED_UP * error:
