@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 from rulec.diagnostics import RulecError
@@ -214,10 +213,10 @@ class CarriedState:
     rules of which it is not known whether they have been violated.
     """
 
-    states: Mapping[RuleFor, int] = field(default_factory=lambda: MappingProxyType({}))
+    states: Mapping[RuleFor, int] = field(default_factory=dict)
     settled: frozenset[RuleFor] = frozenset()
     violations: tuple[Violation, ...] = ()
-    possible: Mapping[RuleFor, frozenset[int]] = field(default_factory=lambda: MappingProxyType({}))
+    possible: Mapping[RuleFor, frozenset[int]] = field(default_factory=dict)
     perhaps_settled: frozenset[RuleFor] = frozenset()
 
     def starts(self, about: RuleFor) -> frozenset[int]:

@@ -108,7 +108,7 @@ class UncertainRun:
         """What is not kept of a binding, None if all is."""
         objects, own = binding.objects, machine
         perhaps_settled = False
-        if binding.first == 0 and self.past is not NO_PAST:
+        if binding.first == 0 and self.past != NO_PAST:
             about = (rule.name, tuple(objects.values()))
             if about in self.past.settled:
                 return None

@@ -118,7 +118,7 @@ class PossibleNodes:
             if binding.first == 0 and about in past.settled:
                 continue
             start = _Start()
-            if binding.first == 0 and past is not NO_PAST:
+            if binding.first == 0 and past != NO_PAST:
                 start = _Start(past.starts(about), about in past.perhaps_settled)
             words, is_exact = self._words(rule, machine, binding)
             key = _Alike(binding.first, start, words, is_exact)
