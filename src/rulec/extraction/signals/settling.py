@@ -30,11 +30,11 @@ def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float)
     for name, flags in unknown.items():
         before = signals.world[name] if name in signals.world else signals.about[name]
         after = world[name] if name in world else about[name]
-        unknown[name] = flags | _beside((before != after) & ~flags, flags)
+        unknown[name] = flags | _next_to((before != after) & ~flags, flags)
     return replace(signals, world=world, about=about, unknown=unknown)
 
 
-def _beside(changed: Flags, flags: Flags) -> Flags:
+def _next_to(changed: Flags, flags: Flags) -> Flags:
     """Flags of changed states next to flagged ones, across others that have changed, too."""
     if not changed.any():
         return changed
@@ -43,8 +43,8 @@ def _beside(changed: Flags, flags: Flags) -> Flags:
     last = changed.shape[-1] - 1
     turned = np.where(changed, last, places)[..., ::-1]
     later = np.minimum.accumulate(turned, axis=-1)[..., ::-1]
-    beside = [np.take_along_axis(flags, where, axis=-1) for where in (earlier, later)]
-    found: Flags = changed & (beside[0] | beside[1])
+    either = [np.take_along_axis(flags, where, axis=-1) for where in (earlier, later)]
+    found: Flags = changed & (either[0] | either[1])
     return found
 
 

@@ -17,6 +17,7 @@ from rulec.logic.free_names import names_in
 from rulec.monitoring.bindings import Binding, bindings
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.state_validation import partial_names
+from rulec.monitoring.uncertainty.completions import Subject
 from rulec.monitoring.uncertainty.possible_letters import (
     PossibleLetters,
     untold_names,
@@ -40,8 +41,6 @@ _NOBODY = -1
 
 _Word: TypeAlias = tuple[tuple[int, ...], ...]
 """For each node of each layer the classes of its possible letters, as bits."""
-
-_Subject: TypeAlias = tuple[str, tuple[str, ...]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +147,7 @@ class PossibleNodes:
                     raise here.impossible(rule, binding.objects, node)
         return tuple(words), is_exact
 
-    def _letters_where(self, values: Mapping[_Subject, Value]) -> list[PossibleLetters]:
+    def _letters_where(self, values: Mapping[Subject, Value]) -> list[PossibleLetters]:
         key = tuple(values.items())
         if key not in self._letters:
             self._letters[key] = [
