@@ -7,6 +7,7 @@ import pytest
 from rulec import compile_rulebook, find_maneuvers
 from rulec.cli.main import main
 from rulec.monitoring.online.running_monitor import Monitor
+from support.builders.road_scenes import BEHIND_A_VAN, CHILD_AT_THE_KERB
 
 
 def answer(capsys, *arguments):
@@ -434,43 +435,10 @@ def test_classes(capsys, tmp_path):
     assert "of these depending on how long one stays: `A` counts steps" in out
 
 
-KERB = """
-horizon_s = 2.0
-
-[road]
-s = [-20.0, 80.0]
-lanes = [-1.75, 1.75]
-
-[[road.surface]]
-type = "crossing"
-s = [20.0, 24.0]
-
-[ego]
-s = 0.0
-d = 0.0
-
-[[obstacle]]
-id = "child"
-type = "pedestrian"
-length = 0.5
-width = 0.5
-s = 22.0
-d = -2.5
-walking_direction = 90
-
-[[obstacle.prediction]]
-weight = 0.75
-
-[[obstacle.prediction]]
-weight = 0.25
-lateral_speed = 0.6
-"""
-
-
 def test_several_predictions(tmp_path, capsys):
     """In 2 s a child may be on the crossing: whoever is in front of it then violates R3."""
     file = tmp_path / "kerb.toml"
-    file.write_text(KERB, encoding="utf-8")
+    file.write_text(CHILD_AT_THE_KERB, encoding="utf-8")
     book = (str(file), "-r", "esterle2019", "--json")
     status, out, _ = answer(capsys, *book, "--list", "99", "--worlds")
     found = json.loads(out)
@@ -527,24 +495,13 @@ def test_the_extent(tmp_path, capsys):
     assert "partition fine, adjacency touch, extent body" in out
 
 
-DARK = """
-[road]
-s = [-30.0, 60.0]
-lanes = [-1.75, 1.75, 5.25]
-[ego]
-s = 0.0
-d = 3.5
-[[obstacle]]
-id = "van"
-type = "vehicle"
-length = 6.0
-width = 2.2
-s = 14.0
-d = 3.5
-speed = 4.0
+DARK = (
+    BEHIND_A_VAN
+    + """speed = 4.0
 [signals]
 CONGESTED = "?"
 """
+)
 
 
 def test_what_is_not_known_is_said_of_each_maneuver(tmp_path, capsys):

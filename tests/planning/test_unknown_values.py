@@ -19,6 +19,7 @@ from rulec.trace.trace_model import trace_of
 from rulec.vocabulary import Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.full_vocabulary import WORLD
+from support.builders.road_scenes import BEHIND_A_VAN
 from support.builders.rulebooks import P, Q, always, book, compile_here, implies, no, rule
 from support.builders.state_traces import as_trace
 from support.generators.blurred_traces import blurred, telling_numbers
@@ -247,21 +248,9 @@ def test_ranks_suppose_the_worst_and_say_what_is_sure():
     assert prunings == {"p": (2, 2), "q": (3, 0)}
 
 
-PASSING = """
-[road]
-s = [-30.0, 60.0]
-lanes = [-1.75, 1.75, 5.25]
-[ego]
-s = 0.0
-d = 3.5
-[[obstacle]]
-id = "van"
-type = "vehicle"
-length = 6.0
-width = 2.2
-s = 14.0
-d = 3.5
-[[obstacle.prediction]]
+PASSING = (
+    BEHIND_A_VAN
+    + """[[obstacle.prediction]]
 weight = 0.7
 speed = 4.0
 [[obstacle.prediction]]
@@ -270,6 +259,7 @@ speed = 12.0
 [signals]
 CONGESTED = {}
 """
+)
 
 
 @pytest.fixture

@@ -8,6 +8,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from rulec.cli.main import VERBS, main, rulec
+from support.builders.road_scenes import CHILD_AT_THE_KERB
 from tools.json_schemas import SCHEMAS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -27,37 +28,6 @@ PAST = (
     '{"step_s": 0.5, "objects": {"o1": "vehicle", "o2": "vehicle"}, '
     '"states": [{"position": {"o1": "b", "o2": "b"}, "CONGESTED": true}]}\n'
 )
-KERB = """
-horizon_s = 2.0
-
-[road]
-s = [-20.0, 80.0]
-lanes = [-1.75, 1.75]
-
-[[road.surface]]
-type = "crossing"
-s = [20.0, 24.0]
-
-[ego]
-s = 0.0
-d = 0.0
-
-[[obstacle]]
-id = "child"
-type = "pedestrian"
-length = 0.5
-width = 0.5
-s = 22.0
-d = -2.5
-walking_direction = 90
-
-[[obstacle.prediction]]
-weight = 0.75
-
-[[obstacle.prediction]]
-weight = 0.25
-lateral_speed = 0.6
-"""
 
 DOCUMENTS = [
     ("findings", ["check", "WRONG", "--output-format", "json"]),
@@ -121,7 +91,7 @@ def run(tmp_path, monkeypatch, capfdbinary):
         "FAILING": ("failing.rules", WRONG_EXAMPLE),
         "BROKEN": ("broken.jsonl", BROKEN),
         "PAST": ("past.jsonl", PAST),
-        "KERB": ("kerb.toml", KERB),
+        "KERB": ("kerb.toml", CHILD_AT_THE_KERB),
     }
     paths = {name: tmp_path / file for name, (file, _) in files.items()}
     for name, (_, text) in files.items():

@@ -9,7 +9,7 @@ import numpy as np
 
 from rulec.extraction.signals.intention_signals import intention_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
-from support.builders.drive_contexts import context_of, steady
+from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
@@ -36,26 +36,6 @@ def crossroads():
     ]
 
 
-def along(number, line, way, kind="car", lamps=None, shows=INDICATORS):
-    """A vehicle so far along a line at each step; ``lamps``: step -> what is lit."""
-    steps = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
-    place, ahead = (
-        [np.interp(way + more, steps, line[:, axis]) for axis in (0, 1)] for more in (0.0, 0.1)
-    )
-    heading = np.arctan2(ahead[1] - place[1], ahead[0] - place[0])
-    bodies = [
-        vehicle(number, {k: (place[0][k], place[1][k])}, kind, heading=heading[k])
-        for k in range(len(way))
-    ]
-    return replace(
-        bodies[0],
-        states={k: body.states[k] for k, body in enumerate(bodies)},
-        outlines={k: body.outlines[k] for k, body in enumerate(bodies)},
-        lamps={} if lamps is None else {k: frozenset(lamps.get(k, ())) for k in range(len(way))},
-        shows=frozenset(shows) if lamps is not None else frozenset(),
-    )
-
-
 def told(word, road, *bodies, side="right", complete=(), route=("1", "2", "5")):
     """A word's rows of those beside ego, or its values, with "?" where it is unknown."""
     found = replace(recording(road, bodies, step_s=0.5), complete=frozenset(complete))
@@ -78,7 +58,10 @@ def other(turn, lamps=None, way=WAY):
     line = {"left": LEFT_TURN, "right": RIGHT_TURN, "on": np.array([(100.0, 0.0), (130.0, 0.0)])}
     ends = {"left": (114.0, 200.0), "right": (114.0, -200.0), "on": (300.0, 0.0)}
     points = np.concatenate(([(-50.0, 0.0)], line[turn], [ends[turn]]))
-    return along(8, points, way, lamps=lamps)
+    if lamps is None:
+        return along(8, points, way)
+    shown = {k: frozenset(lamps.get(k, ())) for k in range(len(way))}
+    return along(8, points, way, lamps=shown, shows=frozenset(INDICATORS))
 
 
 def lit(lamp, first=0, last=STEPS):

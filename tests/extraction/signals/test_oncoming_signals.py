@@ -17,8 +17,8 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.scenario.recorded.recording import Light, Recording
 from rulec.scenario.sumo.lanelets import net_lanelets
 from rulec.scenario.sumo.net import read_net
-from support.builders.drive_contexts import context_of
-from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.builders.drive_contexts import along, context_of
+from support.builders.recordings import lanelet, recording, straight
 
 NETS = sorted((Path(__file__).parents[2] / "worlds/stored").glob("*.net.xml"))
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
@@ -50,21 +50,6 @@ def crossroads(entry=None, its_entry=None):
         lanelet(10, [(-2, -8), (-2, -90)], predecessors=(8,)),
         straight(11, 8, 90, -2, predecessors=(9,)),
     ]
-
-
-def along(number, line, way, kind="car"):
-    """A vehicle whose middle is so far along a line at each step."""
-    steps = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
-    place = [np.interp(way, steps, line[:, axis]) for axis in (0, 1)]
-    ahead = [np.interp(way + 0.1, steps, line[:, axis]) for axis in (0, 1)]
-    heading = np.arctan2(ahead[1] - place[1], ahead[0] - place[0])
-    bodies = [
-        vehicle(number, {k: (place[0][k], place[1][k])}, kind, heading=heading[k])
-        for k in range(len(way))
-    ]
-    states = {k: body.states[k] for k, body in enumerate(bodies)}
-    outlines = {k: body.outlines[k] for k, body in enumerate(bodies)}
-    return replace(bodies[0], states=states, outlines=outlines)
 
 
 TIMES = np.arange(0, 14, STEP_S)

@@ -14,7 +14,7 @@ from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.rings import ring_lanelets
-from support.builders.drive_contexts import context_of
+from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 RADIUS_M, STEP_S = 15.0, 0.25
@@ -165,24 +165,6 @@ ENTERING = np.concatenate(
     ([(-90.0, -4.0)], ENTRY, around(200, 340), turned(EXIT, -180), turned([(-90, 4)], -180))
 )
 CIRCLING = np.concatenate((turned([(-90, -4)], -90), turned(ENTRY, -90), around(110, 470, 200)))
-
-
-def along(number, line, way, kind="car"):
-    """A vehicle whose middle is so far along a line at each step."""
-    steps = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
-    place, ahead = (
-        [np.interp(way + more, steps, line[:, axis]) for axis in (0, 1)] for more in (0.0, 0.1)
-    )
-    heading = np.arctan2(ahead[1] - place[1], ahead[0] - place[0])
-    bodies = [
-        vehicle(number, {k: (place[0][k], place[1][k])}, kind, heading=heading[k])
-        for k in range(len(way))
-    ]
-    return replace(
-        bodies[0],
-        states={k: body.states[k] for k, body in enumerate(bodies)},
-        outlines={k: body.outlines[k] for k, body in enumerate(bodies)},
-    )
 
 
 # At 6 m/s: the middle is at the entry, 60 m along, at 3 s, and on the ring, 81 m along, at 6.5 s

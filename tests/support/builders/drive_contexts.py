@@ -44,3 +44,20 @@ def steady(number, x, y, speed=10.0, steps=4, first=0, step_s=0.5, **more):
     heading = more.pop("heading", 0.0 if speed >= 0 else float(np.pi))
     places = {first + k: (x + speed * step_s * k, y) for k in range(steps)}
     return vehicle(number, places, speed=abs(speed), heading=heading, **more)
+
+
+def along(number, line, way, kind="car", **more):
+    """A vehicle whose middle is so far along a line of places at each step; heads where it goes."""
+    steps = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
+    place, ahead = (
+        [np.interp(way + further, steps, line[:, axis]) for axis in (0, 1)]
+        for further in (0.0, 0.1)
+    )
+    heading = np.arctan2(ahead[1] - place[1], ahead[0] - place[0])
+    bodies = [
+        vehicle(number, {k: (place[0][k], place[1][k])}, kind, heading=heading[k])
+        for k in range(len(way))
+    ]
+    states = {k: body.states[k] for k, body in enumerate(bodies)}
+    outlines = {k: body.outlines[k] for k, body in enumerate(bodies)}
+    return replace(bodies[0], states=states, outlines=outlines, **more)
