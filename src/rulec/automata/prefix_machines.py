@@ -43,7 +43,8 @@ def prefix_machines(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine |
     jobs = [job for rule in missing for job in _jobs(rule, rulebook)]
     answers = iter(answers_to(jobs)[0] if jobs else ())
     for rule in missing:
-        own, finite = [_table(next(answers)) for _ in range(2)]
+        own = _table(next(answers)) if _looks_back(rule) else rule.machine
+        finite = own if rulebook.semantics == "finite" else _table(next(answers))
         _KNOWN[keys[rule.name]] = None if own is None or finite is None else _machine(own, finite)
     return {name: _KNOWN[key] for name, key in keys.items()}
 
@@ -53,20 +54,28 @@ def _key(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[object, ...]:
     return rule.formula, rule.machine.reads, rule.step_s, rule.variables, rulebook.semantics, axioms
 
 
+def _looks_back(rule: CompiledRule) -> bool:
+    return any(operation.operator in PAST for operation in operations_of(rule.formula))
+
+
 def _jobs(rule: CompiledRule, rulebook: CompiledRulebook) -> Iterator[Job]:
-    """What continuations decide, and what the word alone does."""
+    """What continuations decide, and what the word alone does.
+
+    The first is the rule's own machine if it does not look back; both are one if words end.
+    """
     formula = rule.formula if rule.step_s is None else in_steps(rule.formula, rule.step_s)
     reads = rule.machine.reads
     facts = [Axiom(axiom.variables, axiom.formula) for axiom in rulebook.axioms]
     instances = axiom_instances(rule.variables, facts, rulebook.vocabulary)
-    if any(operation.operator in PAST for operation in operations_of(formula)):
+    wanted: list[Semantics] = [] if rulebook.semantics == "finite" else ["finite"]
+    if _looks_back(rule):
+        wanted.insert(0, rulebook.semantics)
         before = ltl.Unary(ltl.UnaryOperator.NOT, _BEGUN)
         begun = ltl.Binary(ltl.BinaryOperator.AND, _BEGUN, formula)
         formula = ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, before, begun)
         reads = (*reads, Read(_BEGUN.name, ()))
     groups = axiom_groups(propositions_of(formula), instances, rulebook.vocabulary)
-    finite: Semantics = "finite"
-    for semantics in (rulebook.semantics, finite):
+    for semantics in wanted:
         yield Job(
             rule.name,
             formula,

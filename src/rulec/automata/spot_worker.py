@@ -43,10 +43,11 @@ def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> boo
     n_words = max(FEWEST_WORDS, min(MOST_WORDS, affordable))
     for _ in range(n_words):
         numbers = list(_word(chance, possible, bounds))
-        word = [
-            frozenset(proposition for proposition, letters in sets.items() if letters >> number & 1)
-            for number in numbers
-        ]
+        letters = {
+            number: frozenset([each for each, true_in in sets.items() if true_in >> number & 1])
+            for number in set(numbers)
+        }
+        word = [letters[number] for number in numbers]
         if verdict(machine, numbers) != holds(formula, word, semantics):
             return False
     return True

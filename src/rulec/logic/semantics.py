@@ -39,16 +39,16 @@ def truth_values(
 
     Raises ValueError as ``holds`` does.
     """
-    known = extended_values(formula, word, semantics)
-    return known[formula][: len(word)]
+    parts = _extended(formula, word, semantics)
+    return parts[id(formula)][1][: len(word)]
 
 
 def values_of_parts(
     formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> dict[ltl.Formula, list[bool]]:
     """Truth values of the formula and of every part. Raises ValueError as ``holds`` does."""
-    known = extended_values(formula, word, semantics)
-    return {part: values[: len(word)] for part, values in known.items()}
+    parts = extended_values(formula, word, semantics)
+    return {part: values[: len(word)] for part, values in parts.items()}
 
 
 def extended_values(
@@ -58,13 +58,21 @@ def extended_values(
 
     Operands come before what they are operands of.
     """
+    return dict(_extended(formula, word, semantics).values())
+
+
+_Parts = dict[int, tuple[ltl.Formula, list[bool]]]
+"""Parts and their values by identity: to hash a formula takes longer than to evaluate it."""
+
+
+def _extended(formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics) -> _Parts:
     if not word:
         raise ValueError("an empty word has no last letter")
     ends = semantics == "finite"
     settling = [] if ends else [word[-1]] * steps_to_settle(formula)
-    known: dict[ltl.Formula, list[bool]] = {}
-    _evaluate(formula, [*word, *settling], ends, known)
-    return known
+    parts: _Parts = {}
+    _evaluate(formula, [*word, *settling], ends, parts)
+    return parts
 
 
 def steps_to_settle(formula: ltl.Formula) -> int:
@@ -90,30 +98,31 @@ def _carried(span: Range) -> int:
 
 
 def _evaluate(
-    formula: ltl.Formula, word: Sequence[Letter], ends: bool, known: dict[ltl.Formula, list[bool]]
+    formula: ltl.Formula, word: Sequence[Letter], ends: bool, parts: _Parts
 ) -> list[bool]:
     """Truth values on a word that ends, or repeats its last letter.
 
     In the second case it goes on like its last instant for ever.
     """
-    result = known.get(formula)
-    if result is not None:
-        return result
+    if id(formula) in parts:
+        return parts[id(formula)][1]
     match formula:
         case ltl.Atom() | ltl.Comparison():
-            values = [formula in letter for letter in word]
+            letters = {id(letter): letter for letter in word}
+            true = {key: formula in letter for key, letter in letters.items()}
+            values = [true[id(letter)] for letter in word]
         case ltl.Same():
             raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
         case ltl.Constant(value):
             values = [value] * len(word)
         case ltl.Unary(operator, operand):
-            inner = _evaluate(operand, word, ends, known)
+            inner = _evaluate(operand, word, ends, parts)
             values = _unary(operator, inner, range_of(formula), ends)
         case ltl.Binary(operator, left, right):
-            first = _evaluate(left, word, ends, known)
-            second = _evaluate(right, word, ends, known)
+            first = _evaluate(left, word, ends, parts)
+            second = _evaluate(right, word, ends, parts)
             values = _binary(operator, first, second, range_of(formula), ends)
-    known[formula] = values
+    parts[id(formula)] = formula, values
     return values
 
 
