@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 
 from rulec.automata.outcome_machine import KEPT, OutcomeRange, SetMonitor
 from rulec.monitoring.uncertainty.letter_classes import LetterClasses, Letters
@@ -85,27 +85,30 @@ class Dependence:
     ) -> bool:
         """Whether words that have the same digits of fixed reads come to the same."""
         ways: set[tuple[int | None, ...]] = {(start,) * len(group)}
-        last = len(group[0].letters) - 1
-        for index in range(last + 1):
-            options = [self._classes.groups(x.letters[index], fixed) for x in group]
+        before: tuple[Letters, ...] = ()
+        settled = agree = False
+        for letters in zip(*(alternative.letters for alternative in group), strict=True):
+            # In most recordings most states have the letters of the one before.
+            if settled and letters == before:
+                continue
+            options = [self._classes.groups(own, fixed) for own in letters]
             parts = dict.fromkeys(part for option in options for part in option)
             after: set[tuple[int | None, ...]] = set()
-            for way in ways:
-                for part in parts:
-                    steps = [
-                        None
-                        if here is None or part not in option
-                        else self._monitor.step(here, option[part])
-                        for here, option in zip(way, options, strict=True)
-                    ]
-                    if index == last and not _is_one([step for step in steps if step]):
-                        return False
-                    if any(steps):
-                        after.add(tuple([None if x is None else x.states for x in steps]))
-            ways = after
-            if len(ways) > MOST_WAYS:
+            agree = True
+            for way, part in product(ways, parts):
+                steps = [
+                    None
+                    if here is None or part not in option
+                    else self._monitor.step(here, option[part])
+                    for here, option in zip(way, options, strict=True)
+                ]
+                agree = agree and _is_one([step for step in steps if step])
+                if any(steps):
+                    after.add(tuple([None if x is None else x.states for x in steps]))
+            if len(after) > MOST_WAYS:
                 return False
-        return True
+            settled, ways, before = after == ways, after, letters
+        return agree
 
 
 def _is_one(steps: Sequence[OutcomeRange]) -> bool:
