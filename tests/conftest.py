@@ -11,7 +11,7 @@ from support.snapshots import Snapshots
 # long one looks for new ones.
 settings.register_profile(
     "quick",
-    max_examples=60,
+    max_examples=50,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.too_slow],
