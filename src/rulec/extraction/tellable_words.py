@@ -25,6 +25,7 @@ _EITHER = frozenset(
             "lanes",
         ),
         *("lateral", "lateral_gap", "light", "limit", "marked_lanes", "merged", "narrowing"),
+        "near_lane_is_free",
         *("needs_access", "obstructed", "on_call", "on_priority_road", "on_solid_line"),
         *("oncoming", "oncoming_clear", "one_way", "other_in_junction", "other_lane_available"),
         *("other_road_ends", "overtaking", "own_road_ends", "parked", "position", "precedes"),

@@ -189,3 +189,27 @@ def test_a_drive_of_one_state():
     found = signals(two_ways(), ego(mps=20, steps=1))
     assert found["oncoming_clear"] in (["?"], ["True"])
     assert found["obstructed"] == ["False"]
+
+
+@pytest.mark.parametrize(
+    ("ahead", "behind", "free"),
+    [
+        (None, None, True),
+        # 10 m at 10 m/s, if the other one is as fast; (100 - 64) / 16 m more if it is slower
+        ((15.0, 10.0), None, True),
+        ((13.0, 10.0), None, False),
+        ((15.0, 8.0), None, False),
+        # 12 m and (144 - 100) / 16 m for one behind at 12 m/s
+        (None, (-19.0, 12.0), True),
+        (None, (-18.0, 12.0), False),
+        (None, (0.0, 10.0), False),
+    ],
+)
+def test_a_place_in_the_near_lane(ahead, behind, free):
+    """Ego's middle is at y = 4, in the left one of two lanes."""
+    lanes = [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
+    places = [(number, *at) for number, at in ((8, ahead), (9, behind)) if at]
+    others = [steady(number, 100 + x, 0, mps) for number, x, mps in places]
+    assert signals(lanes, ego(100, y=4), *others)["near_lane_is_free"][0] == str(free)
+    # At the kerb nothing keeps it away
+    assert signals(lanes, ego(100), *others)["near_lane_is_free"][0] == "True"

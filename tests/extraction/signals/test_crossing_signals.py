@@ -99,3 +99,46 @@ def test_vehicles_that_stand_before_the_crossing_have_stopped_for_a_pedestrian()
     assert not stopped(57)
     assert not stopped(55, speed=2)
     assert not stopped(50, walks=False)
+
+
+def over_the_crossing(comes_s, front=30.0, speed=10.0, states=50):
+    """Uses by time of one that walks up from the right and is on the lane after so many seconds."""
+    step_s = 0.1
+    walker = {k: (60, -2.2 - 1.5 * (comes_s - step_s * k)) for k in range(states)}
+    people = [
+        steady(7, front - 2, 0, speed=speed, steps=states, step_s=step_s),
+        vehicle(8, walker, "pedestrian", length=0.4, width=0.4),
+    ]
+    signals = crossing_signals(context_of(recording([*lanes(1), ZEBRA], people, step_s=step_s)))
+    uses = signals.about["crossing_use"][0]
+    return uses, signals.unknown["crossing_use"][0]
+
+
+def test_who_comes_when_ego_can_still_wait_is_let_across():
+    # Ego gets to the crossing at 2.8 s and stops within 100 / 16 = 6.25 m, so until 2.2 s it can
+    uses, unknown = over_the_crossing(3.5)
+    assert uses[13] == "not_crossing"
+    assert uses[16] == "about_to_cross"
+    assert uses[30] == "entering_crossing"
+    assert not unknown.any()
+
+
+def test_who_comes_when_ego_cannot_wait_any_more_is_not():
+    # About to cross from 2.9 s on: ego has been on the crossing since 2.8 s
+    uses, unknown = over_the_crossing(4.9)
+    assert set(uses) == {"not_crossing"}
+    assert not unknown.any()
+    # Who stands on the crossing could wait, as long as the other one is ahead
+    uses, _ = over_the_crossing(4.9, front=59.0, speed=0.0)
+    assert uses[40] == "about_to_cross"
+
+
+def test_who_is_about_to_cross_when_first_seen_may_have_come_just_then():
+    # At 10 m/s; half a second earlier it would have stopped 0.35 m too far
+    uses, unknown = over_the_crossing(1.5, front=58.9, states=5)
+    assert set(uses) == {"about_to_cross"}
+    assert unknown.all()
+    # Who is on it has come up to it for 2 s, since ego was 20 m before
+    uses, unknown = over_the_crossing(-0.5, front=58.9, states=5)
+    assert set(uses) == {"on_crossing"}
+    assert not unknown.any()

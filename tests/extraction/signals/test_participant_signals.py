@@ -1,5 +1,7 @@
 """Signals of other participants, measured against ego on a straight road of two lanes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -130,3 +132,33 @@ def test_who_goes_across_the_road(along, across, goes):
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     context = context_of(recording(lanes(2), [steady(7, 0, 0, steps=3), walker]))
     assert participant_signals(context).about["goes_across"][0].tolist() == [goes] * 3
+
+
+@pytest.mark.parametrize(
+    ("ways", "goes"),
+    [
+        # Each tenth of a second: across, then still
+        ([(0, 0.15)] * 8 + [(0, 0)] * 22, True),
+        # Pushed 1 m along the road at once, and back again, while it crosses
+        ([(0, 0.15)] * 8 + [(1, 0)] + [(0, 0)] * 9 + [(-1, 0)] + [(0, 0)] * 11, True),
+        # Across, then along the road for 1.5 s
+        ([(0, 0.15)] * 8 + [(0.15, 0)] * 15, False),
+        # Along the road, then still
+        ([(0.15, 0)] * 15 + [(0, 0)] * 15, False),
+        # Off the road on the other side of its lane of 4 m, then still
+        ([(0, 0.15)] * 24 + [(0, 0)] * 15, False),
+    ],
+)
+def test_who_crosses_goes_on_crossing(ways, goes):
+    x, y = np.cumsum([(30.0, -1.0), *ways], axis=0).T
+    walker = vehicle(
+        8, dict(enumerate(zip(x, y, strict=True))), "pedestrian", length=0.4, width=0.4
+    )
+    ego = steady(7, 0, 0, steps=len(x), step_s=0.1)
+    context = context_of(recording(lanes(1), [ego, walker], step_s=0.1))
+    told = participant_signals(context).about["goes_across"][0]
+    assert told[-1] == goes
+    # A car that has crossed and stands blocks the way: it does not cross any more
+    car = replace(walker, type="car")
+    context = context_of(recording(lanes(1), [ego, car], step_s=0.1))
+    assert not participant_signals(context).about["goes_across"][0, -1]

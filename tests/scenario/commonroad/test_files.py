@@ -9,6 +9,7 @@ import pytest
 from rulec.diagnostics import RulecError
 from rulec.scenario import Choice, ConstantAcceleration, load_scenario
 from rulec.scenario.commonroad import required_elements
+from rulec.scenario.scenario_files import read_recording
 from support.builders.recordings import ROAD_XML
 
 pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
@@ -53,6 +54,17 @@ def test_standing_obstacles_in_the_old_spelling(written):
     text = ROAD_XML.replace("dynamic", "static").replace(">car<", ">parkedVehicle<")
     (parked,) = load_scenario(written(text)).obstacles
     assert (parked.type, parked.motion.speed) == ("vehicle", 0)
+
+
+AT_THE_END = "<point><x>99</x><y>2</y></point><point><x>99</x><y>-2</y></point>"
+
+
+@pytest.mark.parametrize("places", ["", AT_THE_END], ids=["no place", "at the lanelet's end"])
+def test_a_stop_line_is_where_the_file_has_drawn_it(written, places):
+    line = f"<stopLine>{places}<lineMarking>solid</lineMarking></stopLine>"
+    found = read_recording(written(ROAD_XML.replace("</rightBound>", f"</rightBound>{line}", 1)))
+    drawn = found.lanelets["1"].stop_line
+    assert drawn is None if not places else drawn.tolist() == [[99, 2], [99, -2]]
 
 
 def test_areas_and_intervals_are_taken_whole(written):

@@ -8,6 +8,7 @@ from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.scenario.recorded.recording import Side
 
 _BESIDE_M = 0.5
 """A vehicle needs so much more room than it is wide."""
@@ -24,6 +25,7 @@ def clearance_signals(context: DriveContext) -> SignalColumns:
         "obstructed": _obstructed(context),
         "needs_access": access,
         "other_lane_available": _far_lane_is_free(context),
+        "near_lane_is_free": _near_lane_is_free(context),
     }
     return SignalColumns(
         world,
@@ -33,9 +35,9 @@ def clearance_signals(context: DriveContext) -> SignalColumns:
     )
 
 
-def _far_lane(context: DriveContext) -> tuple[relations.Codes, Flags]:
-    """The lane at ego's far side, and where there is one that goes ego's way."""
-    lane = context.ego_lane + (1 if context.side == "right" else -1)
+def _next_lane(context: DriveContext, side: Side) -> tuple[relations.Codes, Flags]:
+    """The lane at a side of ego, and where there is one that goes ego's way."""
+    lane = context.ego_lane + (1 if side == "left" else -1)
     count = context.existing_lanes.shape[1]
     inside = (lane >= 0) & (lane < count)
     lane = np.clip(lane, 0, count - 1)
@@ -144,15 +146,31 @@ def _needs_access(context: DriveContext) -> tuple[Flags, Flags]:
 
 def _far_lane_is_free(context: DriveContext) -> Flags:
     """Flags of states in which nobody is in, or soon in, the place beside ego on the next lane."""
-    lane, there = _far_lane(context)
-    beside = np.take_along_axis(context.touched, lane[None, :, None], axis=2)[..., 0]
+    beside, there = _on_next_lane(context, "left" if context.side == "right" else "right")
     gap, station = relations.gap(context), relations.station(context)
     closing = np.maximum(context.extents.along - context.ego_extents.along, 0.0)
     near = gap <= closing * context.thresholds.passed_s + _OBSTACLE_M / 3
-    taken = (
-        beside
-        & context.going_along
-        & ((station == relations.BESIDE) | ((station == relations.IN_FRONT_OF) & near))
-    )
+    taken = beside & ((station == relations.BESIDE) | ((station == relations.IN_FRONT_OF) & near))
     free: Flags = there & ~np.any(taken, axis=0)
     return free
+
+
+def _near_lane_is_free(context: DriveContext) -> Flags:
+    """Flags of states in which ego, in the next lane to the kerb, would be at safe distances."""
+    limits = context.thresholds
+    inside, there = _on_next_lane(context, context.side)
+    station, gap = relations.station(context), relations.gap(context)
+    own, other = (np.maximum(x.along, 0.0) for x in (context.ego_extents, context.extents))
+    leads = station == relations.BEHIND
+    behind, ahead = np.where(leads, own, other), np.where(leads, other, own)
+    safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * limits.braking_mps2)
+    taken = inside & ((station == relations.BESIDE) | (gap < safe))
+    free: Flags = ~there | ~taken.any(axis=0)
+    return free
+
+
+def _on_next_lane(context: DriveContext, side: Side) -> tuple[Flags, Flags]:
+    """Flags of those who go ego's way on the lane at a side of it, and where there is one."""
+    lane, there = _next_lane(context, side)
+    on_it = np.take_along_axis(context.touched, lane[None, :, None], axis=2)[..., 0]
+    return on_it & context.going_along, there

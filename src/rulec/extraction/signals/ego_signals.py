@@ -32,6 +32,7 @@ def ego_signals(context: DriveContext) -> SignalColumns:
     gained, wrong = context.ego.acceleration[0], context.ego.acceleration_error[0]
     existing, slow = context.existing_lanes, limits.stops_at_once_kmh / KMH
     straddling, unsure = _straddling(context)
+    lane = _from_kerb(context, context.steady_lane)
     return SignalColumns(
         {
             "ego_type": np.full(count, _EGO_TYPES.get(participant.type, "ego_car")),
@@ -40,7 +41,7 @@ def ego_signals(context: DriveContext) -> SignalColumns:
             "accelerating": gained > limits.accelerating_mps2,
             "braking_hard": gained < -limits.braking_hard_mps2,
             "can_stop_at_once": speed <= slow,
-            "lane": named_values(_from_kerb(context), _LANES),
+            "lane": named_values(lane, _LANES),
             "lanes": named_values(np.clip(existing.sum(axis=1) - 1, 0, 2), _COUNTS),
             "straddling": straddling,
             "lane_position": named_values(_place_in_lane(context), _PLACES),
@@ -50,14 +51,15 @@ def ego_signals(context: DriveContext) -> SignalColumns:
             "braking_hard": abs(gained + limits.braking_hard_mps2) < wrong,
             "can_stop_at_once": abs(speed - slow) < error,
             "straddling": unsure,
+            "lane": lane != _from_kerb(context, context.ego_lane),
         },
         bounds={"speed": speed_bounds(context)},
     )
 
 
-def _from_kerb(context: DriveContext) -> NDArray[intp]:
-    """Indices into ``_LANES``: 0 at the kerb, 2 farthest, 1 between."""
-    lane, existing = context.steady_lane, context.existing_lanes
+def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
+    """Indices into ``_LANES`` of lanes by state: 0 at the kerb, 2 farthest, 1 between."""
+    existing = context.existing_lanes
     state = np.arange(len(lane))
     right: NDArray[intp] = np.cumsum(existing, axis=1)[state, lane] - existing[state, lane]
     count = existing.sum(axis=1)

@@ -14,7 +14,7 @@ from rulec.extraction.signals.measured_numbers import (
     safe_distance,
     safe_distance_error,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns, named_values, rounded
+from rulec.extraction.signals.signal_columns import SignalColumns, latest, named_values, rounded
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.partition.cells.regions import LATERALS, STATIONS
 
@@ -80,9 +80,25 @@ def is_oncoming(context: DriveContext) -> Flags:
 
 
 def _goes_across(context: DriveContext) -> Flags:
-    """Flags of participants that move across the road, more than along it."""
+    """Flags of participants that move across the road, more than along it.
+
+    Who walks or rides across goes on doing so, though it stops or somebody runs into it, until it
+    leaves the road or moves along it.
+    """
+    least, step_s = context.thresholds.standing_kmh / KMH, context.recording.step_s
     along, across = np.abs(context.extents.along), np.abs(context.extents.across)
-    goes: Flags = (across * KMH >= context.thresholds.standing_kmh) & (across > along)
+    moves: Flags = (across >= least) & (across > along)
+    # Step by step: in means over a second a blow that moves a body at once lasts as long
+    s, w = (
+        np.abs(np.diff(x, axis=1, prepend=np.nan)) for x in (context.extents.s, context.extents.w)
+    )
+    turns = (s >= least * step_s) & (s > w)
+    steps = max(round(context.thresholds.smoothing_s / step_s), 1)
+    sums = np.pad(np.cumsum(turns, axis=1), ((0, 0), (steps, 0)))
+    mostly = 2 * (sums[:, steps:] - sums[:, :-steps]) > steps
+    vulnerable = np.array(context.tracks.of_type("vulnerable_user"), dtype=bool)[:, None]
+    goes_on = latest(moves) > latest(mostly | ~context.tracks.on_lane)
+    goes: Flags = moves | (goes_on & vulnerable)
     return goes
 
 

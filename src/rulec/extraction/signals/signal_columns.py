@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, TypeAlias
 
 import numpy as np
+from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.tracks import Flags
@@ -39,6 +40,12 @@ class SignalColumns:
 def named_values(codes: SignalColumn, names: Sequence[str]) -> SignalColumn:
     """The names that indices stand for."""
     return np.array(names)[codes]
+
+
+def latest(flags: Flags) -> NDArray[intp]:
+    """The last state up to each in which a flag holds, -1 if there is none."""
+    states = np.where(flags, np.arange(flags.shape[-1]), -1)
+    return np.maximum.accumulate(states, axis=-1)
 
 
 def rounded(values: SignalColumn) -> SignalColumn:

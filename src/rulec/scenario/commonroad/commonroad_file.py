@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import logging
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from math import inf
 from pathlib import Path
@@ -26,7 +26,7 @@ from rulec.scenario.commonroad.commonroad_participants import (
 from rulec.scenario.commonroad.commonroad_surroundings import (
     commonroad_junctions,
     commonroad_weather,
-    drawn_stop_line,
+    stop_line,
 )
 from rulec.scenario.commonroad.required_elements import COMMONROAD, check_form
 from rulec.scenario.recorded import recording
@@ -66,12 +66,12 @@ def read_commonroad(path: Path) -> recording.Recording:
     Raises RulecError R0610 for a file that cannot be read as CommonRoad, R0611 without the library,
     R0701 if the file cannot be opened.
     """
-    check_form(path)
+    drawn = check_form(path)
     with _quiet():
         reader = _library(path)
         try:
             scenario, problems = reader(path).open()
-            return with_neighbours(_recording(path.stem, scenario, problems))
+            return with_neighbours(_recording(path.stem, scenario, problems, drawn))
         except (OSError, MemoryError, RulecError):
             raise
         except Exception as reason:  # the library has no exception of its own
@@ -115,7 +115,8 @@ def _unreadable(path: Path, reason: Exception) -> RulecError:
     return COMMONROAD.refused(path, why)
 
 
-def _recording(name: str, scenario: Any, problems: Any) -> recording.Recording:
+def _recording(name: str, scenario: Any, problems: Any, drawn: Set[str]) -> recording.Recording:
+    """``drawn`` are the lanelets whose stop lines have a place in the file."""
     signs = {sign.traffic_sign_id: sign for sign in scenario.lanelet_network.traffic_signs}
     lights = {
         light.traffic_light_id: _light(light.traffic_light_cycle)
@@ -125,7 +126,7 @@ def _recording(name: str, scenario: Any, problems: Any) -> recording.Recording:
     junctions = commonroad_junctions(scenario.lanelet_network)
     lanelets = {
         str(lanelet.lanelet_id): _lanelet(
-            lanelet, signs, lights, junctions.get(lanelet.lanelet_id, "")
+            lanelet, signs, lights, junctions.get(lanelet.lanelet_id, ""), drawn
         )
         for lanelet in scenario.lanelet_network.lanelets
     }
@@ -155,7 +156,11 @@ def _light(cycle: Any) -> recording.Light:
 
 
 def _lanelet(
-    lanelet: Any, signs: Mapping[int, Any], lights: Mapping[int, recording.Light], junction: str
+    lanelet: Any,
+    signs: Mapping[int, Any],
+    lights: Mapping[int, recording.Light],
+    junction: str,
+    drawn: Set[str],
 ) -> recording.Lanelet:
     elements = [
         element
@@ -184,7 +189,7 @@ def _lanelet(
         lights=tuple(lights[i] for i in sorted(lanelet.traffic_lights or ()) if i in lights),
         left_mark=_MARKS.get(lanelet.line_marking_left_vertices.value),
         right_mark=_MARKS.get(lanelet.line_marking_right_vertices.value),
-        stop_line=drawn_stop_line(lanelet),
+        stop_line=stop_line(lanelet) if str(lanelet.lanelet_id) in drawn else None,
         junction=junction,
     )
 

@@ -13,7 +13,6 @@ from rulec.scenario.recorded import recording
 _WET = frozenset({"light_rain", "mid_rain", "heavy_rain", "hail"})
 _DRY = frozenset({"clear", "cloudy"})
 _FAR_M = 1000.0
-_HAIR_M = 0.01
 _ACUTE = 0.5
 
 
@@ -72,18 +71,12 @@ def _direction(line: shapely.LineString, place: shapely.Point) -> float:
     return float(np.arctan2(after.y - before.y, after.x - before.x))
 
 
-def drawn_stop_line(lanelet: Any) -> recording.Points | None:
-    """The ends of a stop line that has a place of its own.
-
-    One without a place is somewhere near the lanelet's end, where the library puts it.
-    """
+def stop_line(lanelet: Any) -> recording.Points | None:
+    """The ends of a stop line; the library puts one without a place at the lanelet's end."""
     line = lanelet.stop_line
     if line is None or line.start is None or line.end is None:
         return None
-    ends = np.array([line.start[:2], line.end[:2]], dtype=float)
-    last = np.array([lanelet.left_vertices[-1][:2], lanelet.right_vertices[-1][:2]], dtype=float)
-    placed = min(np.abs(ends - last).max(), np.abs(ends[::-1] - last).max()) > _HAIR_M
-    return ends if placed else None
+    return np.array([line.start[:2], line.end[:2]], dtype=float)
 
 
 def commonroad_weather(environment: Any) -> recording.Weather:

@@ -40,13 +40,15 @@ _CHILDREN: Mapping[str, tuple[str, ...]] = {
 _FEWEST_POINTS = {"leftBound": 2, "rightBound": 2}
 
 
-def check_form(path: Path) -> None:
+def check_form(path: Path) -> frozenset[str]:
     """Check that a file is well-formed XML with CommonRoad's required elements.
 
-    Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
+    Returns the ids of lanelets whose stop lines have a place: the library gives others one. Raises
+    RulecError R0610 for a file that is none, R0701 for one that cannot be read.
     """
     # Name, line and children so far of the elements that have begun
     open_elements: list[tuple[str, int, list[str]]] = []
+    lanelets, drawn = [""], set[str]()
 
     def begin(element: XmlElement) -> None:
         name, line = element.name, element.parser.CurrentLineNumber
@@ -59,6 +61,8 @@ def check_form(path: Path) -> None:
         for attribute in _ATTRIBUTES.get(name, ()):
             if attribute not in element.attributes and not is_reference:
                 raise element.wrong(f"the element `{name}` has no `{attribute}`")
+        if name == "lanelet" and not is_reference:
+            lanelets.append(element.get("id"))
         if open_elements:
             open_elements[-1][2].append(name)
         open_elements.append((name, line, list(_CHILDREN.get(name, ())) if is_reference else []))
@@ -68,6 +72,8 @@ def check_form(path: Path) -> None:
         for child in _CHILDREN.get(name, ()):
             if child not in children:
                 raise COMMONROAD.refused(path, f"the element `{name}` has no `{child}`", line)
+        if name == "stopLine" and "point" in children:
+            drawn.add(lanelets[-1])
         fewest = _FEWEST_POINTS.get(name, 0)
         if children.count("point") < fewest:
             why = f"the element `{name}` has fewer than {fewest} points"
@@ -76,3 +82,4 @@ def check_form(path: Path) -> None:
     scan(path, COMMONROAD, begin, end=end)
     if is_packed(path):
         raise COMMONROAD.refused(path, "it is packed", help_text="unpack it with `gzip -d`")
+    return frozenset(drawn)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import next_crossing
-from rulec.extraction.signals.signal_columns import SignalColumns, named_values
+from rulec.extraction.signals.signal_columns import SignalColumns, latest, named_values
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
@@ -26,9 +26,11 @@ def crossing_signals(context: DriveContext) -> SignalColumns:
     aside = _crossing_uses(context, _side_road(context), context.tracks.on_lane)
     walkers = context.tracks.of_type("pedestrian")[:, None]
     used = ((uses > 0) & context.relevant & walkers).any(axis=0)
+    too_late, unsure = _too_late(context, uses)
+    own = np.where(_past_ego(context) | too_late, 0, uses)
     return SignalColumns(
         about={
-            "crossing_use": named_values(np.where(_past_ego(context), 0, uses), _USES),
+            "crossing_use": named_values(own, _USES),
             "stopped_for_pedestrian": _stopped(context) & used,
             "crosses_side_road": aside > 0,
         },
@@ -37,6 +39,7 @@ def crossing_signals(context: DriveContext) -> SignalColumns:
             "stopped_for_pedestrian": context.tracks.of_type("vehicle"),
             "crosses_side_road": context.tracks.of_type("pedestrian"),
         },
+        unknown={"crossing_use": unsure & (own > 0)},
     )
 
 
@@ -76,6 +79,29 @@ def _crossing_uses(
     soon = beside & approaches & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
     return np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
+
+
+def _too_late(context: DriveContext, uses: NDArray[intp]) -> tuple[Flags, Flags]:
+    """Flags of who came to use the crossing when ego could not wait any more, and of who may have.
+
+    Ego can where, braking at once, it stops before them or before the crossing. Who leaves off for
+    no longer than ``away_s`` uses it all the time. Who does when first seen may have come just
+    then; who is on the crossing then has been about to cross for ``about_to_s``. Where somebody
+    walks shows late in a mean, by half its time.
+    """
+    limits, used = context.thresholds, uses > 0
+    speed, front = np.maximum(context.ego_extents.along[0], 0.0), context.ego_extents.s_max[0]
+    start, _ = next_crossing(context)
+    longest = round(limits.away_s / context.recording.step_s)
+    off = np.arange(context.states) - latest(used) > longest
+    seen_before = latest(off & context.relevant) >= 0
+    on_it = (uses == len(_USES) - 1) & ~seen_before
+    earlier = np.where(on_it, limits.about_to_s, 0.0) + limits.smoothing_s / 2
+    stop = speed**2 / (2 * limits.braking_mps2) - speed * earlier
+    waits = front + stop <= np.maximum(start, context.extents.s_min)
+    begins = latest(off | np.append(False, start[1:] != start[:-1]))
+    late = used & (latest(used & waits) < np.maximum(begins, 0))
+    return late & seen_before, late & ~seen_before
 
 
 def _towards(context: DriveContext) -> Floats:
