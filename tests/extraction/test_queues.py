@@ -1,8 +1,9 @@
-"""Queues: half of the gaps on a lane are short, by distance or by time."""
+"""Queues: most of the gaps on a lane are short, by distance or by time."""
 
 import pytest
 
 from rulec.extraction.drives import Drives
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.recordings import recording, straight, vehicle
 
 
@@ -22,14 +23,16 @@ def queue_on_the_left(gaps, mps=0.0):
     ("gaps", "mps", "queue"),
     [
         ((19, 19), 0.0, True),
-        ((19, 30), 0.0, True),  # one of two is a half
+        ((19, 30), 0.0, False),  # one of two is no more than a half
         ((30, 30), 0.0, False),
         ((19, 30, 30), 0.0, False),
-        ((5, 30, 5, 30), 0.0, True),
+        ((5, 30, 5, 30), 0.0, False),
+        ((5, 30, 5), 0.0, True),
         ((19,), 0.0, False),  # two cars are no queue
         ((30, 30), 15.5, True),  # 31 m are 2 s
         ((32, 32), 15.5, False),
+        ((31.1, 31.1), 15.5, UNKNOWN),  # speeds are good to 0.1 m/s
     ],
 )
-def test_half_of_the_gaps_are_short(gaps, mps, queue):
+def test_most_of_the_gaps_are_short(gaps, mps, queue):
     assert queue_on_the_left(gaps, mps) is queue

@@ -23,6 +23,8 @@ KMH = 3.6
 _ACROSS = np.pi / 4
 """The angle to the road from which on who comes from another one drives across."""
 
+_ENOUGH_TRACKS = 10
+
 _ONCOMING_COSINE = -0.7
 """The cosine of the angle to the road from which on a vehicle counts as coming towards ego."""
 
@@ -111,6 +113,22 @@ class DriveContext:
         turned = abs(self.extents.turned)
         return self.in_sight & drives & (turned < 1.0) & self.touched.any(axis=-1)
 
+    @cached_property
+    def map_offset_m(self) -> float:
+        """How far (m) left of their lanes' middles those around ego drive, if that is telling.
+
+        The median of ``_ENOUGH_TRACKS`` vehicles or more, 0 up to ``touching_m``. Drivers keep to
+        the middle on the whole: by so much the map may be off the tracks.
+        """
+        middles = np.where(self.driving_along, self.extents.w, np.nan)
+        middles = middles[self.driving_along.any(axis=1)]
+        if len(middles) < _ENOUGH_TRACKS:
+            return 0.0
+        straight, lane = self.road.lanes.straight, self.road.lane_of(np.nan_to_num(middles))
+        away = np.nanmedian(middles - (straight[lane] + straight[lane + 1]) / 2, axis=1)
+        offset = float(np.median(away))
+        return offset if abs(offset) > self.thresholds.touching_m else 0.0
+
     def zero_if_standing(self, speed_kmh: Floats) -> Floats:
         """Speeds (km/h), exactly 0 below the threshold of standing."""
         return speed_kmh * (abs(speed_kmh) >= self.thresholds.standing_kmh)
@@ -150,7 +168,7 @@ def drive_context(
         extents=others,
         relevant=near["relevant"][rows],
         in_sight=near["in_sight"][rows],
-        touched=lanes_touched(others, road, thresholds),
+        touched=lanes_touched(others, road, thresholds.touching_m),
         surroundings=surroundings,
     )
 
@@ -173,7 +191,7 @@ def _near(
     """
     own = extents.of(ego)
     gap = np.maximum(extents.s_min - own.s_max, own.s_min - extents.s_max)
-    on_lanes = lanes_touched(extents, road, thresholds).any(axis=-1)
+    on_lanes = lanes_touched(extents, road, thresholds.touching_m).any(axis=-1)
     straight = road.lanes.straight
     beside = thresholds.beside_road_m
     close = (extents.w_max > straight[0] - beside) & (extents.w_min < straight[-1] + beside)

@@ -56,9 +56,9 @@ def test_whom_nobody_is_ahead_of_is_in_no_queue(complete):
     assert signals.unknown["dense_all_lanes"][0] == (not complete)
 
 
-@pytest.mark.parametrize(("front", "queues"), [(26, True), (30, False)])
+@pytest.mark.parametrize(("front", "queues"), [(25, True), (30, False)])
 def test_who_is_far_behind_the_next_one_leads_too(front, queues):
-    # Vehicles are 4 m long: 22 m of gap are allowed at 11 m/s, and 26 m are not
+    # Vehicles are 4 m long: 21 of 22 m of gap are allowed at 11 m/s, and 26 m are not
     behind = [*line(11, 2, start=-30), *line(11, 3, y=4.0, start=-30, number=30)]
     found = recording(lanes(2), [steady(7, 0, 0, speed=11), steady(9, front, 0, speed=11), *behind])
     signals = flow_signals(context_of(found))
@@ -89,11 +89,35 @@ def test_a_queue_on_the_far_side_is_slow(side, y, route):
     assert not first(*slow, ego=ego, side=wrong, route=route)["far_lane_queue"]
 
 
-def test_in_a_queue_half_of_the_gaps_are_short():
-    # On the far lane: gaps of 6 and 46 m, and then another one of 46 m
+def test_in_a_queue_most_of_the_gaps_are_short():
+    # On the far lane: gaps of 6 and 46 m, and then another one of 6 m
     three = [steady(k, x, 4.0) for k, x in ((8, -50), (9, -40), (10, 10))]
-    assert first(*three)["far_lane_queue"]
-    assert not first(*three, steady(11, 60, 4.0))["far_lane_queue"]
+    assert not first(*three)["far_lane_queue"]
+    assert first(*three, steady(11, 20, 4.0))["far_lane_queue"]
+
+
+@pytest.mark.parametrize(("speed", "overtakes"), [(11, False), (14, True)])
+def test_gaps_as_long_as_in_a_queue_within_tolerance_tell_nothing(speed, overtakes):
+    """At 11 m/s a gap of 22 m is the longest: those of 22.1 m, known to 0.4 m/s, may be as long."""
+    far = [steady(30 + k, 26.1 * k - 3, 4.0, speed=11 if k else speed) for k in range(3)]
+    found = recording(lanes(2), [steady(7, 0, 0, speed=11), *line(11, 2), *far])
+    signals = flow_signals(context_of(found))
+    assert signals.unknown["dense_all_lanes"][0]
+    assert signals.unknown["far_lane_queue"][0]
+    assert signals.unknown["being_overtaken"][0] == overtakes
+
+
+def test_a_lane_between_two_ramps_does_not_decide():
+    """It is 200 m long, and has room for a queue, on which nobody is."""
+    road = [
+        straight(1, -300, 0, successors=("2",)),
+        straight(2, 0, 200, predecessors=("1",), successors=("3",), right_of=4),
+        straight(3, 200, 500, predecessors=("2",)),
+        straight(4, 0, 200, y=-4, left_of=2),
+    ]
+    found = recording(road, [steady(7, 100, 0), *line(10, 2, start=110.0)])
+    dense = flow_signals(context_of(found, ("1", "2", "3"))).world["dense_all_lanes"]
+    assert dense.all()
 
 
 def overtakes(x, speed, y=0.0, **more):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
@@ -69,15 +71,15 @@ def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
 
 def _straddling(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of ego in two lanes, and of states in which that cannot be told."""
-    straight = context.road.lanes.straight
-    reach = context.thresholds.touching_m
-    low, high = context.ego_extents.w_min[0][:, None], context.ego_extents.w_max[0][:, None]
-    inside = np.minimum(high, straight[1:]) - np.maximum(low, straight[:-1])
-    both, surely, perhaps = (
-        ((inside > least) & context.existing_lanes).sum(axis=1) > 1
-        for least in (reach, reach + context.tolerances.place_m, reach - context.tolerances.place_m)
-    )
-    return both, perhaps & ~surely
+    straight, place = context.road.lanes.straight, context.tolerances.place_m
+    both = []
+    for less, shift in ((0.0, 0.0), *product((place, -place), (0.0, context.map_offset_m))):
+        low = context.ego_extents.w_min[0][:, None] - shift
+        high = context.ego_extents.w_max[0][:, None] - shift
+        inside = np.minimum(high, straight[1:]) - np.maximum(low, straight[:-1])
+        least = context.thresholds.touching_m + less
+        both.append(((inside > least) & context.existing_lanes).sum(axis=1) > 1)
+    return both[0], np.any(both, axis=0) & ~np.all(both, axis=0)
 
 
 def _place_in_lane(context: DriveContext) -> NDArray[intp]:

@@ -1,23 +1,26 @@
 """Signals of traffic flow around ego: queues, congestion, overtaking.
 
-All of it counts the vehicles that go ego's way on its lanes, ego among them, not farther away than
-``flow_reach_m``, or than where ``fewest`` vehicles of a queue at ego's speed have room. Queues are
-those of lanes, and a lane's vehicles are those whose middle is in it.
+All of it counts the vehicles that go ego's way on its lanes, ego among them, as queues do.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.queues import (
+    WAYS,
+    close_by,
+    gap_error,
+    lanes_that_decide,
+    longest_gap,
+    queues_by_lane,
+)
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.tracks import Flags, Floats
-
-_BODY_M = 5.0
-"""About how long a vehicle is."""
-
-_HAIR_M = 0.01
 
 
 def flow_signals(context: DriveContext) -> SignalColumns:
@@ -26,40 +29,58 @@ def flow_signals(context: DriveContext) -> SignalColumns:
     speeds, counts = _around(context)
     enough = counts >= limits.fewest
     congested = enough & (speeds < limits.congested_kmh)
-    queues, queue_speeds = _queues(context)
+    queues, queue_speeds = queues_by_lane(context)
     overtakes, unsure, overtaken, open_end = _overtaking(context)
-    decides = context.existing_lanes & (_seen(context) | queues)
-    dense = np.all(queues | ~decides, axis=1) & np.any(decides, axis=1)
-    # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more
-    ahead = _ahead_in_lane(context)
-    near = relations.gap(context) <= _longest_gap(context)
-    cut_off = dense & ~ahead.any(axis=0) & ("light" not in context.recording.complete)
-    dense &= (ahead & near).any(axis=0)
+    dense, surely, not_told = _dense_lines(context, queues)
+    queue, fewer, more = (
+        _beside(context, lanes & (queue_speeds < limits.slow_queue_kmh)) for lanes in queues
+    )
     # Lanes that move off beside each other do not overtake
-    moot = cut_off | _sets_off(context)
+    moot = _sets_off(context) | not_told
     return SignalColumns(
         {
             "congested": congested,
             "CONGESTED": congested,
             "walking_pace_flow": enough & (speeds < limits.walking_pace_kmh),
             "dense_all_lanes": dense,
-            "far_lane_queue": _beside(context, queues & (queue_speeds < limits.slow_queue_kmh)),
+            "far_lane_queue": queue,
             "overtaking": overtakes,
             # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
             "being_overtaken": ~dense & overtaken,
         },
         unknown={
-            "dense_all_lanes": ~np.any(decides, axis=1) | cut_off,
+            "dense_all_lanes": not_told,
+            "far_lane_queue": more & ~fewer,
             "overtaking": unsure & ~overtakes,
-            "being_overtaken": ~dense & np.where(overtaken, moot, open_end),
+            "being_overtaken": ~surely & np.where(overtaken, moot, open_end),
         },
     )
+
+
+def _dense_lines(context: DriveContext, queues: Sequence[Flags]) -> tuple[Flags, Flags, Flags]:
+    """Flags of states with queues on all lanes, surely so, and of those where nobody knows."""
+    counts = lanes_that_decide(context)
+    decides = [context.existing_lanes & (counts | queue) for queue in queues]
+    all_queue = [
+        np.all(queue | ~deciding, axis=1) & np.any(deciding, axis=1)
+        for queue, deciding in zip(queues, decides, strict=True)
+    ]
+    # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more
+    ahead = _ahead_in_lane(context)
+    cut_off = all_queue[-1] & ~ahead.any(axis=0) & ("light" not in context.recording.complete)
+    gap, longest = relations.gap(context), longest_gap(context)
+    wrong = gap_error(context, context.ego.speed_error[0])
+    dense, surely, perhaps = (
+        lines & (ahead & (gap <= longest + way * wrong)).any(axis=0)
+        for lines, way in zip(all_queue, WAYS, strict=True)
+    )
+    return dense, surely, perhaps & ~surely | cut_off | ~np.any(decides[0], axis=1)
 
 
 def _ahead_in_lane(context: DriveContext) -> Flags:
     """Flags of who is ahead of ego in its lane, as far as traffic reaches."""
     own_lane = context.road.lane_of(context.extents.w) == context.ego_lane
-    ahead: Flags = _close(context) & (relations.station(context) == relations.BEHIND) & own_lane
+    ahead: Flags = close_by(context) & (relations.station(context) == relations.BEHIND) & own_lane
     return ahead
 
 
@@ -72,83 +93,11 @@ def _sets_off(context: DriveContext) -> Flags:
     return np.arange(context.states) - stood <= steps
 
 
-def _seen(context: DriveContext) -> Flags:
-    """Flags of lanes (second axis) of which the map has so much that a queue on them would show.
-
-    A lane that is a short acceleration lane here, or of which the map ends soon, has no room for
-    ``fewest`` vehicles at the largest distances of a queue.
-    """
-    lanes, reach = context.road.lanes, _reach(context)
-    places = np.stack([context.ego_extents.s[0] + way * reach for way in (-1, 1)], axis=-1)
-    # How much there is of each lane from the road's beginning to each place
-    sums = np.cumsum(lanes.there * np.diff(lanes.s)[:, None], axis=0)
-    columns = np.concatenate((np.zeros((1, sums.shape[1])), sums)).T
-    seen = np.stack(
-        [np.diff(np.interp(places, lanes.s, column))[:, 0] for column in columns], axis=1
-    )
-    room: Flags = seen >= _shortest_queue(context)[:, None] - _HAIR_M
-    return room
-
-
-def _shortest_queue(context: DriveContext) -> Floats:
-    """How much (m) ``fewest`` vehicles take up at the largest distances of a queue, by state."""
-    length: Floats = context.thresholds.fewest * (_longest_gap(context) + _BODY_M)
-    return length
-
-
-def _longest_gap(context: DriveContext) -> Floats:
-    """The longest gap (m) in a queue at ego's speed, by state."""
-    limits = context.thresholds
-    speed = context.ego_extents.along[0]
-    gap: Floats = np.maximum(limits.queue_gap_m, limits.queue_headway_s * speed)
-    return gap
-
-
-def _reach(context: DriveContext) -> Floats:
-    """How far (m) ahead and behind traffic is looked at, by state."""
-    limits = context.thresholds
-    far = np.minimum(_shortest_queue(context) / 2, limits.near_m)
-    return np.maximum(limits.flow_reach_m, far)
-
-
-def _close(context: DriveContext) -> Flags:
-    return context.going_along & (relations.gap(context) <= _reach(context))
-
-
 def _around(context: DriveContext) -> tuple[Floats, Floats]:
-    close = _close(context)
+    close = close_by(context)
     speeds = np.where(close, np.maximum(context.extents.along, 0.0), np.nan)
     with_own = np.concatenate((np.maximum(context.ego_extents.along, 0.0), speeds))
     return np.nanmedian(with_own, axis=0) * KMH, close.sum(axis=0) + 1
-
-
-def _queues(context: DriveContext) -> tuple[Flags, Floats]:
-    """Flags and median speeds (km/h) of queues, by state and lane.
-
-    In a queue at least half of the gaps are short: up to ``queue_gap_m`` or ``queue_headway_s``.
-    """
-    limits = context.thresholds
-    lanes = len(context.road.lanes.straight) - 1
-    queue = np.zeros((context.states, lanes), dtype=bool)
-    middle = np.full((context.states, lanes), np.nan)
-    s_min = np.concatenate((context.ego_extents.s_min, context.extents.s_min))
-    s_max = np.concatenate((context.ego_extents.s_max, context.extents.s_max))
-    speed = np.maximum(np.concatenate((context.ego_extents.along, context.extents.along)), 0.0)
-    own_lane = context.road.lane_of(np.concatenate((context.ego_extents.w, context.extents.w)))
-    counted = np.concatenate((np.ones((1, context.states), dtype=bool), _close(context)))
-    for lane in range(lanes):
-        inside = counted & (own_lane == lane)
-        enough = inside.sum(axis=0) >= limits.fewest
-        for state in np.flatnonzero(enough):
-            rows = np.flatnonzero(inside[:, state])
-            rows = rows[np.argsort(s_min[rows, state])]
-            gaps = s_min[rows[1:], state] - s_max[rows[:-1], state]
-            allowed = np.maximum(
-                limits.queue_gap_m, limits.queue_headway_s * speed[rows[:-1], state]
-            )
-            queue[state, lane] = np.mean(gaps <= allowed) >= 0.5
-            middle[state, lane] = np.median(speed[rows, state]) * KMH
-    return queue, middle
 
 
 def _beside(context: DriveContext, lanes: Flags) -> Flags:

@@ -24,12 +24,17 @@ _TWO_WHEELED = ("motorcycle", "bicycle")
 def participant_signals(context: DriveContext) -> SignalColumns:
     """The signals of objects."""
     station, lateral = relations.station(context), relations.lateral(context)
-    gap = relations.gap(context)
+    others, gap = relations.possible_laterals(context), relations.gap(context)
     bodies = context.tracks.participants
     speeds = context.zero_if_standing(context.extents.along * KMH)
-    follows = _follows(station, lateral)
+    follows, _, may_follow = relations.ahead_in_lane(context)
     short = safe_distance(context) - gap
     wrong = np.hypot(safe_distance_error(context), context.tolerances.place_m)
+    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    # One that stands, and that ego drives by, does not drive ahead
+    room = np.where(stands, relations.way_across(context) - context.thresholds.touching_m, -np.inf)
+    may_pass_by = may_follow & (np.abs(room) < context.tolerances.place_m)
+    may_follow &= room <= 0
     return SignalColumns(
         about={
             "position": relations.position(context),
@@ -39,29 +44,27 @@ def participant_signals(context: DriveContext) -> SignalColumns:
             "time_headway": rounded(_headway(context, gap)),
             "lateral_gap": rounded(relations.lateral_gap(context)),
             "speed_difference": rounded(context.ego_extents.along * KMH - speeds),
-            "safe_gap": ~follows | (short <= 0),
+            "safe_gap": ~may_follow | (short <= 0),
             "precedes": _precedes(context, follows, gap),
             "oncoming": is_oncoming(context) | _waits_oncoming(context),
             "goes_across": _goes_across(context),
-            "stopped": context.tracks.speed * KMH < context.thresholds.standing_kmh,
+            "stopped": stands,
             "parked": _constant(context, [body.standing for body in bodies]),
             "two_wheeled": _constant(context, [body.type in _TWO_WHEELED for body in bodies]),
             "in_the_road": context.tracks.on_lane,
         },
         only={"in_the_road": context.tracks.of_type("vulnerable_user")},
-        unknown={"safe_gap": follows & (np.abs(short) < wrong)},
+        unknown={
+            "lateral": np.any([lateral != codes for codes in others], axis=0),
+            "safe_gap": may_follow & (np.abs(short) < wrong) | may_pass_by & (short > -wrong),
+        },
         bounds=bounds_to_others(context),
     )
 
 
-def _follows(station: relations.Codes, lateral: relations.Codes) -> Flags:
-    follows: Flags = (station == relations.BEHIND) & (lateral == relations.SAME_LANE)
-    return follows
-
-
 def gap_beside_safe_distance(context: DriveContext) -> tuple[Floats, Floats]:
     """The two distances (m) that ``safe_gap`` compares; NaN where ego does not follow."""
-    follows = _follows(relations.station(context), relations.lateral(context))
+    _, _, follows = relations.ahead_in_lane(context)
     return np.where(follows, relations.gap(context), np.nan), safe_distance(context)
 
 

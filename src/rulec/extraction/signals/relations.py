@@ -7,13 +7,15 @@ within a lane is in that lane. For the paper's ``position`` see ``docs/scenarios
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.tracks.road_extents import RoadExtents
-from rulec.extraction.tracks.tracks import Floats
+from rulec.extraction.tracks.road_extents import RoadExtents, lanes_touched
+from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.partition.cells.regions import LATERALS, PAPER_TABLES, STATIONS
 from rulec.scenario.motion import Facing
 
@@ -37,16 +39,62 @@ def _along(ego: RoadExtents, s_min: Floats, s_max: Floats) -> Codes:
 
 
 def lateral(context: DriveContext) -> Codes:
-    """Ego right of others, in their lanes or left of them, as indices into ``LATERALS``."""
-    return _across(context.ego_extents, *_lane_bounds(context))
+    """Ego right of others, in their lanes or left of them, as indices into ``LATERALS``.
+
+    Who is on a mark of ego's lane, reaching beyond it, and clear of ego sideways is at its side.
+    """
+    return _lateral(context, 0.0, 0.0)
+
+
+def possible_laterals(context: DriveContext) -> tuple[Codes, ...]:
+    """The same as far as places allow: with others further in and out, and the map where it may be.
+
+    What lies between these is among them.
+    """
+    place = context.tolerances.place_m
+    shifts = {0.0, context.map_offset_m}
+    return tuple(_lateral(context, way * place, shift) for shift in shifts for way in (-1, 1))
+
+
+def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
+    """Flags of who is ahead in ego's lane: as measured, surely and perhaps."""
+    ahead = station(context) == BEHIND
+    same = [ahead & (codes == SAME_LANE) for codes in possible_laterals(context)]
+    measured: Flags = ahead & (lateral(context) == SAME_LANE)
+    return measured, measured & np.logical_and.reduce(same), measured | np.logical_or.reduce(same)
+
+
+def _lateral(context: DriveContext, inward: float, shift: float) -> Codes:
+    """Sides, with others so much (m) further in ego's lane and all so much right of the map."""
+    own, others = _moved(context.ego_extents, -shift), _moved(context.extents, -shift)
+    reach = context.thresholds.touching_m
+    touched = context.touched
+    if inward or shift:
+        touched = lanes_touched(others, context.road, reach - inward)
+    sides = _across(own, *_lane_bounds(context, touched, others))
+    lane = context.road.lane_of(own.w)
+    straight = context.road.lanes.straight
+    beyond = np.maximum(others.w_max - straight[lane + 1], straight[lane] - others.w_min)
+    clear = np.maximum(others.w_min - own.w_max, own.w_min - others.w_max)
+    beside_way = (beyond > reach + inward) & (clear > reach + inward)
+    return np.where(
+        (sides == SAME_LANE) & beside_way, np.where(own.w < others.w, RIGHT_OF, LEFT_OF), sides
+    )
+
+
+def _moved(extents: RoadExtents, across: float) -> RoadExtents:
+    moved = {name: getattr(extents, name) + across for name in ("w_min", "w_max")}
+    return replace(extents, **moved) if across else extents
 
 
 def _across(ego: RoadExtents, low: Floats, high: Floats) -> Codes:
     return np.where(ego.w <= low, RIGHT_OF, np.where(ego.w >= high, LEFT_OF, SAME_LANE))
 
 
-def _lane_bounds(context: DriveContext) -> tuple[Floats, Floats]:
-    straight, touched, others = context.road.lanes.straight, context.touched, context.extents
+def _lane_bounds(
+    context: DriveContext, touched: Flags, others: RoadExtents
+) -> tuple[Floats, Floats]:
+    straight = context.road.lanes.straight
     first = touched.argmax(axis=-1)
     last = touched.shape[-1] - touched[..., ::-1].argmax(axis=-1)
     inside = touched.any(axis=-1)
@@ -88,7 +136,7 @@ def position(context: DriveContext) -> NDArray[np.str_]:
     """
     ego, others = context.ego_extents, context.extents
     walking = context.tracks.of_type("pedestrian")[:, None]
-    low, high = _lane_bounds(context)
+    low, high = _lane_bounds(context, context.touched, others)
     s_min, s_max = others.s_min, others.s_max
     facing = np.where(walking, _facing(others), 0)
     across = walking & (facing % 2 == 1)

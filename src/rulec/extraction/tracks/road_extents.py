@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
 
@@ -142,11 +141,11 @@ def expected_places(
     return around, reaches
 
 
-def lanes_touched(extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds) -> Flags:
-    """Flags of lanes (last axis) that bodies reach into."""
+def lanes_touched(extents: RoadExtents, road: DrivenRoad, touching_m: float) -> Flags:
+    """Flags of lanes (last axis) that bodies reach into by more."""
     right, left = road.lanes.straight[:-1], road.lanes.straight[1:]
     low, high = extents.w_min[..., None], extents.w_max[..., None]
     inside = np.minimum(high, left) - np.maximum(low, right)
     # A narrow body, such as a pedestrian's, is in a lane with most of it
-    enough = np.minimum(thresholds.touching_m, (high - low) / 2)
+    enough = np.minimum(touching_m, (high - low) / 2)
     return (inside > enough) & road.lanes.existing_at(extents.s)
