@@ -583,3 +583,25 @@ def test_traces_of_what_is_not_known_have_the_same_verdicts(tmp_path, capsys, en
     main(["verify", str(traces), "-r", "esterle2019", "--json"])
     verdicts = [json.loads(line)["satisfied"] for line in capsys.readouterr().out.splitlines()]
     assert (verdicts.count(True), verdicts.count(None)) == (found.satisfying, found.open) == (4, 1)
+
+
+def test_bounds_and_pictures_read_what_is_not_known_alike(tmp_path, capsys):
+    """All but two of eight maneuvers need to know whether traffic is congested."""
+    file = tmp_path / "dark.toml"
+    file.write_text(DARK, encoding="utf-8")
+    about = (str(file), "-r", "esterle2019", "--horizon", "2")
+    told = tmp_path / "told.jsonl"
+    plain = tmp_path / "plain.jsonl"
+    assert main(["envelopes", *about, "--list", "99", "-o", str(plain)]) == 0
+    assumed = ["--assume", "CONGESTED=true"]
+    assert main(["envelopes", *about, "--list", "99", "-o", str(told), *assumed]) == 0
+    capsys.readouterr()
+    _, out, _ = answer(capsys, *about, *assumed)
+    satisfying = int(next(x for x in out.splitlines() if x.startswith("satisfying")).split()[1])
+    assert len(told.read_text().splitlines()) > len(plain.read_text().splitlines())
+    drawing = tmp_path / "graph.svg"
+    shown = ["--maneuver", str(satisfying), "-o", str(drawing)]
+    assert main(["draw", "graph", *about, *shown]) == 2
+    assert main(["draw", "graph", *about, *shown, *assumed]) == 0
+    assert main(["draw", "graph", str(file), "-o", str(drawing), "--told-only"]) == 2
+    assert "--told-only needs a rulebook" in capsys.readouterr().err

@@ -18,7 +18,9 @@ from rulec.cli.options.scenario_options import (
     graph_options,
     net_option,
     read_scene,
+    reading_options,
     requested_drives,
+    scene_reading,
 )
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.diagnostics import RulecError, named
@@ -58,6 +60,7 @@ _judging_options = shared.combined(
             "Show the N-th cheapest satisfying maneuver.  [default: 1 if there is a rulebook]",
             least=1,
         ),
+        reading_options,
         shared.at_option,
     ]
 )
@@ -265,11 +268,13 @@ def _judged(
     if rulebook is None:
         if number is not None:
             raise click.UsageError("`--maneuver` takes a rulebook: give one with `-r R`.")
+        scene_reading(options, None)
         scene = read_scene(scenario, options)
         options["partition"] = options["partition"] or "paper"
         return rulec.navigation_graph(scene, **options), None, None
     rules = read_machines(rulebook, at)
-    maneuvers = rulec.find_maneuvers(read_scene(scenario, options), rules, **options)
+    reading = scene_reading(options, rules.vocabulary)
+    maneuvers = rulec.find_maneuvers(read_scene(scenario, options), rules, **reading, **options)
     place = number or 1
     maneuver = None
     if place <= min(maneuvers.satisfying, sys.maxsize):

@@ -10,7 +10,12 @@ import click
 import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.scenario_options import graph_options, read_scene
+from rulec.cli.options.scenario_options import (
+    graph_options,
+    read_scene,
+    reading_options,
+    scene_reading,
+)
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.report.text.terminal_text import shown_count
 
@@ -26,6 +31,7 @@ if TYPE_CHECKING:
     "--list", "number", "Write the N cheapest satisfying maneuvers.", least=1, default=1
 )
 @shared.table_format_option("table")
+@reading_options
 @shared.at_option
 def command(
     scenario: str,
@@ -47,8 +53,9 @@ def command(
     from rulec.trace.formats.trace_files import format_of
 
     rules = read_machines(rulebook, at)
+    reading = scene_reading(options, rules.vocabulary)
     scene = read_scene(scenario, options)
-    maneuvers = rulec.find_maneuvers(scene, rules, **options)
+    maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
     cheapest = maneuvers.cheapest(number)
     form = form or format_of(str(output))
     with output_stream(output) as (stream, name):

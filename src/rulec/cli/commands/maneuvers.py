@@ -47,19 +47,7 @@ from rulec.report.text.console import print_result
     "--after",
     "What was before: a file with one trace, or a monitor that was saved (.json).",
 )
-@click.option(
-    "--assume",
-    "assumed",
-    multiple=True,
-    metavar="NAME=VALUE",
-    help="What holds wherever the scenario does not tell, such as built_up=true; or `defaults`: "
-    "what it says is unknown has its default.",
-)
-@click.option(
-    "--told-only",
-    is_flag=True,
-    help="What the scenario does not mention is unknown, instead of having its default.",
-)
+@scenario_options.reading_options
 @click.option(
     "--strict", is_flag=True, help="Exit with 1 if no maneuver keeps every hard rule for sure."
 )
@@ -74,8 +62,6 @@ def command(
     n_classes: int | None,
     worlds: bool,
     after: Path | None,
-    assumed: tuple[str, ...],
-    told_only: bool,
     strict: bool,
     json_output: bool,
     at: str,
@@ -102,13 +88,9 @@ def command(
     begin = time.perf_counter()
     rules = read_machines(rulebook, at)
     past = None if after is None else read_past(after)
-    if told_only and "defaults" in assumed:
-        raise click.UsageError("--told-only and --assume defaults say the opposite of each other.")
-    assumptions = scenario_options.assumptions(None, assumed, rules.vocabulary)
+    reading = scenario_options.scene_reading(options, rules.vocabulary)
     scene = scenario_options.read_scene(scenario, options)
-    maneuvers = rulec.find_maneuvers(
-        scene, rules, after=past, assumptions=assumptions, told_only=told_only, **options
-    )
+    maneuvers = rulec.find_maneuvers(scene, rules, after=past, **reading, **options)
     listed = None if n_listed is None else maneuvers.cheapest(n_listed, perhaps=True)
     best = None
     legal = maneuvers.satisfying + maneuvers.open

@@ -143,6 +143,25 @@ graph_options = combined(
 )
 """The scenario, and how it is cut into cells; the rest is what ``read_scene`` takes out again."""
 
+reading_options = combined(
+    [
+        click.option(
+            "--assume",
+            "assumed",
+            multiple=True,
+            metavar="NAME=VALUE",
+            help="What holds wherever the scenario does not tell, such as built_up=true; or "
+            "`defaults`: what it says is unknown has its default.",
+        ),
+        click.option(
+            "--told-only",
+            is_flag=True,
+            help="What the scenario does not mention is unknown, instead of having its default.",
+        ),
+    ]
+)
+"""What holds where a scenario does not tell; ``scene_reading`` takes their values."""
+
 drives_options = combined(
     [
         click.option(
@@ -202,6 +221,23 @@ def requested_drives(
         )
     except ValueError as problem:
         raise click.UsageError(f"{problem}.") from None
+
+
+def scene_reading(options: dict[str, Any], vocabulary: Vocabulary | None) -> dict[str, Any]:
+    """The keywords of ``find_maneuvers`` for these values of ``reading_options``, taken out.
+
+    Raises:
+        click.UsageError: an assumption is none, they contradict each other, or have no rulebook.
+    """
+    assumed, told_only = options.pop("assumed"), options.pop("told_only")
+    if told_only and "defaults" in assumed:
+        raise click.UsageError("--told-only and --assume defaults say the opposite of each other.")
+    if not assumed and not told_only:
+        return {}
+    if vocabulary is None:
+        option = "--assume" if assumed else "--told-only"
+        raise click.UsageError(f"{option} needs a rulebook, in whose words it is: --rulebook R")
+    return {"assumptions": assumptions(None, assumed, vocabulary), "told_only": told_only}
 
 
 def assumptions(ends: Ending | None, texts: Sequence[str], vocabulary: Vocabulary) -> Assumptions:
