@@ -1,6 +1,11 @@
 """Worlds simulated, judged and scored; the same on recordings that are disturbed."""
 
+import json
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from support.worlds.disturbances import at_frames, mirrored, thinned, with_noise
 from support.worlds.raw_labels import DRIVERS, LABELLED, labels
@@ -35,20 +40,46 @@ def judged(sumo, name, seed, folder, disturbance=None):
     return scores(facts, found, kind.book, f"{name} {seed}")
 
 
-def judged_all(sumo, kinds, seeds, folder, disturbance=None):
-    """Kind -> rule -> its score in all worlds of the kind."""
-    jobs = [(name, seed) for name in kinds for seed in seeds]
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """How worlds are judged: so many at a time, seen in one of ``DISTURBANCES``.
+
+    ``keep`` is a folder for their files, ``results`` one for the scores of each: a world that has
+    some there is not judged again.
+    """
+
+    sumo: Path
+    disturbance: str | None = None
+    processes: int = 2
+    keep: Path | None = None
+    results: Path | None = None
+
+
+def judged_all(run, worlds):
+    """Kind -> rule -> its score in all ``worlds``, which are kinds and seeds, in this order."""
     total = {}
-    with ProcessPoolExecutor(2) as pool:
-        waiting = [
-            pool.submit(judged, sumo, name, seed, folder / f"{name}_{seed}", disturbance)
-            for name, seed in jobs
-        ]
-        for (name, _), result in zip(jobs, waiting, strict=True):
+    with ProcessPoolExecutor(run.processes) as pool:
+        for (name, _), scored in zip(worlds, pool.map(partial(_once, run), worlds), strict=True):
             by_rule = total.setdefault(name, {})
-            for rule, score in result.result().items():
+            for rule, score in scored.items():
                 by_rule.setdefault(rule, Score()).add(score)
     return total
+
+
+def _once(run, world):
+    name, seed = world
+    stored = run.results and run.results / f"{name}_{seed}.json"
+    if stored and stored.exists():
+        by_rule = json.loads(stored.read_text(encoding="utf-8"))
+        return {rule: Score(**score) for rule, score in by_rule.items()}
+    with TemporaryDirectory() as temporary:
+        folder = (run.keep or Path(temporary)) / f"{name}_{seed}"
+        scored = judged(run.sumo, name, seed, folder, run.disturbance)
+    if stored:
+        text = json.dumps({rule: asdict(score) for rule, score in scored.items()}, indent=1)
+        run.results.mkdir(parents=True, exist_ok=True)
+        stored.write_text(text + "\n", encoding="utf-8")
+    return scored
 
 
 def judged_recordings(files):

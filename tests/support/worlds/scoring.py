@@ -1,25 +1,20 @@
 """Verdicts of rulec on a world's recording, held against what is true there."""
 
-import json
 from collections import defaultdict
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass, field
 from functools import cache
-from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import rulec
-from rulec.cli.main import main
+from rulec import DriveVerdict, RequestedDrives, Verdict
 from support.worlds.truths import TRUTHS
 
 SLACK_S = 1.6
 """Speeds are means over a second, and words may be told from the states around."""
 
 
-SIMULATED_WORLD = [
-    part for name in ("wet", "icy", "tunnel") for part in ("--assume", f"{name}=false")
-]
+SIMULATED_WORLD = {"wet": False, "icy": False, "tunnel": False}
 """What no file of the simulator says: its world is dry, and these nets have no tunnels."""
 
 
@@ -27,19 +22,21 @@ SIMULATED_WORLD = [
 class Score:
     """How often a rule's verdicts were right: each pair of a vehicle and a rule is one.
 
-    ``planted`` are true violations. Of these, and of lawful pairs, an open verdict, or a rule that
-    was not judged, is neither right nor wrong; where one cannot tell the truth nothing is.
+    ``planted`` are true violations; one that is found counts, whether or not it is the only one,
+    one that is ``open``, or not judged, is neither found nor missed. ``kept`` are lawful pairs with
+    that verdict. ``told`` are pairs whose words the source tells, ``undecided`` those of them that
+    are open, whatever is true, which may be ``unsure``.
     """
 
     planted: int = 0
     found: int = 0
     missed: list = field(default_factory=list)
     false: list = field(default_factory=list)
-    open: int = 0
-    not_judged: int = 0
+    open: list = field(default_factory=list)
     kept: int = 0
-    open_where_kept: int = 0
     unsure: int = 0
+    told: int = 0
+    undecided: list = field(default_factory=list)
 
     def add(self, other):
         for name in self.__slots__:
@@ -68,42 +65,31 @@ def scored_rules(book):
 
 
 @cache
-def scored_book(book):
-    """The source of a rulebook's overlay with the scored rules alone: the rest takes its time."""
+def _scored_machines(book):
+    """A rulebook's overlay with the scored rules alone: the rest takes its time."""
     names = (rule.name for rule in rulec.compile_rulebook(book).rules)
     left_out = (name for name in names if name not in TRUTHS)
     drops = "\n".join(f'drop rule {name} because "there is no truth for it"' for name in left_out)
-    return f"rulebook scored\nextends {book}\n{drops}\n"
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "scored.rules"
+        file.write_text(f"rulebook scored\nextends {book}\n{drops}\n", encoding="utf-8")
+        return rulec.compile_rulebook(file)
 
 
 def answers(data, book, net=None):
-    """Vehicle -> what `rulec verify --json` says of it; its drive may be in parts.
-
-    Read from the command's output, which is what users rely on. Raises RuntimeError if it failed.
-    """
-    out, err = StringIO(), StringIO()
-    roads = [] if net is None else ["--net", str(net), *SIMULATED_WORLD]
-    with TemporaryDirectory() as folder, redirect_stdout(out), redirect_stderr(err):
-        rules = Path(folder) / "scored.rules"
-        rules.write_text(scored_book(book), encoding="utf-8")
-        status = main(["verify", str(data), "-r", str(rules), *roads, "--json"])
-    if status not in (0, 1):
-        raise RuntimeError(err.getvalue()[-2000:])
+    """Vehicle -> what is said of it; its drive may be in parts. Raises RulecError."""
+    wanted = RequestedDrives(assumed={} if net is None else SIMULATED_WORLD)
+    verdicts = rulec.verify_recording(data, _scored_machines(book), wanted, net)
     found = defaultdict(Answer)
-    for line in out.getvalue().splitlines():
-        verdict = json.loads(line)
-        if "trace" not in verdict or "why_not" in verdict:
-            continue
-        answer = found[verdict["trace"].partition("#")[0]]
-        for violation in verdict["violations"]:
-            answer.violated[violation["rule"]].append(violation["time_s"])
-        answer.open |= _rules(verdict.get("open", ()))
-        answer.not_judged |= _rules(verdict.get("not_judged", ()))
+    for one in verdicts.answers():
+        if isinstance(one, DriveVerdict) and isinstance(one.answer, Verdict):
+            answer = found[one.drive.trace.id.partition("#")[0]]
+            for violation in one.answer.violations:
+                at = one.drive.time_s(violation.step)
+                answer.violated[violation.rule].append(at)
+            answer.open |= {result.rule for result in one.answer.open}
+            answer.not_judged |= {result.rule for result in one.answer.not_judged}
     return dict(found)
-
-
-def _rules(entries):
-    return {entry if isinstance(entry, str) else entry["rule"] for entry in entries}
 
 
 def scores(facts, found, book, where=""):
@@ -123,26 +109,25 @@ def _add(score, facts, answer, name):
     where, vehicle, rule = name
     times = answer.violated.get(rule, [])
     wrong = [at for at in times if not any(_during(fact, at) for fact in facts)]
+    is_open, told = rule in answer.open, rule not in answer.not_judged
+    score.told += told
+    if is_open:
+        score.undecided.append(f"{where} {vehicle} {rule}")
     if wrong:
         score.false.append(f"{where} {vehicle} {rule} at {min(wrong):.1f} s")
     if any(fact.sure for fact in facts):
-        score.planted += 1
         first = min(fact.begin for fact in facts if fact.sure)
+        line = f"{where} {vehicle} {rule} at {first:.1f} s"
+        score.planted += 1
         if len(wrong) < len(times):
             score.found += 1
-        elif rule in answer.open:
-            score.open += 1
-        elif rule in answer.not_judged:
-            score.not_judged += 1
+        elif is_open or not told:
+            score.open.append(line)
         else:
-            score.missed.append(f"{where} {vehicle} {rule} at {first:.1f} s")
+            score.missed.append(line)
     elif facts:
         score.unsure += 1
-    elif rule in answer.open:
-        score.open_where_kept += 1
-    elif rule in answer.not_judged:
-        score.not_judged += 1
-    elif not wrong:
+    elif told and not is_open and not wrong:
         score.kept += 1
 
 
@@ -158,23 +143,35 @@ def wrong(by_rule, exempt=()):
             yield from (f"missed: {line}" for line in score.missed)
 
 
-def undecided(by_rule):
+def with_open(by_rule):
     """The rules under which true violations are open, or not judged."""
-    return {
-        rule for rule, score in by_rule.items() if score.planted > score.found + len(score.missed)
-    }
+    return {rule for rule, score in by_rule.items() if score.open}
+
+
+def open_share(by_rule):
+    """Of the pairs whose words the source tells, the share that is open."""
+    told = sum(score.told for score in by_rule.values())
+    return sum(len(score.undecided) for score in by_rule.values()) / max(told, 1)
+
+
+_HEAD = "planted", "found", "missed", "false", "open", "kept", "unsure", "told", "undecided"
 
 
 def table(by_kind):
     """Lines of a table: kind of world and rule, and how often verdicts were right."""
-    head = "planted", "found", "missed", "false", "open", "unjudged", "kept", "open", "unsure"
-    yield f"{'':40}{'violated':>24}{'':24}{'kept':>10}"
-    yield f"{'world':18} {'rule':24}" + "".join(f"{name:>9}" for name in head)
+    yield f"{'world':18} {'rule':24}" + "".join(f"{name:>10}" for name in _HEAD)
+    whole = {}
     for kind, by_rule in by_kind.items():
         for rule, score in by_rule.items():
-            numbers = [getattr(score, name) for name in Score.__slots__]
-            numbers = [len(one) if isinstance(one, list) else one for one in numbers]
-            planted, found, missed, false, opened, unjudged, kept, open_kept, unsure = numbers
-            if planted or false or opened or open_kept:
-                row = planted, found, missed, false, opened, unjudged, kept, open_kept, unsure
-                yield f"{kind:18} {rule:24}" + "".join(f"{number:9}" for number in row)
+            whole.setdefault(rule, Score()).add(score)
+            if score.planted or score.false or score.undecided:
+                yield _row(kind, rule, score)
+    if len(by_kind) > 1:
+        yield from (_row("all", rule, score) for rule, score in whole.items())
+    yield f"open: {open_share(whole):.1%} of what the source tells"
+
+
+def _row(kind, rule, score):
+    numbers = (getattr(score, name) for name in _HEAD)
+    cells = (len(one) if isinstance(one, list) else one for one in numbers)
+    return f"{kind:18} {rule:24}" + "".join(f"{cell:10}" for cell in cells)

@@ -4,12 +4,13 @@ from support.worlds.demand import Demand
 from support.worlds.simulate import WorldKind
 
 _TOWN = {"red_runner": 0.15, "speeder": 0.12, "tailgater": 0.12}
-_BREAKERS = {"priority_breaker": 0.35, "speeder": 0.08}
+_BREAKERS = {"priority_breaker": 0.6, "speeder": 0.08}
 
 
 def _kinds():
     lights = Demand(vehicles=30, over_s=60, planted=_TOWN)
-    crowded = Demand(vehicles=55, over_s=65, planted=_BREAKERS)
+    # More would only stand in queues, where nobody takes anybody's way
+    crowded = Demand(vehicles=30, over_s=40, planted=_BREAKERS)
     zebra = Demand(
         vehicles=30, over_s=60, planted={"pedestrian_breaker": 0.4, "speeder": 0.08}, walkers=26
     )
@@ -17,18 +18,21 @@ def _kinds():
     motorway = Demand(vehicles=30, over_s=50, planted=lanes, headway_s=2.4)
     for hand, book in (("", "de"), ("_left", "gb")):
         more = {"book": book, "lefthand": bool(hand)}
-        signs = more | {"book": "gb" if hand else "fr"}
+        junction = more | {"demand": crowded, "ends_s": 65}
+        signs = junction | {"book": "gb" if hand else "fr"}
         yield WorldKind(name=f"grid{hand}", layout="lights", demand=lights, **more)
         yield WorldKind(name=f"spider{hand}", layout="spider", demand=lights, **more)
         yield WorldKind(name=f"wide_grid{hand}", layout="wide_lights", demand=lights, **more)
-        yield WorldKind(name=f"priority{hand}", layout="priority", demand=crowded, **signs)
-        yield WorldKind(name=f"stop_signs{hand}", layout="priority_stop", demand=crowded, **more)
-        yield WorldKind(name=f"all_way_stop{hand}", layout="allway_stop", demand=crowded, **more)
-        yield WorldKind(name=f"roundabout{hand}", layout="roundabout", demand=crowded, **more)
+        yield WorldKind(name=f"priority{hand}", layout="priority", **signs)
+        yield WorldKind(name=f"stop_signs{hand}", layout="priority_stop", **junction)
+        yield WorldKind(name=f"all_way_stop{hand}", layout="allway_stop", **junction)
+        yield WorldKind(name=f"roundabout{hand}", layout="roundabout", **junction)
         yield WorldKind(name=f"zebra{hand}", layout="zebra", demand=zebra, **more)
         yield WorldKind(name=f"motorway{hand}", layout="motorway", demand=motorway, **more)
     # In Britain nobody has priority at a junction without signs
-    yield WorldKind(name="right_before_left", layout="right_before_left", demand=crowded, book="de")
+    yield WorldKind(
+        name="right_before_left", layout="right_before_left", demand=crowded, ends_s=65, book="de"
+    )
 
 
 KINDS = {kind.name: kind for kind in _kinds()}

@@ -57,14 +57,13 @@ def intention_signals(context: DriveContext) -> SignalColumns:
 
 def _lit(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
     """Flags of participants whose lamp is lit, and of those of which the recording tells."""
-    shape = len(context.tracks.participants), context.states
-    lit, told = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
+    begins, states = context.first_step, context.states
+    lit, told = np.zeros((2, len(context.tracks.participants), states), dtype=bool)
     for row, body in enumerate(context.tracks.participants):
         if lamp in body.shows:
             for step, lamps in body.lamps.items():
-                state = step - context.first_step
-                if 0 <= state < context.states:
-                    told[row, state], lit[row, state] = True, lamp in lamps
+                if begins <= step < begins + states:
+                    told[row, step - begins], lit[row, step - begins] = True, lamp in lamps
     return lit, told
 
 
