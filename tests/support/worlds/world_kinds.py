@@ -3,12 +3,12 @@
 from support.worlds.demand import Demand
 from support.worlds.simulate import WorldKind
 
-_TOWN = {"red_runner": 0.15, "speeder": 0.12, "tailgater": 0.12}
+_TOWN = {"red_runner": 0.3, "speeder": 0.12, "tailgater": 0.2}
 _BREAKERS = {"priority_breaker": 0.6, "speeder": 0.08}
 
 
 def _kinds():
-    lights = Demand(vehicles=30, over_s=60, planted=_TOWN)
+    lights = Demand(vehicles=26, over_s=40, planted=_TOWN)
     # More would only stand in queues, where nobody takes anybody's way
     crowded = Demand(vehicles=30, over_s=40, planted=_BREAKERS)
     zebra = Demand(
@@ -18,11 +18,12 @@ def _kinds():
     motorway = Demand(vehicles=30, over_s=50, planted=lanes, headway_s=2.4)
     for hand, book in (("", "de"), ("_left", "gb")):
         more = {"book": book, "lefthand": bool(hand)}
+        town = more | {"demand": lights, "ends_s": 70}
         junction = more | {"demand": crowded, "ends_s": 65}
         signs = junction | {"book": "gb" if hand else "fr"}
-        yield WorldKind(name=f"grid{hand}", layout="lights", demand=lights, **more)
-        yield WorldKind(name=f"spider{hand}", layout="spider", demand=lights, **more)
-        yield WorldKind(name=f"wide_grid{hand}", layout="wide_lights", demand=lights, **more)
+        yield WorldKind(name=f"grid{hand}", layout="lights", **town)
+        yield WorldKind(name=f"spider{hand}", layout="spider", **town)
+        yield WorldKind(name=f"wide_grid{hand}", layout="wide_lights", **town)
         yield WorldKind(name=f"priority{hand}", layout="priority", **signs)
         yield WorldKind(name=f"stop_signs{hand}", layout="priority_stop", **junction)
         yield WorldKind(name=f"all_way_stop{hand}", layout="allway_stop", **junction)
