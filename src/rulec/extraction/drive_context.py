@@ -36,7 +36,8 @@ class DriveContext:
     The rows are the participants that are ever relevant or in sight; ``ego`` and ``ego_extents``
     have one. ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's
     lanes, so near that ego could reach it within ``catching_up_s``? ``touched``: the lanes that it
-    reaches into, a third axis. ``surroundings`` are the recording's.
+    reaches into, a third axis; ``elsewhere``: does it drive on lanelets of another road?
+    ``surroundings`` are the recording's.
     """
 
     recording: Recording
@@ -50,6 +51,7 @@ class DriveContext:
     relevant: Flags
     in_sight: Flags
     touched: Flags
+    elsewhere: Flags
     surroundings: Surroundings
 
     @cached_property
@@ -152,8 +154,9 @@ def drive_context(
     ``elsewhere``: who drives on lanelets that are not of the road, if anybody is matched to any.
     """
     near = _near(ego, tracks, extents, road, thresholds)
-    if elsewhere is not None:
-        near = {name: flags & ~_crosses(tracks, extents, elsewhere) for name, flags in near.items()}
+    if elsewhere is None:
+        elsewhere = np.zeros(tracks.present.shape, dtype=bool)
+    near = {name: flags & ~_crosses(tracks, extents, elsewhere) for name, flags in near.items()}
     near = {name: flags[:, columns] for name, flags in near.items()}
     rows = np.any([flags.any(axis=1) for flags in near.values()], axis=0).nonzero()[0]
     own, others = np.array([ego]), extents.part(rows, columns)
@@ -169,6 +172,7 @@ def drive_context(
         relevant=near["relevant"][rows],
         in_sight=near["in_sight"][rows],
         touched=lanes_touched(others, road, thresholds.touching_m),
+        elsewhere=elsewhere[rows, columns],
         surroundings=surroundings,
     )
 

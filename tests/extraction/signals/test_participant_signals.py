@@ -98,6 +98,14 @@ def test_oncoming_moves_against_ego_or_waits_beside_its_lanes():
     waiting = {"speed": -0.01, "heading": float(np.pi)}
     # On ego's own lanes one that stands the wrong way round is an obstacle
     assert not about(steady(8, 60, 4, **waiting))["oncoming"]
+    # One that has come on another road waits in a junction for its turn: nobody follows it
+    elsewhere = np.array([[False] * 4, [True] * 4])
+    ego, turning = steady(7, 0, 0, speed=10), steady(8, 60, 0, **waiting)
+    junction = participant_signals(
+        context_of(recording(lanes(2), [ego, turning]), elsewhere=elsewhere)
+    )
+    assert junction.about["oncoming"].all()
+    assert not junction.about["precedes"].any()
     # It has moved at some time, so that it is relevant beside the road
     places = steady(8, 60, 8, speed=-5, steps=3)
     stopped = steady(8, 40, 8, **waiting)

@@ -28,6 +28,7 @@ def participant_signals(context: DriveContext) -> SignalColumns:
     bodies = context.tracks.participants
     speeds = context.zero_if_standing(context.extents.along * KMH)
     follows, _, may_follow = relations.ahead_in_lane(context)
+    oncoming = is_oncoming(context) | _waits_oncoming(context)
     short = safe_distance(context) - gap
     wrong = np.hypot(safe_distance_error(context), context.tolerances.place_m)
     stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
@@ -45,8 +46,8 @@ def participant_signals(context: DriveContext) -> SignalColumns:
             "lateral_gap": rounded(relations.lateral_gap(context)),
             "speed_difference": rounded(context.ego_extents.along * KMH - speeds),
             "safe_gap": ~may_follow | (short <= 0),
-            "precedes": _precedes(context, follows, gap),
-            "oncoming": is_oncoming(context) | _waits_oncoming(context),
+            "precedes": _precedes(context, follows & ~oncoming, gap),
+            "oncoming": oncoming,
             "goes_across": _goes_across(context),
             "stopped": stands,
             "parked": _constant(context, [body.standing for body in bodies]),
@@ -108,12 +109,12 @@ def _goes_across(context: DriveContext) -> Flags:
 def _waits_oncoming(context: DriveContext) -> Flags:
     """Flags of vehicles that stand on lanes against ego's way, in a queue for example.
 
-    Ego does not overtake them, no more than ones that move. A vehicle that stands the wrong way
-    round in ego's own lanes is an obstacle there.
+    Ego does not overtake them, no more than ones that move, nor follow one that waits in a junction
+    for its turn. A vehicle of ego's road that stands the wrong way round is an obstacle there.
     """
     stands = np.abs(context.extents.along) * KMH < context.thresholds.standing_kmh
     vehicles = np.array(context.tracks.of_type("vehicle"), dtype=bool)[:, None]
-    waits: Flags = stands & vehicles & ~context.touched.any(axis=-1)
+    waits: Flags = stands & vehicles & (context.elsewhere | ~context.touched.any(axis=-1))
     return waits & _faces_ego(context)
 
 
@@ -123,7 +124,7 @@ def _faces_ego(context: DriveContext) -> Flags:
 
 def _precedes(context: DriveContext, follows: Flags, gap: Floats) -> Flags:
     """Flags of participants that are next ahead of ego in its lane."""
-    ahead = np.where(follows & context.relevant & ~is_oncoming(context), gap, np.inf)
+    ahead = np.where(follows & context.relevant, gap, np.inf)
     nearest = ahead.min(axis=0, initial=np.inf)
     precedes: Flags = (ahead == nearest) & np.isfinite(ahead)
     return precedes
