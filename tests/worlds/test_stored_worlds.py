@@ -5,7 +5,7 @@ from functools import cache
 import pytest
 
 from support.worlds.not_yet import STORED, STORED_UNDECIDED
-from support.worlds.scoring import answers, scores, with_open, wrong
+from support.worlds.scoring import MOST_OPEN, answers, open_share, scores, with_open, wrong
 from support.worlds.stored import SMALL, StoredWorld
 
 
@@ -24,6 +24,11 @@ def test_verdicts_are_true(name):
 @pytest.mark.parametrize("name", list(SMALL))
 def test_where_the_truth_is_known_a_verdict_is_not_open(name):
     assert with_open(judged(name)) <= STORED_UNDECIDED.get(name, set())
+
+
+@pytest.mark.parametrize("name", list(SMALL))
+def test_few_verdicts_are_open(name):
+    assert open_share(judged(name)) <= MOST_OPEN
 
 
 def test_something_is_planted_in_each():

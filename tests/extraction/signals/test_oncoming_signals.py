@@ -134,6 +134,11 @@ def test_one_that_came_past_a_red_light():
     assert not told(at(5.5), crossroads(its_entry=light(2.0)))[0].any()
     # It was green at the line, and red half a second later
     assert told(at(5.5), crossroads(its_entry=light(5.0)))[0].any()
+    # Where the line is known to be at the junction, its front crossed it at about 5.3 s
+    line = {"stop_line": np.array([(8.0, 0.0), (8.0, 4.0)])}
+    assert told(at(5.5), crossroads(its_entry=light(4.0)))[0].any()
+    assert not told(at(5.5), crossroads(its_entry=light(4.0) | line))[0].any()
+    assert told(at(5.5), crossroads(its_entry=light(6.0) | line))[0].any()
 
 
 def test_nobody_comes_on_foot():

@@ -14,6 +14,9 @@ SLACK_S = 1.6
 """Speeds are means over a second, and words may be told from the states around."""
 
 
+MOST_OPEN = 0.1
+"""The largest share of open verdicts where the source tells what a rule reads."""
+
 SIMULATED_WORLD = {"wet": False, "icy": False, "tunnel": False}
 """What no file of the simulator says: its world is dry, and these nets have no tunnels."""
 

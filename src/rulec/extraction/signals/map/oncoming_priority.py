@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import radians
+from math import cos, radians, sin
+
+import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import JunctionWay, approaches
-from rulec.scenario.recorded.recording import Light, Recording
+from rulec.scenario.recorded.recording import Points, Recording
 
 _GIVES_WAY = frozenset({"YIELD", "STOP", "STOP_4_WAY"})
 
@@ -51,17 +53,35 @@ def goes_first(recording: Recording, own: JunctionWay, other: JunctionWay) -> bo
 
 def _came_at_red(context: DriveContext, other: Passage) -> bool:
     """True if a participant has come into the junction past a light that was red."""
+    shown = list(_shown(context, other))
+    return bool(shown) and all(colour == "red" for colour in shown)
+
+
+def _shown(context: DriveContext, other: Passage) -> Iterator[str | None]:
+    """What its lights showed when a participant crossed their line, as far as that is on the map.
+
+    Where it is not, in all the time in which it may have.
+    """
     passages = context.surroundings.passages
-    first = other.first + passages.tracks.first
+    way, lanelets = passages.way(other), context.recording.lanelets
     since = round(_CLEARED_S / context.recording.step_s)
-    lights = list(_lights(context.recording, passages.way(other)))
-    steps = range(first - since, first + 1)
-    return bool(lights) and all(
-        light.colour_at(step) == "red" for light in lights for step in steps
-    )
-
-
-def _lights(recording: Recording, way: JunctionWay) -> Iterator[Light]:
-    for entry in (recording.lanelets[name] for name in way.entries if name in recording.lanelets):
+    for entry in (lanelets[name] for name in way.entries if name in lanelets):
+        crossed = _crossed(context, other, entry.stop_line)
+        columns = range(other.first - since, other.first + 1)
+        if crossed is not None:
+            columns = range(crossed - 1, crossed + 1)
         own = entry.lights_to.get(way.lanelets[0].id)
-        yield from (own,) if own else entry.lights
+        for light in (own,) if own else entry.lights:
+            yield from (light.colour_at(passages.tracks.first + column) for column in columns)
+
+
+def _crossed(context: DriveContext, other: Passage, line: Points | None) -> int | None:
+    """The column in which a participant's front gets over a line before a passage, if it does."""
+    if line is None:
+        return None
+    passages, until = context.surroundings.passages, slice(0, other.first + 1)
+    (x, y), ahead = line.mean(axis=0), (cos(other.heading), sin(other.heading))
+    tracks, half = passages.tracks, float(passages.lengths[other.row]) / 2
+    way = (tracks.x[other.row, until] - x) * ahead[0] + (tracks.y[other.row, until] - y) * ahead[1]
+    before = np.flatnonzero(way + half < 0)
+    return int(before[-1]) + 1 if len(before) else None
