@@ -11,6 +11,8 @@ REACTION_S, BRAKING_MPS2 = 1.0, 8.0
 _SURELY_M, _LEAST_S = 0.7, 0.6
 _CHANGE_S = 4.0
 _NEAR_M = 150.0
+_FALLS_BACK_S = 3.0
+"""Who is put onto the road has not chosen its distance, no more than one whom another cuts off."""
 _ALIKE, _ASIDE_M = 0.4, 6.0
 """The cosine between two headings that are much alike, and how far one is beside the other's."""
 
@@ -48,6 +50,7 @@ def following_facts(world):
         short = np.where(led, needed(world.book, speed, leading) - gap, -np.inf)
         steady = led & _same_road(world, track) & ~changing(world, track)
         steady &= ~_leader_changing(world, track)
+        steady[: round(_FALLS_BACK_S / world.step_s)] = False
         possible = (short > -_SURELY_M) | _beside_short(world, track)
         possible |= _merging_short(world, track)
         surely, perhaps = _asked_for(world, track)
