@@ -35,6 +35,13 @@ class Lane:
     shape: np.ndarray
     walkers_only: bool
 
+    def heading_at(self, pos):
+        """Its direction (degrees clockwise from north) at a place along it."""
+        steps = np.diff(self.shape, axis=0)
+        ends = np.hypot(*steps.T).cumsum()
+        x, y = steps[min(int(np.searchsorted(ends, pos)), len(steps) - 1)]
+        return np.degrees(np.arctan2(x, y))
+
 
 @dataclass(slots=True, kw_only=True)
 class Link:

@@ -11,6 +11,8 @@ from support.worlds.net_state import NetState
 LENGTH_M, WIDTH_M = 4.5, 1.8
 """Of all vehicles in these worlds."""
 
+_CHANGE_S, _ASKEW_DEG = 4.0, 8.0
+
 
 @dataclass
 class Track:
@@ -94,6 +96,26 @@ class WorldState:
             link = self.net.links.get(track.lane[row])
             if link is not None and track.lane[row - 1] == link.start:
                 yield Crossing(track, link, row)
+
+    @cached_property
+    def changing(self):
+        """Vehicle -> rows within so many seconds of a change of lanes, or while it is askew.
+
+        Who has to stop while it changes lanes stands askew, and its body is in both.
+        """
+        return {key: self._changing(track) for key, track in self.vehicles.items()}
+
+    def _changing(self, track):
+        lanes = [self.net.lanes[lane] for lane in track.lane]
+        reach = round(_CHANGE_S / self.step_s)
+        turned = track.column("angle") - [
+            one.heading_at(pos) for one, pos in zip(lanes, track.column("pos"), strict=True)
+        ]
+        mask = ~track.inside & (np.abs((turned + 180.0) % 360.0 - 180.0) > _ASKEW_DEG)
+        for row in range(1, len(lanes)):
+            if lanes[row].edge == lanes[row - 1].edge and lanes[row] is not lanes[row - 1]:
+                mask[max(0, row - reach) : row + reach + 1] = True
+        return mask
 
     def along(self, crossing):
         """The front's place on a way over a junction and beyond, 0 at the line; else NaN."""

@@ -9,7 +9,6 @@ REACTION_S, BRAKING_MPS2 = 1.0, 8.0
 """The numbers of this reading of the law: as documented, not as programmed."""
 
 _SURELY_M, _LEAST_S = 0.7, 0.6
-_CHANGE_S = 4.0
 _NEAR_M = 150.0
 _FALLS_BACK_S = 3.0
 """Who is put onto the road has not chosen its distance, no more than one whom another cuts off."""
@@ -48,7 +47,7 @@ def following_facts(world):
         leading = track.column("leader_speed")
         led = np.array([bool(name) for name in track.leader]) & (gap > -1)
         short = np.where(led, needed(world.book, speed, leading) - gap, -np.inf)
-        steady = led & _same_road(world, track) & ~changing(world, track)
+        steady = led & _same_road(world, track) & ~world.changing[track.id]
         steady &= ~_leader_changing(world, track)
         steady[: round(_FALLS_BACK_S / world.step_s)] = False
         possible = (short > -_SURELY_M) | _beside_short(world, track)
@@ -68,30 +67,18 @@ def _same_road(world, track):
     return np.array(same)
 
 
-def changing(world, track):
-    """Rows within so many seconds of a change of lanes."""
-    edges = [world.net.lanes[lane].edge for lane in track.lane]
-    reach = round(_CHANGE_S / world.step_s)
-    mask = np.zeros(len(track.lane), dtype=bool)
-    for row in range(1, len(edges)):
-        if edges[row] == edges[row - 1] and track.lane[row] != track.lane[row - 1]:
-            mask[max(0, row - reach) : row + reach + 1] = True
-    return mask
-
-
 def _leader_changing(world, track):
-    masks = {name: changing(world, world.vehicles[name]) for name in set(track.leader) - {""}}
     found = []
     for row, name in enumerate(track.leader):
         k = world.vehicles[name].at(track.step[row]) if name else None
-        found.append(k is not None and masks[name][k])
+        found.append(k is not None and world.changing[name][k])
     return np.array(found)
 
 
 def _beside_short(world, track):
     """Rows where somebody on a lane beside, or in a junction, would be too near, had it changed."""
     mask = np.zeros(len(track.lane), dtype=bool)
-    own_change = changing(world, track)
+    own_change = world.changing[track.id]
     speed, pos = track.column("speed"), track.column("pos")
     for other in world.vehicles.values():
         if other is track:
@@ -107,7 +94,7 @@ def _beside_short(world, track):
         theirs = rows + shift
         lanes = zip(rows, theirs, strict=True)
         beside = np.array([_neighbours(world, track.lane[a], other.lane[b]) for a, b in lanes])
-        moves = own_change[rows] | changing(world, other)[theirs]
+        moves = own_change[rows] | world.changing[other.id][theirs]
         gap = other.column("pos")[theirs] - LENGTH_M - pos[rows]
         need = needed(world.book, speed[rows], other.column("speed")[theirs])
         near = (gap > -LENGTH_M) & (gap < _NEAR_M) & (gap < need + _SURELY_M)

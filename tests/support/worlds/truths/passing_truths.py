@@ -3,7 +3,6 @@
 import numpy as np
 
 from support.worlds.facts import Fact, runs
-from support.worlds.truths.following_truths import changing
 from support.worlds.world_state import LENGTH_M
 
 _QUEUE_M, _QUEUE = 110.0, 3
@@ -14,14 +13,13 @@ _ABOUT_M = 0.5
 
 def near_side_facts(world):
     """Who came from behind, was beside on a lane nearer to the kerb, and got in front."""
-    changes = {key: changing(world, one) for key, one in world.vehicles.items()}
     for track in world.vehicles.values():
         for other in world.vehicles.values():
             if other is not track:
-                yield from _passes(world, track, other, changes)
+                yield from _passes(world, track, other)
 
 
-def _passes(world, track, other, changes):
+def _passes(world, track, other):
     first = max(track.step[0], other.step[0])
     last = min(track.step[-1], other.step[-1])
     if last <= first:
@@ -43,7 +41,10 @@ def _passes(world, track, other, changes):
             continue
         # Who changes lanes beside the other may be there for some of the time only
         around = slice(max(0, begin - 1), end + 2)
-        moves = changes[track.id][own][around].any() or changes[other.id][theirs][around].any()
+        moves = any(
+            world.changing[one.id][rows][around].any()
+            for one, rows in ((track, own), (other, theirs))
+        )
         if not nearer[around].any() and not moves:
             continue
         sure = nearer[around].all() and not moves
