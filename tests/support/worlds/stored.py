@@ -19,12 +19,12 @@ _EVERY = 2
 _LEFT_OUT = ("pos", "acceleration", "accelerationLat", "leaderID", "leaderSpeed", "leaderGap")
 
 SMALL = {
-    "grid": (1, 12, 25),
-    "spider_left": (4, 12, 25),
+    "grid": (7, 12, 25),
+    "spider_left": (3, 12, 25),
     "priority": (4, 16, 20),
-    "stop_signs_left": (4, 12, 20),
-    "all_way_stop": (5, 12, 20),
-    "right_before_left": (6, 14, 20),
+    "stop_signs_left": (1, 12, 20),
+    "all_way_stop": (4, 12, 20),
+    "right_before_left": (1, 14, 20),
     "roundabout": (2, 16, 20),
     "zebra": (2, 12, 25),
     "motorway": (6, 14, 20),
