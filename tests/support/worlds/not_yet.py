@@ -4,8 +4,8 @@ Everywhere else every violation has to be found, and nobody accused who did noth
 mended is taken out; nothing is added.
 """
 
-STORED = {}
-"""Rules under which somebody is accused falsely, or a violation counts as kept."""
+STORED = {"right_before_left": {"junction_priority"}}
+"""Who drives into the side of one who was there first counts as having let it pass."""
 
 STORED_UNDECIDED = {}
 """Rules under which a true violation is open, or not judged."""

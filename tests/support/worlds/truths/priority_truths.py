@@ -7,7 +7,7 @@ from support.worlds.world_state import LENGTH_M, WIDTH_M
 
 _HINDERED_S, _FREE_S = 1.0, 3.5
 _BEHIND_S = 0.6
-_MOVING_MPS = 3.0
+_MOVING_MPS, _STOPS_MPS = 3.0, 1.0
 _APART_M = WIDTH_M + 0.2
 _SIDEWAYS_DEG = (40.0, 140.0)
 _TOWARDS_DEG = (40.0, 50.0)
@@ -107,16 +107,19 @@ def _grade(world, one, other):
     if one.link.end == other.link.end:
         # It joined behind it, as near as its speed let it
         return False
-    # It drove into the side of one that was in the junction already, and did not wait there
-    return bool(spare < -0.3 and _moves(world, other, (own[0], theirs[1])))
+    # It drove into the side of one that was in the junction already. Who stops for it, a little too
+    # far ahead, has let it pass all the same
+    during = own[0], theirs[1]
+    drives = _moves(world, one, during, _STOPS_MPS) and _moves(world, other, during, _MOVING_MPS)
+    return bool(spare < -0.3 and drives)
 
 
-def _moves(world, crossing, during):
-    """True if it moves all the time from a time to another."""
+def _moves(world, crossing, during, least_mps):
+    """True if it is faster than so much all the time from a time to another."""
     track = crossing.track
     times = np.array(track.step) * world.step_s
     there = (times >= during[0]) & (times <= during[1])
-    return track.column("speed")[there].min(initial=np.inf) > _MOVING_MPS
+    return track.column("speed")[there].min(initial=np.inf) > least_mps
 
 
 def conflict_area(net, one, other):
