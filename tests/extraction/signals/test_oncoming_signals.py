@@ -97,6 +97,30 @@ def test_ego_turns_behind_or_long_before_one(reaches_s):
     assert not unknown.any()
 
 
+@pytest.mark.parametrize(
+    ("reaches_s", "mps", "conflict"),
+    [
+        # It is on ego's way from about 3.7 to 5.3 s, and ego on its way from 4.6 s on
+        (3.5, 10.0, True),
+        # It is there all the time, but may be waiting
+        (2.0, 2.0, False),
+    ],
+)
+def test_ego_drives_into_the_side_of_one_that_was_there_first(reaches_s, mps, conflict):
+    told_of, unknown = told(at(reaches_s, mps))
+    assert told_of.any() == conflict
+    assert not unknown.any()
+
+
+def test_who_rolls_on_in_front_of_one_does_not_let_it_pass():
+    # It comes at about 5.0 s and has passed at 6.6 s, while ego is on its way from 4.6 to 7.2 s
+    conflict, _ = told(at(4.8))
+    assert conflict.any()
+    # Ego stops a little too far ahead
+    waits, _ = told(at(4.8), ego=np.interp(TIMES, [0, 4.8, 7, 14], [32, 56, 56, 91]))
+    assert not waits.any()
+
+
 def test_one_that_has_to_brake_is_in_conflict():
     # At 5 s it is half a second away, and gets there at 9 s, less than 3 s after ego
     conflict, _ = told(np.interp(TIMES, [0, 5, 9, 13], [27, 77, 82, 120]))

@@ -10,11 +10,8 @@ STORED = {"right_before_left": {"junction_priority"}}
 STORED_UNDECIDED = {}
 """Rules under which a true violation is open, or not judged."""
 
-SIMULATED = {
-    "all_way_stop": {"oncoming_priority"},
-    "all_way_stop_left": {"oncoming_priority"},
-}
-"""Who drives into the side of one who was there first counts as having let it pass."""
+SIMULATED = {}
+"""The same of simulated worlds."""
 
 SIMULATED_UNDECIDED = {"motorway": {"near_side_passing"}}
 """Where the map begins nobody knows whether there are queues."""

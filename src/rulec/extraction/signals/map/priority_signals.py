@@ -1,9 +1,7 @@
 """Signals of who goes first at junctions: signs, and whose ways cross ego's when.
 
 Ego goes through a junction on a way; others do on theirs. Another one is in conflict with ego while
-both are on their way to where these cross or join, and ego gets there first although the other one
-would be there within ``yielding_s`` after ego, or does come within ``held_up_s`` although it would
-have been there so soon. Whom ego lets pass is in no conflict with it.
+both are on their way to where these cross or join (``conflicts``).
 """
 
 from __future__ import annotations
@@ -15,6 +13,7 @@ import numpy as np
 import shapely
 
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.map.conflicts import SLOWEST_MPS, first_column, in_conflict
 from rulec.extraction.signals.map.oncoming_priority import gives_way_to, turns_far
 from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
@@ -27,9 +26,6 @@ _ONCOMING = "in_way_of_oncoming"
 _SIDES = ("conflict_from_left", "conflict_from_right", _ONCOMING)
 _RING, _RAIL = "conflict_on_roundabout", "conflict_with_rail"
 _CONFLICTS = (*_SIDES, _RING, _RAIL)
-
-_SLOWEST_MPS = 1.0
-"""Who stands in a junction at the end of its track drives on so fast."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +59,7 @@ def priority_signals(context: DriveContext) -> SignalColumns:
                 from_then = slice(met.enters, met.last + 1) if kind == _ONCOMING else span
                 (conflicts if met.known else unknown)[kind][from_then] = True
             together[span] |= met.together
-            entered = met.other.first - _shift(context)
+            entered = met.other.first - first_column(context)
             other_inside[max(met.first, entered) : met.last + 1] = True
         for side in filter(None, _might_come(context, passage)):
             if side != _ONCOMING or turns_far(context, passage):
@@ -88,19 +84,14 @@ def own_passages(context: DriveContext) -> tuple[Passage, ...]:
         for k, body in enumerate(context.surroundings.passages.tracks.participants)
         if body.id == ego.id
     )
-    begins, ends = _shift(context), _shift(context) + context.states
+    begins, ends = first_column(context), first_column(context) + context.states
     passages = context.surroundings.passages.of_row.get(row, ())
     return tuple(x for x in passages if x.last >= begins and x.first < ends)
 
 
-def _shift(context: DriveContext) -> int:
-    """The column of the drive's first state."""
-    return context.first_step - context.surroundings.passages.tracks.first
-
-
 def _approach(context: DriveContext, passage: Passage) -> slice:
     """The states from which on ego nears the junction until it is through it."""
-    shift = _shift(context)
+    shift = first_column(context)
     ways = context.surroundings.passages.travelled[passage.row]
     near = ways[passage.first] - ways[shift : passage.first + 1] <= context.thresholds.approach_m
     first = passage.first - shift - int(near.sum()) + 1 if len(near) else 0
@@ -157,7 +148,7 @@ def _ending_roads(junction: Junction, passage: Passage) -> tuple[bool, bool]:
 
 def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
     """Those who are in ego's way at a junction, or might be."""
-    passages, shift = context.surroundings.passages, _shift(context)
+    passages, shift = context.surroundings.passages, first_column(context)
     span = _approach(context, own)
     latest = own.last + round(context.thresholds.held_up_s / context.recording.step_s)
     for other in passages.through[own.junction]:
@@ -166,17 +157,12 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
         met = passages.junctions[own.junction].meeting(own.way, other.way)
         if met is None:
             continue
-        enters, leaves = passages.occupied(own, met[0])
-        comes, passed = passages.occupied(other, met[1])
-        if enters is None or (comes is not None and comes < enters):
-            continue
-        # Who waits a little too far ahead lets others pass all the same
-        if passed is not None and (leaves is None or passed < leaves):
-            continue
-        verdict = _held_up(context, (enters, leaves), other, comes)
+        ego, foe = passages.occupied(own, met[0]), passages.occupied(other, met[1])
+        verdict = in_conflict(context, (own, *ego), (other, *foe))
         if verdict is None:
             continue
         begins, known = verdict
+        enters, leaves = ego
         last = (leaves if leaves is not None else shift + context.states - 1) - shift
         first = max(span.start, begins - shift)
         if not (kinds := _kinds(context, own, other)):
@@ -184,42 +170,13 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
         yield Encounter(
             kinds=kinds,
             first=first,
-            enters=max(enters - shift, 0),
+            enters=max((enters or 0) - shift, 0),
             last=min(last, context.states - 1),
             known=known and own.sure and other.sure,
             other=other,
             together=abs(other.first - own.first) * context.recording.step_s
             <= context.thresholds.together_s,
         )
-
-
-def _held_up(
-    context: DriveContext, ego: tuple[int, int | None], other: Passage, comes: int | None
-) -> tuple[int, bool] | None:
-    """From which column on another one is in conflict with ego, and whether that is sure.
-
-    None: it is not. ``ego`` are the columns in which ego enters and leaves where their ways meet,
-    ``comes`` the one in which the other one does.
-    """
-    limits, step_s = context.thresholds, context.recording.step_s
-    passages = context.surroundings.passages
-    enters, leaves = ego
-    until = passages.tracks.x.shape[1] - 1 if leaves is None else leaves
-    present = np.flatnonzero(passages.tracks.present[other.row])
-    first, last = max(int(present[0]), _shift(context)), min(enters, int(present[-1]))
-    if last < first:
-        return None
-    columns = np.arange(first, last + 1)
-    if comes is None:
-        return (first, False) if int(present[-1]) < until else None
-    if (comes - until) * step_s < limits.yielding_s:
-        return first, leaves is not None
-    if (comes - until) * step_s >= limits.held_up_s:
-        return None
-    way = passages.travelled[other.row, comes] - passages.travelled[other.row, columns]
-    speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
-    soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
-    return (int(columns[soon.argmax()]), leaves is not None) if soon[-1] else None
 
 
 def _kinds(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ...]:
@@ -250,7 +207,7 @@ def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
     Somebody who is on no way of the map, or whose track ends before the junction. In a simulation
     who is gone before the end has arrived somewhere.
     """
-    passages, shift = context.surroundings.passages, _shift(context)
+    passages, shift = context.surroundings.passages, first_column(context)
     tracks, step_s = passages.tracks, context.recording.step_s
     area = passages.junctions[own.junction].area
     through = {x.row for x in passages.through[own.junction]}
@@ -290,5 +247,5 @@ def _leaves_at_latest(context: DriveContext, own: Passage) -> float:
     end = line.length + float(passages.lengths[own.row]) / 2
     place = shapely.Point(tracks.x[own.row, column], tracks.y[own.row, column])
     left = float(end - line.project(place))
-    speed = max(float(tracks.speed[own.row, column]), _SLOWEST_MPS)
+    speed = max(float(tracks.speed[own.row, column]), SLOWEST_MPS)
     return column + left / speed / context.recording.step_s

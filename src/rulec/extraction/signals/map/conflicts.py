@@ -1,0 +1,99 @@
+"""Conflicts at junctions: who gets to where two ways cross or join, and who lets whom pass.
+
+Another one is in conflict with ego if ego gets there first although the other one would be there
+within ``yielding_s`` after ego, or does come within ``held_up_s`` although it would have been there
+so soon; and if ego drives into the side of one that is there. Whom ego lets pass is in none.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.tracks.junction_passages import Passage
+
+SLOWEST_MPS = 1.0
+"""Who stands in a junction at the end of its track drives on so fast; who is slower waits."""
+
+_DRIVES_MPS = 3.0
+"""Who drives more slowly in a junction may wait there."""
+
+_BEHIND_S = 0.3
+"""Who gets to a place so short a time before another one has left it passes behind it."""
+
+Passing: TypeAlias = tuple[Passage, int | None, int | None]
+"""A passage, with the columns in which it enters and leaves where ways meet."""
+
+
+def first_column(context: DriveContext) -> int:
+    """The column of the drive's first state."""
+    return context.first_step - context.surroundings.passages.tracks.first
+
+
+def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int, bool] | None:
+    """From which column on another one is in conflict with ego, and whether that is sure.
+
+    None: it is not.
+    """
+    own, enters, leaves = ego
+    other, comes, passed = foe
+    if enters is None:
+        return None
+    if comes is not None and comes < enters:
+        return _runs_into(context, (own, enters), foe)
+    speed = context.surroundings.passages.tracks.speed[own.row, enters:passed]
+    waits = speed.min(initial=np.inf) < SLOWEST_MPS
+    if passed is not None and (leaves is None or passed < leaves) and waits:
+        # Who waits a little too far ahead lets others pass all the same
+        return None
+    return _held_up(context, (enters, leaves), other, comes)
+
+
+def _runs_into(
+    context: DriveContext, ego: tuple[Passage, int], foe: Passing
+) -> tuple[int, bool] | None:
+    """The same of one that got there first: ego drives into its side while it drives on.
+
+    Those who join its way drive in behind it.
+    """
+    passages = context.surroundings.passages
+    (own, enters), (other, _, passed) = ego, foe
+    ways = passages.way(own), passages.way(other)
+    if ways[0].names & ways[1].names or ways[0].exits & ways[1].exits:
+        return None
+    present = np.flatnonzero(passages.tracks.present[other.row])
+    until = int(present[-1]) + 1 if passed is None else passed
+    speeds = passages.tracks.speed[[own.row, other.row], enters:until]
+    drive = bool((speeds > _DRIVES_MPS).all())
+    inside = (until - enters) * context.recording.step_s > _BEHIND_S
+    return (max(int(present[0]), first_column(context)), True) if drive and inside else None
+
+
+def _held_up(
+    context: DriveContext, ego: tuple[int, int | None], other: Passage, comes: int | None
+) -> tuple[int, bool] | None:
+    """The same of one that does not get there first, in the column ``comes`` if it does.
+
+    ``ego`` are the columns in which ego enters and leaves where their ways meet.
+    """
+    limits, step_s = context.thresholds, context.recording.step_s
+    passages = context.surroundings.passages
+    enters, leaves = ego
+    until = passages.tracks.x.shape[1] - 1 if leaves is None else leaves
+    present = np.flatnonzero(passages.tracks.present[other.row])
+    first, last = max(int(present[0]), first_column(context)), min(enters, int(present[-1]))
+    if last < first:
+        return None
+    columns = np.arange(first, last + 1)
+    if comes is None:
+        return (first, False) if int(present[-1]) < until else None
+    if (comes - until) * step_s < limits.yielding_s:
+        return first, leaves is not None
+    if (comes - until) * step_s >= limits.held_up_s:
+        return None
+    way = passages.travelled[other.row, comes] - passages.travelled[other.row, columns]
+    speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
+    soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
+    return (int(columns[soon.argmax()]), leaves is not None) if soon[-1] else None
