@@ -166,6 +166,23 @@ def test_who_overtakes_is_on_the_next_lane():
     assert coming((0, 15), y=8.0, count=3) is False
 
 
+@pytest.mark.parametrize(("y", "overtaken"), [(4.0, True), (2.8, True), (2.2, False)])
+def test_on_the_mark_the_next_lane_is_the_one_that_ego_moves_into(y, overtaken):
+    """Ego, 2 m wide, comes from the lane up to y = 2; one passes two lanes farther, at y = 8."""
+    bodies = [steady(7, 0, y, 10, 40), steady(8, 0, 8, 15, 40)]
+    context = context_of(recording(lanes(3), bodies), near_m=200)
+    assert bool(flow_signals(context).world["being_overtaken"][0]) == overtaken
+
+
+@pytest.mark.parametrize(("complete", "unknown"), [((), True), (("light",), False)])
+def test_where_a_world_begins_there_are_no_queues(complete, unknown):
+    found = recording([straight(1, 0, 40), straight(2, 0, 40, 4)], [steady(7, 10, 0)])
+    found = replace(found, complete=frozenset(complete))
+    signals = flow_signals(context_of(found))
+    assert signals.unknown["dense_all_lanes"][0] == unknown
+    assert not signals.world["dense_all_lanes"][0]
+
+
 def test_who_gets_past_overtakes_and_the_recording_may_end_before():
     # Faster for a second, then as fast as ego: it stays beside
     places = {k: (-3 + 2 * min(k, 2) + 5.0 * k, 4.0) for k in range(40)}

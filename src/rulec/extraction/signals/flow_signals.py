@@ -74,7 +74,9 @@ def _dense_lines(context: DriveContext, queues: Sequence[Flags]) -> tuple[Flags,
         lines & (ahead & (gap <= longest + way * wrong)).any(axis=0)
         for lines, way in zip(all_queue, WAYS, strict=True)
     )
-    return dense, surely, perhaps & ~surely | cut_off | ~np.any(decides[0], axis=1)
+    # Nor is there a queue where the world ends, whose traffic is all recorded
+    nobody_knows = ~np.any(decides[0], axis=1) & ("light" not in context.recording.complete)
+    return dense, surely, perhaps & ~surely | cut_off | nobody_knows
 
 
 def _ahead_in_lane(context: DriveContext) -> Flags:
@@ -152,9 +154,19 @@ def _ahead_and_past(context: DriveContext, tolerances: float) -> Flags:
 
 
 def _on_next_lane(context: DriveContext) -> Flags:
-    """Flags of participants that reach into the lane at ego's far side."""
-    lane = context.ego_lane + (1 if context.side == "right" else -1)
+    """Flags of participants that reach into the lane beside ego's at its far side.
+
+    While ego is on a mark that is the lane that it moves into, and none beyond.
+    """
+    straight, own = context.road.lanes.straight, context.ego_extents
+    low, high = own.w_min[0][:, None], own.w_max[0][:, None]
+    inside = np.minimum(high, straight[1:]) - np.maximum(low, straight[:-1])
     lanes = np.arange(context.touched.shape[-1])
+    used = (inside > context.thresholds.touching_m) | (lanes == context.ego_lane[:, None])
+    if context.side == "right":
+        lane = used.argmax(axis=1) + 1
+    else:
+        lane = len(lanes) - 2 - used[:, ::-1].argmax(axis=1)
     on: Flags = (context.touched & (lanes == lane[None, :, None])).any(axis=-1)
     return on
 
