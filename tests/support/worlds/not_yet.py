@@ -4,8 +4,8 @@ Everywhere else every violation has to be found, and nobody accused who did noth
 mended is taken out; nothing is added.
 """
 
-STORED = {"right_before_left": {"junction_priority"}}
-"""Who drives into the side of one who was there first counts as having let it pass."""
+STORED = {}
+"""Rules under which somebody is accused falsely, or a violation counts as kept."""
 
 STORED_UNDECIDED = {}
 """Rules under which a true violation is open, or not judged."""
@@ -13,8 +13,8 @@ STORED_UNDECIDED = {}
 SIMULATED = {}
 """The same of simulated worlds."""
 
-SIMULATED_UNDECIDED = {"motorway": {"near_side_passing"}}
-"""Where the map begins nobody knows whether there are queues."""
+SIMULATED_UNDECIDED = {}
+"""The same of simulated worlds."""
 
 LABELS = {}
 """Rule -> how many are accused falsely, and not found, in all of the recordings at hand."""

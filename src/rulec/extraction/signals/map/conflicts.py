@@ -65,8 +65,8 @@ def _runs_into(
         return None
     present = np.flatnonzero(passages.tracks.present[other.row])
     until = int(present[-1]) + 1 if passed is None else passed
-    speeds = passages.tracks.speed[[own.row, other.row], enters:until]
-    drive = bool((speeds > _DRIVES_MPS).all())
+    slowest = passages.tracks.speed[[own.row, other.row], enters:until].min(axis=1, initial=np.inf)
+    drive = bool((slowest > (SLOWEST_MPS, _DRIVES_MPS)).all())
     inside = (until - enters) * context.recording.step_s > _BEHIND_S
     return (max(int(present[0]), first_column(context)), True) if drive and inside else None
 
