@@ -1,5 +1,7 @@
 """Marks between lanes, and what it takes to be on one."""
 
+from dataclasses import replace
+
 import pytest
 
 from rulec.extraction.drives import Drives
@@ -7,13 +9,13 @@ from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.recordings import recording, straight, vehicle
 
 
-def state(y, right="broken", left="broken", **more):
+def state(y, right="broken", left="broken", name="DEU_Test-1"):
     """Ego, 2 m wide, at an offset on a road of two lanes that meet at y = 2."""
     lanes = [
         straight(1, 0, 100, left_of=2, left_mark=right, right_mark="solid"),
         straight(2, 0, 100, y=4, right_of=1, right_mark=left, left_mark="solid"),
     ]
-    found = recording(lanes, [vehicle(7, {0: (40, y), 1: (50, y)})])
+    found = replace(recording(lanes, [vehicle(7, {0: (40, y), 1: (50, y)})]), name=name)
     (drive,) = Drives(found, "right").of("7")
     return drive.trace.states[0]
 
@@ -46,6 +48,12 @@ def test_marks_that_nobody_knows():
 def test_on_a_line(y, right, left, solid, broken_here):
     found = state(y, right, left)
     assert (found["on_solid_line"], found["broken_on_own_side"]) == (solid, broken_here)
+
+
+@pytest.mark.parametrize(("y", "told"), [(0.9, False), (1.4, UNKNOWN), (1.7, True)])
+def test_within_the_tolerance_of_places_nobody_knows_who_is_on_a_line(y, told):
+    """Video is good to 0.3 m: who is 0.4 m over the line may be 0.1 m over it."""
+    assert state(y, "solid", "solid", name="USA_Peach-1")["on_solid_line"] is told
 
 
 def test_a_map_without_marks_says_nothing():

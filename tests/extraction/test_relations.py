@@ -44,9 +44,18 @@ def seen_from(body, ego, lanes):
     on_mark = not covers(min(lanes, key=ego.centroid.distance), body)
     if on_mark and shadow(body, 1).distance(shadow(ego, 1)) > USUAL.touching_m:
         wide = body
+    if in_the_way(min(lanes, key=ego.centroid.distance), body, ego):
+        return station, "same_lane"
     if ego.centroid.y <= wide.bounds[1]:
         return station, "right_of"
     return station, "left_of" if ego.centroid.y >= wide.bounds[3] else "same_lane"
+
+
+def in_the_way(lane, body, ego):
+    """Does a body overlap ego's across the road, and ego's lane at all?"""
+    overlap = min(body.bounds[3], ego.bounds[3]) - max(body.bounds[1], ego.bounds[1])
+    inside = min(body.bounds[3], lane.bounds[3]) - max(body.bounds[1], lane.bounds[1])
+    return overlap > USUAL.touching_m and inside > 0
 
 
 def covers(lane, body):
@@ -113,6 +122,11 @@ def test_who_is_on_the_mark_and_clear_of_ego_is_not_in_its_lane():
     assert sides(1.5, own_y=-0.9, width=0.8, name=EXACT) == ["same_lane"]
     # And is on its way out where it reaches beyond it by 0.4 m
     assert sides(2.0, own_y=-0.9, width=0.8, name=EXACT) == ["right_of"]
+
+
+def test_who_hardly_reaches_in_but_is_in_the_way_of_ego_is_in_its_lane():
+    # Ego's own side is at y = 2.4, and theirs, 0.2 m in, at 1.8, and, 0.1 m beyond the mark, at 2.1
+    assert sides(2.8, 3.1, own_y=1.4, name=EXACT) == ["same_lane", "right_of"]
 
 
 def test_within_the_tolerance_of_places_nobody_knows_who_is_in_the_lane():

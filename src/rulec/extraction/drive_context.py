@@ -79,10 +79,11 @@ class DriveContext:
 
     @cached_property
     def limit_mps(self) -> Floats:
-        """The limit of the lane of ego's middle by state, infinity if the map has none there."""
+        """The limit of the lane of ego's middle by state, infinity if the map tells none there."""
         pieces = self.road.piece(self.ego_extents.s[0]).tolist()
         at = zip(pieces, self.ego_lane.tolist(), strict=True)
-        limits = [self.road.lanelet(piece, lane).limit_mps for piece, lane in at]
+        turned = np.radians(self.thresholds.turned_deg)
+        limits = [self.road.limit_mps(piece, lane, turned) for piece, lane in at]
         return np.array([np.inf if limit is None else limit for limit in limits])
 
     @cached_property

@@ -34,6 +34,29 @@ def test_the_limit_of_the_lanelet_under_ego():
     assert "limit" not in map_signals(context([90, 110])).world
 
 
+@pytest.mark.parametrize(
+    ("after", "turned", "limit"),
+    [(70, 0, 70.0), (50, 0, NO_LIMIT_KMH), (None, 0, NO_LIMIT_KMH), (70, 90, NO_LIMIT_KMH)],
+)
+def test_a_limit_goes_on_through_a_junction_for_who_goes_straight_on(after, turned, limit):
+    road = [
+        lanelet(1, [(0, 0), (100, 0)], successors=(2,), limit_mps=70 / 3.6),
+        lanelet(
+            2,
+            [(100, 0), (110, 0), (110 + 10 * (turned == 0), 20 * (turned > 0))],
+            predecessors=(1,),
+            successors=(3,),
+            types=frozenset({"intersection"}),
+        ),
+    ]
+    (x, y), onward = road[1].centre[-1], (0, 100) if turned else (100, 0)
+    end = [(x, y), (x + onward[0], y + onward[1])]
+    road.append(lanelet(3, end, predecessors=(2,), limit_mps=after and after / 3.6))
+    body = vehicle(7, {0: (90, 0), 1: (105, 0)})
+    found = map_signals(context_of(recording(road, [body]), ("1", "2", "3"))).world["limit"]
+    assert found.tolist() == [70.0, limit]
+
+
 def test_signs_of_lines_hold_until_the_line_is_crossed():
     signs = {"signs": frozenset({"STOP", "NO_OVERTAKING_START"})}
     # The front is at 92, 101, 105, the middle at 90, 99, 103

@@ -67,7 +67,7 @@ def test_the_safe_distance_is_that_of_two_emergency_brakings():
     assert not about(steady(8, 18.7, 0, speed=5), reaction_s=1.1)["safe_gap"]
 
 
-@pytest.mark.parametrize(("degrees", "needed"), [(0, 10.0), (45, 10.0), (90, 16.25)])
+@pytest.mark.parametrize(("degrees", "needed"), [(0, 10.0), (45, 10.0), (70, 10.0), (90, 16.25)])
 def test_who_turns_off_is_as_fast_as_it_is(degrees, needed):
     """Both drive at 10 m/s; who drives across ego's way does not take itself out of it."""
     way = np.radians(degrees)

@@ -63,3 +63,22 @@ def test_in_a_single_moment_there_is_what_is_stated():
     found = motion([np.nan, 3, np.nan], 7.0, known=OTHERS)
     assert found.speed[0, 1] == 7.0
     assert found.speed_error[0, 1] == 0.1
+
+
+@pytest.mark.parametrize("slip", [0.0, 0.5, 1.5])
+def test_a_track_that_slips_off_its_vehicle_tells_its_speed_no_better(slip):
+    """At 10 m/s, and all at once farther: by 0.5 m that takes more than 5 m/s², by 1.5 m 16."""
+    x = np.arange(60.0) + slip * (np.arange(60) >= 30)
+    found = motion(x, 0.0, known=OTHERS)
+    far = abs(np.arange(60) - 29.5) > 12
+    assert found.speed_error[0, far].max() == pytest.approx(0.2)
+    wrong = np.abs(found.speed[0] - 10.0)
+    assert (wrong <= found.speed_error[0] + 0.01).all() == (slip != 0.5)
+    assert (found.speed_error[0, 24:36] > 1.5).all() == (slip == 1.5)
+    assert motion(x, 0.0, known=OTHERS, steers=False).speed_error[0, 30] == pytest.approx(0.1)
+
+
+def test_who_brakes_as_hard_as_tyres_hold_has_not_slipped():
+    t = np.arange(30) * 0.1
+    error = motion(30 * t - 4.5 * t * t, 0.0, known=OTHERS).speed_error[0]
+    assert error[10:20] == pytest.approx([0.1] * 10)

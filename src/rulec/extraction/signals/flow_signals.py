@@ -22,6 +22,9 @@ from rulec.extraction.signals.queues import (
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.tracks import Flags, Floats
 
+_SETS_OFF_MPS2 = 2.0
+"""Vehicles gain speed about so hard when they set off."""
+
 
 def flow_signals(context: DriveContext) -> SignalColumns:
     """The signals of traffic as a whole."""
@@ -87,12 +90,18 @@ def _ahead_in_lane(context: DriveContext) -> Flags:
 
 
 def _sets_off(context: DriveContext) -> Flags:
-    """Flags of states in which ego has stood up to ``setting_off_s`` ago."""
-    limits, speed = context.thresholds, context.ego.speed[0]
+    """Flags of states in which ego has, or may have, stood up to ``setting_off_s`` ago.
+
+    Before its drive began it may have, if ``_SETS_OFF_MPS2`` has made it as fast as it is then, and
+    not all traffic is recorded.
+    """
+    limits, speed, step_s = context.thresholds, context.ego.speed[0], context.recording.step_s
     stands = speed * KMH < limits.standing_kmh
-    steps = round(limits.setting_off_s / context.recording.step_s)
-    stood = np.maximum.accumulate(np.where(stands, np.arange(context.states), -1 - steps))
-    return np.arange(context.states) - stood <= steps
+    whole = "light" in context.recording.complete
+    before = -np.inf if whole else -np.ceil(speed[0] / _SETS_OFF_MPS2 / step_s)
+    stood = np.maximum.accumulate(np.where(stands, np.arange(context.states), before))
+    sets_off: Flags = (np.arange(context.states) - stood) * step_s < limits.setting_off_s
+    return sets_off
 
 
 def _around(context: DriveContext) -> tuple[Floats, Floats]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -79,6 +79,9 @@ def lane_mark_signals(context: DriveContext) -> SignalColumns:
     names = ("marked_lanes", "on_solid_line", "broken_on_own_side", "single_line")
     columns = np.zeros((len(names), context.states), dtype=bool)
     unknown, not_told = np.zeros((2, context.states), dtype=bool)
+    place, offset = context.tolerances.place_m, context.map_offset_m
+    others = list(product((place, -place), {0.0, offset}))
+    near = _near_a_line(context, place + abs(offset))
     for state, piece in enumerate(pieces):
         lanelets = zip(context.road.rows[piece], context.existing_lanes[state], strict=True)
         row = [lanelet if exists else None for lanelet, exists in lanelets]
@@ -86,11 +89,11 @@ def lane_mark_signals(context: DriveContext) -> SignalColumns:
         unknown[state] = any(not any(marks) for marks in between)
         columns[0, state] = bool(between) and all(set(marks) != {"none"} for marks in between)
         crossed = _marks_under_ego(context, state, row)
-        solid = [marks for marks in crossed if _SOLID & set(marks)]
-        columns[1, state] = bool(solid)
-        columns[2, state] = any(marks[0] == "broken" for marks in solid)
-        columns[3, state] = len(solid) == 1 and solid[0] in _SINGLE
-        not_told[state] = not solid and any(not any(marks) for marks in crossed)
+        found = columns[1:, state] = _solid_lines(crossed)
+        not_told[state] = not found[0] and any(not any(marks) for marks in crossed)
+        not_told[state] |= near[state] and any(
+            _solid_lines(_marks_under_ego(context, state, row, *other)) != found for other in others
+        )
     return SignalColumns(
         dict(zip(names, columns, strict=True)),
         unknown={"marked_lanes": unknown, **dict.fromkeys(names[1:], not_told)},
@@ -101,14 +104,31 @@ def _between(right: Lanelet | None, left: Lanelet | None) -> _Marks:
     return right.left_mark if right else None, left.right_mark if left else None
 
 
-def _marks_under_ego(context: DriveContext, state: int, row: list[Lanelet | None]) -> list[_Marks]:
+def _solid_lines(crossed: list[_Marks]) -> tuple[bool, bool, bool]:
+    """Is ego on a solid line, is one broken on its own side, and is it a single one?"""
+    solid = [marks for marks in crossed if _SOLID & set(marks)]
+    broken = any(marks[0] == "broken" for marks in solid)
+    return bool(solid), broken, len(solid) == 1 and solid[0] in _SINGLE
+
+
+def _near_a_line(context: DriveContext, margin_m: float) -> Flags:
+    """Flags of states in which so much decides whether ego's body lies across a line."""
+    straight, own = context.road.lanes.straight, context.ego_extents
+    across = np.minimum(straight - own.w_min[0][:, None], own.w_max[0][:, None] - straight)
+    near: Flags = (np.abs(across - context.thresholds.touching_m) <= margin_m).any(axis=1)
+    return near
+
+
+def _marks_under_ego(
+    context: DriveContext, state: int, row: list[Lanelet | None], more: float = 0, shift: float = 0
+) -> list[_Marks]:
     """The marks of the lines that ego's body lies across, those at ego's side first.
 
-    Line ``k`` lies right of lane ``k``.
+    Line ``k`` lies right of lane ``k``. By so much (m) ``more``, and with ego so far right.
     """
     straight, own = context.road.lanes.straight, context.ego_extents
-    low, high = (float(bound[0, state]) for bound in (own.w_min, own.w_max))
-    reach = context.thresholds.touching_m
+    low, high = (float(bound[0, state]) - shift for bound in (own.w_min, own.w_max))
+    reach = context.thresholds.touching_m + more
     crossed = []
     for line, (right, left) in enumerate(pairwise([None, *row, None])):
         if min(straight[line] - low, high - straight[line]) > reach:

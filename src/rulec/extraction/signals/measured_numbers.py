@@ -18,7 +18,7 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 LONGEST_S = 1000.0
 """The longest headway (s), also that of an ego that stands."""
 
-_ALIKE = 0.5
+_ALIKE = 0.17
 """The cosine of the angle to the road up to which one goes about ego's way."""
 
 _AT_LIMIT_MPS = 0.01

@@ -41,7 +41,8 @@ def _along(ego: RoadExtents, s_min: Floats, s_max: Floats) -> Codes:
 def lateral(context: DriveContext) -> Codes:
     """Ego right of others, in their lanes or left of them, as indices into ``LATERALS``.
 
-    Who is on a mark of ego's lane, reaching beyond it, and clear of ego sideways is at its side.
+    Who is on a mark of ego's lane, reaching beyond it, and clear of ego sideways is at its side;
+    who is no farther in but in the way of ego's body is in the lane.
     """
     return _lateral(context, 0.0, 0.0)
 
@@ -77,9 +78,11 @@ def _lateral(context: DriveContext, inward: float, shift: float) -> Codes:
     beyond = np.maximum(others.w_max - straight[lane + 1], straight[lane] - others.w_min)
     clear = np.maximum(others.w_min - own.w_max, own.w_min - others.w_max)
     beside_way = (beyond > reach + inward) & (clear > reach + inward)
-    return np.where(
-        (sides == SAME_LANE) & beside_way, np.where(own.w < others.w, RIGHT_OF, LEFT_OF), sides
-    )
+    into = np.minimum(others.w_max - straight[lane], straight[lane + 1] - others.w_min)
+    in_the_way = (into > -inward) & (clear < inward - reach)
+    at_side = np.where(own.w < others.w, RIGHT_OF, LEFT_OF)
+    sides = np.where((sides == SAME_LANE) & beside_way, at_side, sides)
+    return np.where(in_the_way, SAME_LANE, sides)
 
 
 def _moved(extents: RoadExtents, across: float) -> RoadExtents:

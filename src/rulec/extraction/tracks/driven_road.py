@@ -26,6 +26,7 @@ from rulec.scenario.recorded.reference_line import (
     pieces_at,
     reference_line,
     smoothed,
+    turn,
 )
 from rulec.scenario.recorded.route import directions_beside, is_lane, lanes_beside, roads_beyond
 
@@ -34,6 +35,8 @@ _AWAY_M = 30.0
 """A road meets itself if it is so near to a piece so far along it."""
 
 _FEWEST_CORNERS = 20
+
+_HAIR_M = 0.01
 
 _CROSSING_ANGLE = radians(30.0)
 """Ways that meet at a smaller angle run into each other, as where lanes join or part."""
@@ -66,6 +69,22 @@ class DrivenRoad:
         own = row[self.own_lanes[piece]]
         assert own is not None
         return row[lane] or own
+
+    def limit_mps(self, piece: int, lane: int, most_turned: float) -> float | None:
+        """The limit of a lane, None if the map has none there.
+
+        In a junction without one it is that before it if the same one holds behind it, and the road
+        turns by no more than an angle (rad): a sign goes on for who goes on.
+        """
+        own = self.lanelet(piece, lane).limit_mps
+        middle = (self.borders[piece] + self.borders[piece + 1]) / 2
+        for start, end in self.junctions:
+            if own is None and start < middle < end:
+                ends = np.array([start - _HAIR_M, end + _HAIR_M])
+                before, after = (self.lanelet(k, lane).limit_mps for k in self.piece(ends).tolist())
+                turned = abs(turn(*self.line.headings_at(ends).tolist()))
+                return before if before == after and turned <= most_turned else None
+        return own
 
     def piece(self, s: Floats) -> NDArray[intp]:
         """The numbers of the lanelets at places."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 from numpy import bool_, float64, intp
@@ -15,6 +16,12 @@ _LEAST_PART = 0.7
 
 _AGREES, _STANDS_MPS = 0.05, 0.1
 """Stated speeds count if they make the way that places do, to a twentieth, or so much in the mean.
+"""
+
+_SLIP_S, _GRIP_MPS2, _HAIR = 0.3, 10.0, 1e-6
+"""A track that gains or loses more speed over so long than tyres can has slipped off its vehicle.
+
+Tyres hold about 1 g on a dry road.
 """
 
 
@@ -54,7 +61,8 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     speeds are ``known`` better and agree with its places.
     """
     present = ~np.isnan(poses.x)
-    duration, before, after = _windows(present, max(1, round(smoothing_s / 2 / step_s)))
+    reach = max(1, round(smoothing_s / 2 / step_s))
+    duration, before, after = _windows(present, reach)
     rows = np.arange(len(present))[:, None]
     seconds = np.where(duration > 0, duration, np.nan) * step_s
     vx = (poses.x[rows, after] - poses.x[rows, before]) / seconds
@@ -80,6 +88,11 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     beside = np.abs((before + after) / 2 - np.arange(present.shape[1])) * step_s
     error = known.speed_mps / np.where(single, 1.0, seconds)
     error += np.nan_to_num(np.abs(gained) * beside)
+    # A slip is anywhere in the time over which it shows
+    steps = ceil(_SLIP_S / step_s - _HAIR)
+    slips = poses.steers[:, None] * _slips(poses, steps, step_s)
+    off = slips.any(axis=1)
+    error[off] += np.where(single[off], 0.0, _most_around(slips[off], reach + steps) / seconds[off])
     error = np.where(own[:, None], known.stated_mps or 0.0, error)
     gained_error = np.hypot(error[rows, after], error[rows, before]) / seconds
     return Motion(
@@ -90,6 +103,32 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         acceleration=np.where(present, np.nan_to_num(gained), np.nan),
         acceleration_error=np.nan_to_num(gained_error),
     )
+
+
+def _slips(poses: Poses, steps: int, step_s: float) -> NDArray[float64]:
+    """How far (m) tracks jump along their heading, where they do: 0 where a vehicle could drive so.
+
+    By the second difference of places over ``_SLIP_S``, where tyres would not hold.
+    """
+    jumps = np.zeros(poses.x.shape)
+    if poses.x.shape[1] > 2 * steps:
+        (x, y), inner = (
+            (
+                way[:, 2 * steps :] - 2 * way[:, steps:-steps] + way[:, : -2 * steps]
+                for way in (poses.x, poses.y)
+            ),
+            poses.heading[:, steps:-steps],
+        )
+        jumps[:, steps:-steps] = np.nan_to_num(np.abs(x * np.cos(inner) + y * np.sin(inner)))
+    return np.where(jumps > _GRIP_MPS2 * (steps * step_s) ** 2, jumps, 0.0)
+
+
+def _most_around(values: NDArray[float64], reach: int) -> NDArray[float64]:
+    """The greatest value of each row up to so many columns away."""
+    padded = np.pad(values, ((0, 0), (reach, reach)))
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=1)
+    most: NDArray[float64] = windows.max(axis=2)
+    return most
 
 
 def _agree(speed: NDArray[float64], stated: NDArray[float64]) -> NDArray[bool_]:
