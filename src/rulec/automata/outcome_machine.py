@@ -201,8 +201,9 @@ class SetMonitor:
         """
         here, lost = self.start, self.machine.lost
         step = OutcomeRange(here, KEPT, KEPT)
+        steps = self._steps
         for index, classes in enumerate(word):
-            step = self.step(here, classes)
+            step = steps.get((here, classes)) or self.step(here, classes)
             here = step.states
             if step.best == VIOLATED and lost.issuperset(self._sets[here]):
                 return VIOLATED, VIOLATED, index

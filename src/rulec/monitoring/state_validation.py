@@ -16,7 +16,7 @@ from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALU
 from rulec.trace import State
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, UnknownValue
 
 NUMBERS = frozenset({int, float})
 TRUTHS = frozenset({bool})
@@ -34,6 +34,7 @@ class StateValidator:
         self._vocabulary = vocabulary
         self._objects = objects
         self._looks = _Looks(vocabulary, objects)
+        self._partial_looks = _Looks(vocabulary, objects, partial=True)
 
     def check(
         self,
@@ -45,30 +46,29 @@ class StateValidator:
 
         True if some value is partly known only.
         """
-        is_partial = False
-        for number, state in enumerate(states):
-            if not self.passes(state):
-                check_state(state, self._objects, self._vocabulary, where(number), place)
-                is_partial = is_partial or has_partial_values(state)
-        return is_partial
-
-    def passes(self, state: Any) -> bool:
-        """Quick check that a state fits; False leaves it open."""
         looks = self._looks
-        try:
-            if type(state) is not dict:
-                return False
-            return all([looks[name](value) for name, value in state.items()])  # noqa: C419 - faster
-        except (LookupError, TypeError, OverflowError):
-            return False
+        for number, state in enumerate(states):
+            if _passes(state, looks):
+                continue
+            # Where something is not known it mostly is not elsewhere either.
+            if looks is self._looks and _passes(state, self._partial_looks):
+                looks = self._partial_looks
+                continue
+            check_state(state, self._objects, self._vocabulary, where(number), place)
+            if has_partial_values(state):
+                looks = self._partial_looks
+        return looks is self._partial_looks
 
 
 class _Looks(dict[str, _Look]):
-    """Quick checks of values by name, compiled on first use."""
+    """Quick checks of values by name, compiled on first use; of ``partial`` ones if so."""
 
-    def __init__(self, vocabulary: Vocabulary, objects: Mapping[str, str]) -> None:
+    def __init__(
+        self, vocabulary: Vocabulary, objects: Mapping[str, str], *, partial: bool = False
+    ) -> None:
         self._vocabulary = vocabulary
         self._objects = objects
+        self._partial = partial
 
     def __missing__(self, name: str) -> _Look:
         vocabulary = self._vocabulary
@@ -79,8 +79,18 @@ class _Looks(dict[str, _Look]):
             )
             for kind in declaration.parameters
         ]
-        self[name] = _look(declaration, fitting)
+        self[name] = _look(declaration, fitting, partial=self._partial)
         return self[name]
+
+
+def _passes(state: Any, looks: _Looks) -> bool:
+    """Quick check that a state fits; False leaves it open."""
+    try:
+        if type(state) is not dict:
+            return False
+        return all([looks[name](value) for name, value in state.items()])  # noqa: C419 - faster
+    except (LookupError, TypeError, OverflowError):
+        return False
 
 
 def check_objects(
@@ -196,41 +206,56 @@ def _check_value(
         _check_value(inner, declaration, parameters[1:], about)
 
 
-def _look(declaration: Declaration, fitting: list[frozenset[str]]) -> _Look:
+def _look(declaration: Declaration, fitting: list[frozenset[str]], *, partial: bool) -> _Look:
     if not fitting:
-        return _one_value(declaration)
+        return _one_value(declaration, partial=partial)
     objects, *others = fitting
     if others:
-        inner = _look(declaration, others)
+        inner = _look(declaration, others, partial=partial)
         return lambda given: (
             type(given) is dict and objects.issuperset(given) and all(map(inner, given.values()))
         )
-    values = _many_values(declaration)
+    values = _many_values(declaration, partial=partial)
     return lambda given: (
         type(given) is dict and objects.issuperset(given) and values(given.values())
     )
 
 
-def _one_value(declaration: Declaration) -> _Look:
+def _one_value(declaration: Declaration, *, partial: bool) -> _Look:
     match declaration:
         case Enumeration():
-            return frozenset(declaration.values).__contains__
+            return _known_values(declaration, partial=partial).__contains__
+        case Signal() if partial:
+            return lambda value: type(value) is bool or value is UNKNOWN
         case Signal():
             return lambda value: type(value) is bool
+        case Quantity() if partial:
+            return _fits_quantity
         case Quantity():
             return lambda value: type(value) in NUMBERS and math.isfinite(value)
 
 
-def _many_values(declaration: Declaration) -> _Look:
+def _many_values(declaration: Declaration, *, partial: bool) -> _Look:
     match declaration:
         case Enumeration():
-            return frozenset(declaration.values).issuperset
+            return _known_values(declaration, partial=partial).issuperset
         case Signal():
-            return lambda values: TRUTHS.issuperset(map(type, values))
+            truths = TRUTHS | {UnknownValue} if partial else TRUTHS
+            return lambda values: truths.issuperset(map(type, values))
+        case Quantity() if partial:
+            return lambda values: all(map(_fits_quantity, values))
         case Quantity():
             return lambda values: (
                 NUMBERS.issuperset(map(type, values)) and all(map(math.isfinite, values))
             )
+
+
+def _known_values(declaration: Enumeration, *, partial: bool) -> frozenset[object]:
+    return frozenset([*declaration.values, UNKNOWN] if partial else declaration.values)
+
+
+def _fits_quantity(value: Any) -> bool:
+    return type(value) in UNKNOWN_TYPES or (type(value) in NUMBERS and math.isfinite(value))
 
 
 def _misfit(value: Any, declaration: Declaration) -> str:

@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.logic.free_names import names_in
-from rulec.monitoring.uncertainty.possible_letters import untold_names
+from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names
 from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 from rulec.value_display import Rows, short_repr
 

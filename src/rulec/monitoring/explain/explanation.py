@@ -23,7 +23,7 @@ from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.one_completion import completed, with_all_defaults
-from rulec.monitoring.uncertainty.possible_letters import untold_names, with_untold
+from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import letter_reader_of
 from rulec.trace import Trace, Value

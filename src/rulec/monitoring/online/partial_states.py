@@ -6,11 +6,12 @@ from collections.abc import Mapping
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
+from rulec.monitoring.bindings import Binding
 from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.rule_group import PreparedRule
-from rulec.monitoring.uncertainty.entanglement import Entanglement
-from rulec.monitoring.uncertainty.possible_letters import PossibleLetters
+from rulec.monitoring.uncertainty.state_letters.entanglement import Entanglement
+from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
 from rulec.trace import State, Trace
 
 Entangled = dict[tuple[str, tuple[str, ...]], Entanglement]
@@ -44,8 +45,9 @@ class PartialStateReader:
         Raises RulecError R0504 if a value without default is missing, R0508 if the state cannot be.
         """
         bound = prepared.bound(items)
-        word = self._reader.word(prepared.rule, bound, 0, 0)
-        letter_class = prepared.uncertain.letter_class(word.states[0])
+        classes = prepared.uncertain.classes
+        word = self._reader.word(prepared.rule, classes, Binding(bound, 0, 0))
+        letter_class = prepared.uncertain.letter_class(word.classes[0])
         if letter_class is None:
             raise self._reader.impossible(prepared.rule, bound, 0)
         is_constant = any(word.unknown[place] for place in prepared.constants)

@@ -75,7 +75,7 @@ class PreparedRule:
     @cached_property
     def is_joint(self) -> bool:
         """Whether what is unknown may have to do with other values of a state."""
-        from rulec.monitoring.uncertainty.possible_letters import is_joint  # as above
+        from rulec.monitoring.uncertainty.state_letters.possible_letters import is_joint  # as above
 
         return is_joint(self.rule, self.axioms)
 

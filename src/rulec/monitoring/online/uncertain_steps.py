@@ -21,9 +21,9 @@ from rulec.monitoring.online.four_valued import (
     edges_between,
     within,
 )
-from rulec.monitoring.uncertainty.letter_classes import LetterClasses, Letters
-from rulec.monitoring.uncertainty.letter_diagram import bits_of
-from rulec.monitoring.uncertainty.possible_letters import possible_digits
+from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import bits_of
+from rulec.monitoring.uncertainty.state_letters.read_digits import possible_digits
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 
 MOST_STEPS = 1 << 16
@@ -57,7 +57,7 @@ class UncertainSteps:
         self, machine: OutcomeMachine, edges: Mapping[tuple[int, FourValued], MonitorEdge]
     ) -> None:
         self._machine = machine
-        self._classes = LetterClasses(machine)
+        self.classes = LetterClasses(machine)
         self._single = edges
         self._masks: list[dict[Any, int]] = [{} for _ in machine.reads]
         self._sets: dict[int, LetterClass | None] = {}
@@ -95,10 +95,6 @@ class UncertainSteps:
             self._edges[key] = UncertainEdge(tuple(sorted(members)), verdict)
         return self._edges[key]
 
-    def letter_class(self, letters: Letters) -> LetterClass | None:
-        """The classes of possible letters; None if facts exclude them all."""
-        return self._class_with(self._classes.of(letters))
-
     def class_of(
         self, digits: Sequence[Any], inputs: Sequence[tuple[object, DigitWeight]]
     ) -> LetterClass | None:
@@ -118,9 +114,10 @@ class UncertainSteps:
                 if type(digit) is not Interval:
                     known[digit] = mask
             cube.append(mask)
-        return self._class_with(self._classes.diagram.classes(cube))
+        return self.letter_class(self.classes.diagram.classes(cube))
 
-    def _class_with(self, mask: int) -> LetterClass | None:
+    def letter_class(self, mask: int) -> LetterClass | None:
+        """The classes given as bits; None if facts exclude them all."""
         if mask not in self._sets:
             single = mask.bit_length() - 1 if mask else None
             self._sets[mask] = single if mask & (mask - 1) == 0 else frozenset(bits_of(mask))

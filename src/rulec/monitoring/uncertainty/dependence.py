@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from itertools import combinations, product
 
 from rulec.automata.outcome_machine import KEPT, OutcomeRange, SetMonitor
-from rulec.monitoring.uncertainty.letter_classes import LetterClasses, Letters
+from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
+from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 
 MOST_WAYS = 1 << 12
 """So many sets of states are told apart while looking for what decides."""

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, cast
+from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.monitoring.bindings import Binding
-from rulec.monitoring.uncertainty.completions import Subject
-from rulec.monitoring.uncertainty.possible_letters import PossibleLetters
+from rulec.monitoring.uncertainty.state_letters.completions import Subject
+from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
-from rulec.trace import State, Trace, Value
+from rulec.trace import Trace, Value
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
+from rulec.vocabulary.partial_values import UNKNOWN, PartialValue, UnknownValue
 
 
 class Suppositions:
@@ -30,6 +30,8 @@ class Suppositions:
     def of(self, rule: CompiledRule, binding: Binding) -> tuple[list[dict[Subject, Value]], bool]:
         """The values that unknown constants which a rule or a fact reads may have, together."""
         subjects = self._reader.read_by(rule, binding.objects)
+        if not subjects:
+            return [{}], True
         return self._reader.suppositions(rule, {x: self._constant(x) for x in subjects})
 
     def _constant(self, subject: Subject) -> PartialValue | None:
@@ -53,37 +55,19 @@ def spelled_out(trace: Trace, vocabulary: Vocabulary) -> Trace:
             given = {item: UNKNOWN for item, kind in own if vocabulary.is_subtype(kind, kinds[0])}
         return {item: each(inner, kinds[1:]) for item, inner in given.items()}
 
-    if not any(
-        name in wanted
-        and (value is UNKNOWN or (len(wanted[name]) > 1 and UNKNOWN in cast("Any", value).values()))
-        for state in trace.states
-        for name, value in state.items()
-    ):
+    nested = [name for name, kinds in wanted.items() if len(kinds) > 1]
+
+    def is_short(state: Any) -> bool:
+        if UnknownValue in map(type, state.values()) and any(
+            state.get(name) is UNKNOWN for name in wanted
+        ):
+            return True
+        return any(name in state and UNKNOWN in state[name].values() for name in nested)
+
+    if not any(map(is_short, trace.states)):
         return trace
     states = [
         {name: each(value, wanted.get(name, ())) for name, value in state.items()}
         for state in trace.states
     ]
     return replace(trace, states=tuple(states))
-
-
-def with_supposed(trace: Trace, values: Mapping[Subject, Value]) -> Trace:
-    """The trace in each of whose states these are the values."""
-    return replace(trace, states=tuple(_supposed(trace.states, values))) if values else trace
-
-
-def _supposed(states: Sequence[State], values: Mapping[Subject, Value]) -> Iterator[State]:
-    for state in states:
-        changed: dict[str, Any] = dict(state)
-        for (name, items), value in values.items():
-            if not items:
-                changed[name] = value
-            else:
-                changed[name] = _nested(changed.get(name) or {}, items, value)
-        yield changed
-
-
-def _nested(given: Mapping[str, Any], items: tuple[str, ...], value: Value) -> Mapping[str, Any]:
-    first, *others = items
-    inner = _nested(given.get(first) or {}, tuple(others), value) if others else value
-    return {**given, first: inner}

@@ -23,8 +23,9 @@ from rulec.automata.outcome_machine import (
 from rulec.automata.thresholds import scale
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.uncertainty.dependence import BEFORE, Dependence, PossibleAlternative
-from rulec.monitoring.uncertainty.letter_classes import LetterClasses, Letters
-from rulec.monitoring.uncertainty.possible_letters import PossibleWord, names_of_read
+from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
+from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleWord
+from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, names_of_read
 from rulec.monitoring.verdict import ConditionalOutcome, OpenReasons, OutcomeName, Reason
 
 MOST_OUTCOMES = 1 << 4
@@ -68,12 +69,11 @@ class UncertainMachine:
 
     def impossible_at(self, word: PossibleWord) -> int | None:
         """The index of a state that has no possible letter."""
-        classes = self.classes
-        return next((n for n, letters in enumerate(word.states) if not classes.of(letters)), None)
+        return word.classes.index(0) if 0 in word.classes else None
 
     def answer(self, words: Sequence[PossibleWord]) -> Answer:
         """What the completions come to; ``words`` are by the values of what does not change."""
-        runs = [self._run(word.states) for word in words]
+        runs = [self.monitor.run(word.classes) for word in words]
         best, worst = min(run[0] for run in runs), max(run[1] for run in runs)
         steps = [step for *_, step in runs if step is not None]
         return Answer(best, worst, max(steps) if len(steps) == len(runs) else None)

@@ -14,11 +14,17 @@ from functools import partial
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED
 from rulec.monitoring.bindings import Binding, binding_of, bindings
-from rulec.monitoring.uncertainty.completions import Subject
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
-from rulec.monitoring.uncertainty.possible_letters import PossibleLetters, PossibleWord
-from rulec.monitoring.uncertainty.suppositions import Suppositions, spelled_out, with_supposed
-from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
+from rulec.monitoring.uncertainty.state_letters.possible_letters import (
+    PossibleLetters,
+    PossibleWord,
+)
+from rulec.monitoring.uncertainty.suppositions import Suppositions
+from rulec.monitoring.uncertainty.uncertain_machine import (
+    Answer,
+    UncertainMachine,
+    uncertain_machine,
+)
 from rulec.monitoring.uncertainty.within_tolerance import told_within_bounds
 from rulec.monitoring.verdict import (
     NO_PAST,
@@ -28,14 +34,14 @@ from rulec.monitoring.verdict import (
     Verdict,
     Violation,
 )
-from rulec.trace import State, Trace, Value
+from rulec.trace import State, Trace
 from rulec.vocabulary import Vocabulary
 
 
 def uncertain_verdict(
     trace: Trace, rulebook: CompiledRulebook, past: CarriedState = NO_PAST
 ) -> Verdict:
-    """The verdict on a checked trace, by a rulebook for its step.
+    """The verdict on a checked trace that is ``spelled_out``, by a rulebook for its step.
 
     A complete trace may go on where a ``past`` has ended; what was settled there is not judged.
     Raises RulecError R0504 if a value without default is missing, R0508 if a state contradicts a
@@ -45,18 +51,19 @@ def uncertain_verdict(
 
 
 class UncertainRun:
-    """The judgement of one checked trace, with what its rules share."""
+    """The judgement of one checked trace that is ``spelled_out``, with what its rules share."""
 
     def __init__(
         self, trace: Trace, rulebook: CompiledRulebook, past: CarriedState = NO_PAST
     ) -> None:
-        self.trace = spelled_out(trace, rulebook.vocabulary)
+        self.trace = trace
         self.rulebook = rulebook
         self.past = past
         self.judged = judged_rules(rulebook, trace.told, cut=trace.ends == "cut")
         self.vocabulary = self.judged.vocabulary
+        self._known: dict[tuple[object, ...], Answer] = {}
         self._suppositions = Suppositions(self.trace, rulebook, self.vocabulary)
-        self._letters: dict[tuple[object, ...], PossibleLetters] = {}
+        self._letters = PossibleLetters(self.trace, rulebook, self.vocabulary)
 
     def verdict(self) -> Verdict:
         """The verdict of all rules."""
@@ -115,7 +122,10 @@ class UncertainRun:
             perhaps_settled = about in self.past.perhaps_settled
             own = uncertain_machine(rule, None, self.past.starts(about))
         words, constants, is_exact = self._words(rule, own, binding)
-        answer = own.answer(words)
+        # Bindings with equal words share a run.
+        key = own, *[word.classes for word in words]
+        answer = self._known.get(key) or own.answer(words)
+        self._known[key] = answer
         if answer.worst == KEPT:
             return None
         if answer.best == VIOLATED and perhaps_settled:
@@ -134,9 +144,7 @@ class UncertainRun:
         supposed, is_exact = self._suppositions.of(rule, binding)
         words, constants = [], []
         for values in supposed:
-            letters = self._letters_where(values)
-            word = letters.word(rule, binding.objects, binding.first, binding.last)
-            words.append(word)
+            words.append(self._letters.word(rule, machine.classes, binding, values))
             by_name: dict[str, object] = {}
             for (name, items), value in values.items():
                 by_name[name] = (by_name.get(name), items, value) if items else value
@@ -144,17 +152,10 @@ class UncertainRun:
         broken = [machine.impossible_at(word) for word in words]
         if None not in broken:
             number = binding.first + (broken[0] or 0)
-            raise self._letters_where({}).impossible(rule, binding.objects, number)
+            raise self._letters.impossible(rule, binding.objects, number)
         possible = [n for n, place in enumerate(broken) if place is None]
         is_exact = is_exact and all(words[n].exact for n in possible)
         return [words[n] for n in possible], [constants[n] for n in possible], is_exact
-
-    def _letters_where(self, values: Mapping[Subject, Value]) -> PossibleLetters:
-        key = tuple(values.items())
-        if key not in self._letters:
-            trace = with_supposed(self.trace, values)
-            self._letters[key] = PossibleLetters(trace, self.rulebook, self.vocabulary)
-        return self._letters[key]
 
 
 def presumed_in(trace: Trace, names: Sequence[str]) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from rulec.logic.kleene import holds
 from rulec.monitoring.bindings import Binding, bindings
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.verify import run
 from rulec.partition.prediction_worlds import PredictedPath
@@ -151,6 +152,7 @@ class ViolationEvents:
         words = self._words
         there = {name: span for name, span in words.present.items() if name in objects}
         trace = Trace("", words.step_s, objects, tuple(self._states), there, told=words.told)
+        trace = spelled_out(trace, self._book.vocabulary)
         return _Columns(known, UncertainRun(trace, self._book))
 
     def _is_in_doubt(self, rule: CompiledRule) -> bool:

@@ -12,7 +12,7 @@ from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, bindings
 from rulec.monitoring.letter_reader import LetterReader, present_in
 from rulec.monitoring.state_validation import StateValidator, check_objects
-from rulec.monitoring.uncertainty.possible_letters import untold_names, with_untold
+from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
 from rulec.monitoring.verify import run
 from rulec.planning.product.graph_instance import GraphInstance

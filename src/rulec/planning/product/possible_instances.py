@@ -7,7 +7,7 @@ made a machine of their own, so that paths can be counted by it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -17,8 +17,7 @@ from rulec.logic.free_names import names_in
 from rulec.monitoring.bindings import Binding, bindings
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.state_validation import partial_names
-from rulec.monitoring.uncertainty.completions import Subject
-from rulec.monitoring.uncertainty.possible_letters import (
+from rulec.monitoring.uncertainty.state_letters.possible_letters import (
     PossibleLetters,
     untold_names,
     with_untold,
@@ -26,12 +25,11 @@ from rulec.monitoring.uncertainty.possible_letters import (
 from rulec.monitoring.uncertainty.suppositions import (
     Suppositions,
     spelled_out,
-    with_supposed,
 )
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
 from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged
 from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine
-from rulec.trace import Trace, TraceGraph, Value
+from rulec.trace import Trace, TraceGraph
 
 MOST_SETS = 1 << 10
 """So many sets of states are told apart; of further ones anything is taken to be possible."""
@@ -72,10 +70,9 @@ class PossibleNodes:
     ) -> None:
         self._graph = graph
         self._rulebook = rulebook
-        self._places = places
         self._untold = untold_names(rulebook.vocabulary, graph.told)
         self._vocabulary = with_untold(rulebook.vocabulary, self._untold)
-        self._layers = [
+        layers = [
             spelled_out(
                 Trace(
                     "", graph.step_s, present_in(layer, graph.objects, graph.present), tuple(states)
@@ -84,11 +81,14 @@ class PossibleNodes:
             )
             for layer, states in enumerate(graph.states)
         ]
-        self._partial = self._untold.union(*(partial_names(layer.states) for layer in self._layers))
-        some = tuple(layer.states[0] if layer.states else {} for layer in self._layers)
+        self._partial = self._untold.union(*(partial_names(layer.states) for layer in layers))
+        some = tuple(layer.states[0] if layer.states else {} for layer in layers)
         path = Trace("", graph.step_s, graph.objects, some, graph.present)
         self._suppositions = Suppositions(path, rulebook, self._vocabulary)
-        self._letters: dict[tuple[object, ...], list[PossibleLetters]] = {}
+        self._letters = [
+            PossibleLetters(layer, rulebook, self._vocabulary, where)
+            for layer, where in zip(layers, places, strict=True)
+        ]
         self._machines: dict[object, tuple[Sequence[tuple[int, ...]], Readings]] = {}
 
     def concern(self, rule: CompiledRule) -> bool:
@@ -132,29 +132,19 @@ class PossibleNodes:
         words: dict[_Word, None] = {}
         layers = range(binding.first, binding.last + 1)
         for values in supposed:
-            letters = self._letters_where(values)
             word = []
             for layer in layers:
                 last = len(self._graph.states[layer]) - 1
-                possible = letters[layer].word(rule, binding.objects, 0, last)
+                nodes = Binding(binding.objects, 0, last)
+                possible = self._letters[layer].word(rule, machine.classes, nodes, values)
                 is_exact = is_exact and possible.exact
-                word.append(tuple([machine.classes.of(each) for each in possible.states]))
+                word.append(possible.classes)
             words[tuple(word)] = None
         for layer, columns in zip(layers, zip(*words, strict=True), strict=True):
             for node, classes in enumerate(zip(*columns, strict=True)):
                 if not any(classes):
-                    here = self._letters_where({})[layer]
-                    raise here.impossible(rule, binding.objects, node)
+                    raise self._letters[layer].impossible(rule, binding.objects, node)
         return tuple(words), is_exact
-
-    def _letters_where(self, values: Mapping[Subject, Value]) -> list[PossibleLetters]:
-        key = tuple(values.items())
-        if key not in self._letters:
-            self._letters[key] = [
-                PossibleLetters(with_supposed(layer, values), self._rulebook, self._vocabulary, at)
-                for layer, at in zip(self._layers, self._places, strict=True)
-            ]
-        return self._letters[key]
 
     def _instance(
         self,

@@ -14,8 +14,12 @@ from rulec.automata.thresholds import exact
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import Unknown
 from rulec.monitoring.letter_reader import present_in
-from rulec.monitoring.uncertainty.completions import Subject, joint_digits, subjects_of_read
-from rulec.monitoring.uncertainty.entanglement import NothingKnown
+from rulec.monitoring.uncertainty.state_letters.completions import (
+    Subject,
+    joint_digits,
+    subjects_of_read,
+)
+from rulec.monitoring.uncertainty.state_letters.entanglement import NothingKnown
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from rulec.trace import Value
 from rulec.trace.trace_columns import Array, TraceColumns

@@ -9,7 +9,7 @@ from functools import lru_cache
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
 from rulec.monitoring.batch.machines.joint_machine import JointMachine
-from rulec.monitoring.uncertainty.letter_diagram import LetterSets
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterSets
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 
 MOST_ENTRIES = 1 << 18

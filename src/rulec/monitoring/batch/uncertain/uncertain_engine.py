@@ -27,11 +27,11 @@ from rulec.monitoring.batch.uncertain.set_table import (
     set_tables,
 )
 from rulec.monitoring.batch.verdict_columns import RuleBinding, VerdictColumns
-from rulec.monitoring.uncertainty.completions import Subject
-from rulec.monitoring.uncertainty.entanglement import NothingKnown, entanglement
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules
-from rulec.monitoring.uncertainty.letter_diagram import Numbers
-from rulec.monitoring.uncertainty.possible_letters import is_joint
+from rulec.monitoring.uncertainty.state_letters.completions import Subject
+from rulec.monitoring.uncertainty.state_letters.entanglement import NothingKnown, entanglement
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
+from rulec.monitoring.uncertainty.state_letters.possible_letters import is_joint
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from rulec.trace import Value

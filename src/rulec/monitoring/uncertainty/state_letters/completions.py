@@ -25,7 +25,7 @@ from rulec.logic.kleene import (
     number_of,
     weighted_sum,
 )
-from rulec.monitoring.uncertainty.linear_arrangement import LinearPlane, sample_points
+from rulec.monitoring.uncertainty.state_letters.linear_arrangement import LinearPlane, sample_points
 from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue

@@ -14,7 +14,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import Unknown, holds
-from rulec.monitoring.uncertainty.completions import (
+from rulec.monitoring.uncertainty.state_letters.completions import (
     PartialView,
     Subject,
     subjects_in,
@@ -77,13 +77,13 @@ def entanglement(
     counted: set[Subject] = set()
     entangled: set[Subject] = set()
     for read in reads:
-        count = next((term for term in _terms(read) if isinstance(term, ltl.Count)), None)
+        count = count_in(read)
+        own = list(deciding_subjects(read, binding, everybody))
         if count is None:
-            places.update(subjects_of_read(read, binding, everybody))
+            places.update(own)
             continue
         assert isinstance(read, NumberRead)
-        own = list(_subjects_counted(count, binding, everybody))
-        if len(read.terms) > 1 or _skips(read) or any(map(_counts, ltl.atoms_of(count.body))):
+        if len(read.terms) > 1 or _skips(read) or any(map(counts, ltl.atoms_of(count.body))):
             own = [*subjects_of_read(read, binding, everybody)]
             entangled.update(own)
         counted.update(own)
@@ -93,21 +93,27 @@ def entanglement(
     return Entanglement(frozenset(entangled), frozenset(counted))
 
 
-def _terms(read: Read | NumberRead) -> Iterator[ltl.Term]:
-    if isinstance(read, NumberRead):
-        yield from (term for _, term in read.terms)
+def count_in(read: Read | NumberRead) -> ltl.Count | None:
+    """The first term of a read that counts, if any."""
+    terms = read.terms if isinstance(read, NumberRead) else ()
+    return next((term for _, term in terms if isinstance(term, ltl.Count)), None)
 
 
-def _counts(part: ltl.Proposition) -> bool:
+def counts(part: ltl.Proposition) -> bool:
+    """Whether a part of a formula compares how many count."""
     return isinstance(part, ltl.Comparison) and any(
         isinstance(term, ltl.Count) for _, term in part.terms
     )
 
 
-def _subjects_counted(
-    count: ltl.Count, binding: Mapping[str, str], everybody: NothingKnown
+def deciding_subjects(
+    read: Read | NumberRead, binding: Mapping[str, str], everybody: NothingKnown
 ) -> Iterator[Subject]:
-    """What decides whether objects count, with repetitions."""
+    """What decides a read, with repetitions; of a count what decides whether objects count."""
+    count = count_in(read)
+    if count is None:
+        yield from subjects_of_read(read, binding, everybody)
+        return
     vocabulary = everybody.vocabulary
     for item, kind in everybody.objects.items():
         inner = {**binding, count.variable: item}

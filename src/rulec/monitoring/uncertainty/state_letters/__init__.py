@@ -1,0 +1,1 @@
+"""The letters that a state may have of which not all is known."""

@@ -1,0 +1,132 @@
+"""The classes of letters that a state may have, by what is known of each read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import product
+from typing import TypeVar
+
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
+from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
+    EntangledReads,
+    entangled_reads,
+)
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram, bits_of
+from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters, read_digits
+from rulec.vocabulary import Vocabulary
+
+MOST_KEPT = 1 << 16
+"""Letters whose classes are kept before all are forgotten."""
+
+_Key = TypeVar("_Key")
+_Value = TypeVar("_Value")
+
+
+class LetterClasses:
+    """The classes of possible letters of a machine, as bit sets."""
+
+    def __init__(self, machine: OutcomeMachine) -> None:
+        self.diagram = LetterDiagram(machine)
+        self._known: dict[Letters, int] = {}
+        self._groups: dict[tuple[Letters, tuple[int, ...]], Mapping[Cube, int]] = {}
+        self._rules: dict[str, RuleLetters] = {}
+
+    def of(self, letters: Letters) -> int:
+        """The classes of letters; 0 if facts exclude them all."""
+        known = self._known.get(letters)
+        if known is None:
+            known = 0
+            for cube in letters:
+                known |= self.diagram.classes(cube)
+            _keep(self._known, letters, known)
+        return known
+
+    def of_rule(
+        self, rule: CompiledRule, axioms: Sequence[CompiledAxiom], vocabulary: Vocabulary
+    ) -> RuleLetters:
+        """The letters of a rule that has this machine."""
+        about = (rule.variables, axioms, vocabulary.types)
+        known = self._rules.get(rule.name)
+        if known is None or any(x is not y for x, y in zip(known.about, about, strict=True)):
+            known = RuleLetters(self, rule, axioms, vocabulary)
+            self._rules[rule.name] = known
+        return known
+
+    def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
+        """The classes of letters by the digits, as bits, of ``fixed`` reads."""
+        key = letters, fixed
+        if key not in self._groups:
+            groups: dict[Cube, int] = {}
+            for cube in letters:
+                for part in product(*[_single(cube[place]) for place in fixed]):
+                    chosen = dict(zip(fixed, part, strict=True))
+                    narrowed = [chosen.get(n, mask) for n, mask in enumerate(cube)]
+                    groups[part] = groups.get(part, 0) | self.diagram.classes(narrowed)
+            _keep(self._groups, key, {part: classes for part, classes in groups.items() if classes})
+        return self._groups[key]
+
+
+class RuleLetters:
+    """The letters that a rule may read of its objects, by keys.
+
+    A key has the digits, as bits, of each read that is independent of the others, and last the
+    place of what the others may be among ``entangled.found``. That is None if these depend on more
+    than the rule's own objects; then a key has the digits of all ``reads``.
+    """
+
+    def __init__(
+        self,
+        classes: LetterClasses,
+        rule: CompiledRule,
+        axioms: Sequence[CompiledAxiom],
+        vocabulary: Vocabulary,
+    ) -> None:
+        self.about = (rule.variables, axioms, vocabulary.types)
+        self.reads = tuple([read_digits(read) for read in rule.machine.reads])
+        self.entangled: EntangledReads | None = entangled_reads(rule, axioms, vocabulary)
+        self.independent = tuple(range(len(self.reads)))
+        if self.entangled is not None:
+            self.independent = self.entangled.others
+        self._classes = classes
+        self._known: dict[tuple[int, ...], int] = {}
+
+    def classes(self, keys: Sequence[tuple[int, ...]]) -> list[int]:
+        """The classes, as bits, of letters; 0 where facts exclude them all."""
+        known = self._known
+        try:
+            return [known[key] for key in keys]
+        except KeyError:
+            return [self.classes_of(key) for key in keys]
+
+    def classes_of(self, key: tuple[int, ...]) -> int:
+        """The classes, as bits, of the letters with a key."""
+        known = self._known.get(key)
+        if known is None:
+            known = self._classes.of(self.letters(key))
+            _keep(self._known, key, known)
+        return known
+
+    def letters(self, key: tuple[int, ...]) -> Letters:
+        """The letters with a key."""
+        if self.entangled is None or not self.entangled.numbers:
+            return (key[: len(self.reads)],)
+        found, _ = self.entangled.found[key[-1]]
+        alone = dict(zip(self.independent, key, strict=False))
+        return tuple(
+            [
+                tuple([by_read[n] for n in range(len(self.reads))])
+                for cube in found
+                for by_read in [{**alone, **dict(zip(self.entangled.numbers, cube, strict=True))}]
+            ]
+        )
+
+
+def _keep(known: dict[_Key, _Value], key: _Key, value: _Value) -> None:
+    if len(known) >= MOST_KEPT:
+        known.clear()
+    known[key] = value
+
+
+def _single(mask: int) -> list[int]:
+    return [1 << bit for bit in bits_of(mask)]

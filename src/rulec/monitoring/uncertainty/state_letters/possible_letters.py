@@ -1,0 +1,319 @@
+"""The letters that a rule's machine may read in each state, where values are not all known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import NumberRead
+from rulec.diagnostics import RulecError
+from rulec.logic import formula as ltl
+from rulec.logic.free_names import names_in
+from rulec.monitoring.axiom_violations import StatePlace, impossible_state
+from rulec.monitoring.bindings import Binding
+from rulec.monitoring.letter_reader import missing_value, present_in
+from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.state_letters.completions import (
+    MissingValueError,
+    Subject,
+    joint_digits,
+    unknown_in_read,
+)
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
+from rulec.monitoring.uncertainty.state_letters.entanglement import (
+    Entanglement,
+    NothingKnown,
+    entanglement,
+)
+from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
+from rulec.monitoring.uncertainty.state_letters.read_digits import (
+    Letters,
+    ReadDigits,
+    names_of_read,
+)
+from rulec.trace import State, Trace, Value
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
+
+NOTHING: Mapping[Subject, Value] = {}
+"""Nothing is supposed."""
+
+
+@dataclass
+class PossibleWord:
+    """The letters that a rule may read of its objects, state by state.
+
+    ``classes`` are their classes, as bits. ``exact`` is false if there are letters that are not
+    possible, because there was too much to look at. What else there is to say is found when it is
+    asked for.
+    """
+
+    classes: tuple[int, ...]
+    exact: bool
+    find_states: Callable[[], tuple[Letters, ...]]
+    find_unknown: Callable[[], tuple[frozenset[str], ...]]
+
+    @cached_property
+    def states(self) -> tuple[Letters, ...]:
+        """The letters of each state."""
+        return self.find_states()
+
+    @cached_property
+    def unknown(self) -> tuple[frozenset[str], ...]:
+        """For each read the names of values of which some are unknown."""
+        return self.find_unknown()
+
+
+def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
+    """The names that a source which tells these cannot tell, and that are not presumed."""
+    if told is None:
+        return frozenset()
+    names = vocabulary.declarations.items()
+    return frozenset(name for name, item in names if name not in told and not item.presumed)
+
+
+def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
+    """The vocabulary in which untold names are unknown where no state says them."""
+    unknown: Any = UNKNOWN
+    declarations = {
+        name: replace(item, default=unknown) if name in untold else item
+        for name, item in vocabulary.declarations.items()
+    }
+    return Vocabulary(vocabulary.name, vocabulary.types, declarations)
+
+
+@dataclass(frozen=True, slots=True)
+class _About:
+    """A rule's objects and their states, and the values that are supposed of constants."""
+
+    rule: CompiledRule
+    binding: Binding
+    supposed: Mapping[Subject, Value]
+
+    @property
+    def stretch(self) -> slice:
+        """The states."""
+        return slice(self.binding.first, self.binding.last + 1)
+
+
+class PossibleLetters:
+    """A reader of the possible letters of a checked trace.
+
+    ``vocabulary`` has the defaults of what its states do not say.
+    """
+
+    def __init__(
+        self,
+        trace: Trace,
+        rulebook: CompiledRulebook,
+        vocabulary: Vocabulary,
+        where: Callable[[int], str] = "state {}".format,
+        *,
+        entangled: dict[tuple[str, tuple[str, ...]], Entanglement] | None = None,
+    ) -> None:
+        self._trace = trace
+        self._rulebook = rulebook
+        self._vocabulary = vocabulary
+        self._where = where
+        self._views: dict[tuple[object, ...], StateView] = {}
+        self._given: dict[Subject, list[PartialValue | None]] = {}
+        self._columns: dict[tuple[object, ...], list[int]] = {}
+        self._entangled = {} if entangled is None else entangled
+
+    def view(self, number: int, supposed: Mapping[Subject, Value] = NOTHING) -> StateView:
+        """A state with the objects that are present, in which some values are supposed."""
+        key = number, *supposed.items()
+        if key not in self._views:
+            trace = self._trace
+            present = present_in(number, trace.objects, trace.present)
+            state = _with_supposed(trace.states[number], supposed)
+            self._views[key] = StateView(state, present, self._vocabulary)
+        return self._views[key]
+
+    def word(
+        self,
+        rule: CompiledRule,
+        classes: LetterClasses,
+        binding: Binding,
+        supposed: Mapping[Subject, Value] = NOTHING,
+    ) -> PossibleWord:
+        """The letters of a rule for some objects, where constants have the values ``supposed``.
+
+        Raises RulecError R0504 if a value without default is missing.
+        """
+        about = _About(rule, binding, supposed)
+        letters = classes.of_rule(rule, self._rulebook.axioms, self._vocabulary)
+        columns = [self._digits(letters.reads[n], about) for n in letters.independent]
+        is_exact = True
+        if letters.entangled is not None and letters.entangled.numbers:
+            columns.append(self._entangled_numbers(letters.entangled, about))
+            found = letters.entangled.found
+            is_exact = all(found[number][1] for number in set(columns[-1]))
+        keys = list(zip(*columns, strict=True)) or [()] * (binding.last - binding.first + 1)
+
+        def unknown() -> tuple[frozenset[str], ...]:
+            return tuple([self._unknown_names(read, about) for read in letters.reads])
+
+        if letters.entangled is None:
+            states, is_exact = self._joint_letters(keys, about)
+            own = tuple([classes.of(each) for each in states])
+            return PossibleWord(own, is_exact, lambda: states, unknown)
+        return PossibleWord(
+            tuple(letters.classes(keys)),
+            is_exact,
+            lambda: tuple([letters.letters(key) for key in keys]),
+            unknown,
+        )
+
+    def _joint_letters(
+        self, cubes: Sequence[tuple[int, ...]], about: _About
+    ) -> tuple[tuple[Letters, ...], bool]:
+        """The letters within cubes that are possible if all is looked at together."""
+        states: list[Letters] = [(cube,) for cube in cubes]
+        rule, binding = about.rule, about.binding
+        is_exact = True
+        for index, cube in enumerate(cubes):
+            number = binding.first + index
+            if all(mask & (mask - 1) == 0 for mask in cube):
+                continue
+            view = self.view(number, about.supposed)
+            if not self._entanglement(rule, binding.objects).is_met(view):
+                continue
+            try:
+                joint = joint_digits(
+                    rule.machine.reads, binding.objects, view, self._rulebook.axioms
+                )
+            except MissingValueError as error:
+                raise self._missing(error.subject, number, rule) from None
+            is_exact &= joint.exact
+            states[index] = tuple(
+                [tuple([1 << digit for digit in digits]) for digits in sorted(joint.digits)]
+            )
+        return tuple(states), is_exact
+
+    def _entanglement(self, rule: CompiledRule, objects: Mapping[str, str]) -> Entanglement:
+        key = rule.name, tuple(objects.values())
+        if key not in self._entangled:
+            everybody = NothingKnown(self._trace.objects, self._vocabulary)
+            axioms = self._rulebook.axioms
+            self._entangled[key] = entanglement(rule.machine.reads, objects, axioms, everybody)
+        return self._entangled[key]
+
+    def impossible(self, rule: CompiledRule, objects: Mapping[str, str], number: int) -> RulecError:
+        """The error (R0508) about a state that contradicts a fact."""
+        types = {objects[variable.name]: variable.type for variable in rule.variables}
+        place = StatePlace(number, self._where(number), self._trace.place)
+        return impossible_state(rule, types, self._rulebook.axioms, self.view(number), place)
+
+    def values(
+        self, name: str, items: tuple[str, ...], supposed: Mapping[Subject, Value] = NOTHING
+    ) -> list[PartialValue | None]:
+        """What every state says of a name, None where nothing, defaults included."""
+        if (name, items) in supposed:
+            return [supposed[name, items]] * len(self._trace.states)
+        if (name, items) not in self._given:
+            default: Any = self._vocabulary.declarations[name].default
+            given: Any = [state.get(name) for state in self._trace.states]
+            for item in items:
+                given = [x if x is None or x is UNKNOWN else x.get(item) for x in given]
+            self._given[name, items] = [default if value is None else value for value in given]
+        return self._given[name, items]
+
+    def _digits(self, read: ReadDigits, about: _About) -> list[int]:
+        """The digits of a read in each state."""
+        objects, binding = about.binding.objects, about.binding
+        items = tuple([objects[variable] for variable in read.variables])
+        supposed = [own for own in about.supposed.items() if own[0][0] in read.names]
+        key = (read.kind, items, binding.first, binding.last, *supposed)
+        digits = self._columns.get(key)
+        if digits is None:
+            if read.subject is None:
+                digits = [self._digits_of_sum(read, n, about) for n in self._numbers(about)]
+            else:
+                name, variables = read.subject
+                subject = name, tuple([objects[variable] for variable in variables])
+                digits = read.of_values(self.values(*subject, about.supposed)[about.stretch])
+                if 0 in digits:
+                    raise self._missing(subject, binding.first + digits.index(0), about.rule)
+            self._columns[key] = digits
+        return digits
+
+    def _digits_of_sum(self, read: ReadDigits, number: int, about: _About) -> int:
+        try:
+            return read.in_state(about.binding.objects, self.view(number, about.supposed))
+        except MissingValueError as error:
+            raise self._missing(error.subject, number, about.rule) from None
+
+    def _entangled_numbers(self, reads: EntangledReads, about: _About) -> list[int]:
+        """The places of what entangled reads may be in each state."""
+        objects = about.binding.objects
+        columns = [
+            self.values(name, tuple([objects[variable] for variable in variables]), about.supposed)[
+                about.stretch
+            ]
+            for name, variables in reads.subjects
+        ]
+        rows = zip(*columns, strict=True) if columns else [()] * len(self._numbers(about))
+        found: list[int] = []
+        try:
+            # One after the other, so that it is known in which state a value is missing.
+            found.extend(map(reads.number, rows))
+        except MissingValueError as error:
+            name, variables = error.subject
+            subject = name, tuple([objects[variable] for variable in variables])
+            number = about.binding.first + len(found)
+            raise self._missing(subject, number, about.rule) from None
+        return found
+
+    def _numbers(self, about: _About) -> range:
+        return range(about.binding.first, about.binding.last + 1)
+
+    def _unknown_names(self, read: ReadDigits, about: _About) -> frozenset[str]:
+        if all(digits & (digits - 1) == 0 for digits in self._digits(read, about)):
+            return frozenset()
+        if len(read.names) == 1:
+            return frozenset(read.names)
+        objects = about.binding.objects
+        return frozenset(
+            name
+            for number in self._numbers(about)
+            for name, _ in unknown_in_read(read.read, objects, self.view(number, about.supposed))
+        )
+
+    def _missing(self, subject: Subject, number: int, rule: CompiledRule) -> RulecError:
+        return missing_value(subject, self._where(number), rule.name, self._trace.place)
+
+
+def _with_supposed(state: State, values: Mapping[Subject, Value]) -> State:
+    """The state in which these are the values."""
+    if not values:
+        return state
+    changed: dict[str, Any] = dict(state)
+    for (name, items), value in values.items():
+        changed[name] = _nested(changed.get(name) or {}, items, value) if items else value
+    return changed
+
+
+def _nested(given: Mapping[str, Any], items: tuple[str, ...], value: Value) -> Mapping[str, Any]:
+    first, *others = items
+    inner = _nested(given.get(first) or {}, tuple(others), value) if others else value
+    return {**given, first: inner}
+
+
+def is_joint(rule: CompiledRule, axioms: Sequence[CompiledAxiom]) -> bool:
+    """Whether one read may bear on what another one, or a value that is not read, can be."""
+    terms = [
+        term
+        for read in rule.machine.reads
+        if isinstance(read, NumberRead)
+        for _, term in read.terms
+    ]
+    if any(isinstance(term, ltl.Count) for term in terms) or len(set(terms)) < len(terms):
+        return True
+    in_axioms = {name for axiom in axioms for name in names_in(axiom.formula)}
+    return not in_axioms.isdisjoint(
+        name for read in rule.machine.reads for name in names_of_read(read)
+    )

@@ -1,0 +1,142 @@
+"""The digits that reads may have, by what is known of the values on which they depend."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.thresholds import scale
+from rulec.logic import formula as ltl
+from rulec.logic.kleene import Between, Unknown, holds, weighted_sum
+from rulec.monitoring.uncertainty.state_letters.completions import (
+    MissingValueError,
+    PartialView,
+    Subject,
+)
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+
+Cube: TypeAlias = tuple[int, ...]
+"""For each read the bit set of its digits, each of which goes with each of the others'."""
+
+Letters: TypeAlias = tuple[Cube, ...]
+"""The letters that a state may have: those of all the cubes."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReadDigits:
+    """A read made ready for many values; digits are bits.
+
+    Reads of one ``kind`` have the same digits for the same objects of their ``variables``.
+    ``names`` are those that it depends on, ``subject`` the single value that it is, if it is one.
+    """
+
+    read: Read | NumberRead
+    kind: object
+    names: tuple[str, ...]
+    variables: tuple[str, ...]
+    subject: Subject | None
+    _floors: tuple[float, ...] = ()
+    _known: dict[Any, int] = field(default_factory=dict)
+
+    def of_values(self, values: Sequence[PartialValue | None]) -> list[int]:
+        """The digits for each value of the ``subject``; none for what is missing."""
+        if isinstance(self.read, NumberRead):
+            floors, read = self._floors, self.read
+            return [
+                1 << bisect_right(floors, value)
+                if type(value) is float
+                else possible_digits(read, value)
+                for value in values
+            ]
+        known = self._known
+        try:
+            return [known[value] for value in values]
+        except KeyError:
+            known.update((value, possible_digits(self.read, value)) for value in set(values))
+            return [known[value] for value in values]
+
+    def in_state(self, binding: Mapping[str, str], view: PartialView) -> int:
+        """The digits in a state. Raises MissingValueError."""
+        if self.subject is None:
+            assert isinstance(self.read, NumberRead)
+            return _digits_of_sum(self.read, binding, view)
+        name, variables = self.subject
+        items = tuple([binding[variable] for variable in variables])
+        digits = possible_digits(self.read, view.given(name, items))
+        if not digits:
+            raise MissingValueError(name, items)
+        return digits
+
+
+@lru_cache(maxsize=1 << 12)
+def read_digits(read: Read | NumberRead) -> ReadDigits:
+    """A read made ready."""
+    if isinstance(read, Read):
+        own = read.name, read.variables
+        return ReadDigits(read, (read.name, read.values), (read.name,), read.variables, subject=own)
+    known = scale(read)
+    number = known.quantity
+    subject = None if number is None else (number.name, number.arguments)
+    return ReadDigits(
+        read, known, known.names, known.variables, subject=subject, _floors=known.floors
+    )
+
+
+def possible_digits(read: Read | NumberRead, value: PartialValue | Fraction | None) -> int:
+    """The digits, as bits, that a read may have of a value; none of one that is missing."""
+    if value is None:
+        return 0
+    if value is UNKNOWN:
+        return (1 << read.size) - 1
+    if isinstance(value, Interval):
+        assert isinstance(read, NumberRead)
+        known = scale(read)
+        return _digits_between(known.digit(value.low), known.digit(value.high))
+    if isinstance(value, Fraction):
+        # What is supposed of a number may be no float.
+        assert isinstance(read, NumberRead)
+        return 1 << read.digit(value)
+    return 1 << (read if isinstance(read, Read) else scale(read)).digit(value)
+
+
+def _digits_of_sum(read: NumberRead, binding: Mapping[str, str], view: PartialView) -> int:
+    """The digits of a sum or a count; all of them if a sum has a count that is unknown."""
+    total = weighted_sum(read.terms, binding, view)
+    if not isinstance(total, Unknown):
+        return 1 << read.digit(total)
+    if isinstance(total, Between):
+        return _digits_between(read.digit(total.low), read.digit(total.high))
+    if view.given(total.name, total.objects) is None:
+        raise MissingValueError(total.name, total.objects)
+    match read.terms:
+        case ((_, ltl.Count() as count),):
+            low, high = _counted_range(count, binding, view)
+            return _digits_between(read.digit(low), read.digit(high))
+    return (1 << read.size) - 1
+
+
+def names_of_read(read: Read | NumberRead) -> tuple[str, ...]:
+    """The names that a read depends on."""
+    return (read.name,) if isinstance(read, Read) else scale(read).names
+
+
+def _counted_range(
+    count: ltl.Count, binding: Mapping[str, str], view: PartialView
+) -> tuple[Fraction, Fraction]:
+    """How many objects count for sure, and how many may."""
+    low = high = 0
+    for item, kind in view.objects.items():
+        if view.vocabulary.is_subtype(kind, count.type):
+            truth = holds(count.body, {**binding, count.variable: item}, view)
+            low += truth is True
+            high += truth is not False
+    return Fraction(low), Fraction(high)
+
+
+def _digits_between(first: int, last: int) -> int:
+    return ((1 << (last - first + 1)) - 1) << first
