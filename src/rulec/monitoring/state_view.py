@@ -56,6 +56,24 @@ class StateView:
         return Between(name, items, exact(given.low), exact(given.high))
 
 
+def with_values(
+    state: State, values: Mapping[tuple[str, tuple[str, ...]], PartialValue | None]
+) -> State:
+    """The state in which these are the values of names, asked of objects."""
+    if not values:
+        return state
+    changed: dict[str, Any] = dict(state)
+    for (name, items), value in values.items():
+        changed[name] = _nested(changed.get(name) or {}, items, value) if items else value
+    return changed
+
+
+def _nested(given: Mapping[str, Any], items: tuple[str, ...], value: object) -> Mapping[str, Any]:
+    first, *others = items
+    inner = _nested(given.get(first) or {}, tuple(others), value) if others else value
+    return {**given, first: inner}
+
+
 def value_in(
     state: State, name: str, objects: Sequence[str], declaration: Declaration
 ) -> PartialValue | None:

@@ -24,8 +24,9 @@ from rulec.vocabulary.vocabulary_model import choices
 
 if TYPE_CHECKING:
     from rulec.monitoring.online.four_valued import LetterClass
-    from rulec.monitoring.online.partial_states import Entangled, PartialStateReader
+    from rulec.monitoring.online.partial_states import PartialStateReader
     from rulec.monitoring.online.uncertain_steps import Edge
+    from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters
 
 Letters: TypeAlias = list[int]
 """For each binding of each group, one after the other, the letter that it reads."""
@@ -77,7 +78,7 @@ class BoundRules:
             for name in names_in(axiom.formula)
         )
         self._partial: dict[KnownState, Letters] = {}
-        self._entangled: Entangled = {}
+        self._letters: BoundLetters = {}
         self._readers: dict[tuple[str, ...], GroupLetters | None] = {}
         self._bindings: list[tuple[RuleGroup, tuple[Items, ...]]] = []
         by_name: dict[str, BoundRule] = {}
@@ -168,7 +169,7 @@ class BoundRules:
         # numpy, a tenth of a second, is loaded only where something is unknown.
         from rulec.monitoring.online.partial_states import PartialStateReader
 
-        return PartialStateReader(state, self._rulebook, self.objects, where, self._entangled)
+        return PartialStateReader(state, self._rulebook, self.objects, where, self._letters)
 
     def inexact(self, letters: Letters) -> frozenset[str]:
         """Rules of which more is taken to be possible than is, in a state with these letters."""

@@ -10,18 +10,17 @@ from rulec.monitoring.bindings import Binding
 from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.rule_group import PreparedRule
-from rulec.monitoring.uncertainty.state_letters.entanglement import Entanglement
-from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
+from rulec.monitoring.uncertainty.state_letters.possible_letters import (
+    BoundLetters,
+    PossibleLetters,
+)
 from rulec.trace import State, Trace
-
-Entangled = dict[tuple[str, tuple[str, ...]], Entanglement]
-"""What of a rule is entangled, by its name and objects."""
 
 
 class PartialStateReader:
     """A checked state, read as ``verify`` does.
 
-    ``where`` are what messages call the state, and where it was read. ``entangled`` is kept from
+    ``where`` are what messages call the state, and where it was read. ``bound`` is kept from
     one state to the next while the same objects are there.
     """
 
@@ -31,12 +30,12 @@ class PartialStateReader:
         rulebook: CompiledRulebook,
         objects: Mapping[str, str],
         where: tuple[str, SourceLocation | None],
-        entangled: Entangled,
+        bound: BoundLetters,
     ) -> None:
         name, place = where
         trace = Trace("", 1.0, objects, (state,), place=place)
         self._reader = PossibleLetters(
-            trace, rulebook, rulebook.vocabulary, lambda _: name, entangled=entangled
+            trace, rulebook, rulebook.vocabulary, lambda _: name, bound=bound
         )
 
     def letter_class(self, prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:

@@ -30,6 +30,10 @@ from rulec.monitoring.online.four_valued import (
     RunningVerdict,
     linked_edges,
 )
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
+    EntangledReads,
+    local_reads,
+)
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES
 
 if TYPE_CHECKING:
@@ -52,7 +56,8 @@ class PreparedRule:
     """A rule prepared for any objects: its monitor's ``start`` and ``edges``, and its inputs.
 
     ``letters`` has the class of each letter. ``axioms`` are the rulebook's. ``constants`` are the
-    places of inputs that never change.
+    places of inputs that never change, ``entangled`` reads that have to do with each other, None if
+    it depends on others what these may be.
     """
 
     rule: CompiledRule
@@ -62,6 +67,7 @@ class PreparedRule:
     letters: tuple[int, ...]
     axioms: tuple[CompiledAxiom, ...] = ()
     constants: tuple[int, ...] = ()
+    entangled: EntangledReads | None = None
 
     @cached_property
     def uncertain(self) -> UncertainSteps:
@@ -72,12 +78,10 @@ class PreparedRule:
 
         return UncertainSteps(of_running_words(self.rule.machine), self.edges)
 
-    @cached_property
+    @property
     def is_joint(self) -> bool:
         """Whether what is unknown may have to do with other values of a state."""
-        from rulec.monitoring.uncertainty.state_letters.possible_letters import is_joint  # as above
-
-        return is_joint(self.rule, self.axioms)
+        return self.entangled is None or bool(self.entangled.numbers)
 
     @property
     def name(self) -> str:
@@ -279,6 +283,7 @@ def rule_groups(
             tuple(monitor_inputs(rule, rulebook.vocabulary)),
             rule.machine.letters,
             rulebook.axioms,
+            entangled=local_reads(rule, rulebook.axioms, rulebook.vocabulary),
             constants=tuple(
                 place
                 for place, read in enumerate(rule.machine.reads)

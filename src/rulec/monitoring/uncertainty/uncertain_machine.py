@@ -54,8 +54,7 @@ class Answer(NamedTuple):
 class UncertainMachine:
     """Answers of one rule's machine, remembered.
 
-    ``monitor`` runs it on the ``classes`` of possible letters. ``correlated`` are the classes, as
-    bits, of states whose unknown values have to do with each other.
+    ``monitor`` runs it on the ``classes`` of possible letters.
     """
 
     def __init__(self, machine: OutcomeMachine) -> None:
@@ -63,7 +62,6 @@ class UncertainMachine:
         self.machine = machine
         self.monitor = SetMonitor(machine)
         self.classes = LetterClasses(machine)
-        self.correlated: dict[object, dict[object, int]] = {}
         self._reasons: dict[object, OpenReasons] = {}
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
 

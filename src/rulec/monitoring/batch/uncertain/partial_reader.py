@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact, scale
@@ -25,8 +27,8 @@ from rulec.monitoring.batch.columns.column_reader import (
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
 from rulec.trace import Value
 from rulec.trace.trace_columns import Array, Key, TraceColumns
-from rulec.vocabulary import Enumeration, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary import Enumeration, Signal, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, PartialValue
 
 
 def meanings_of(read: Read | NumberRead, vocabulary: Vocabulary) -> Sequence[int]:
@@ -99,6 +101,29 @@ class PartialReader(ColumnReader):
         unknown = self.columns.unknown.get((name, items))
         numbers = values.astype(np.intp)
         return numbers if unknown is None else np.where(unknown, n_values, numbers)
+
+    def values_at(
+        self, key: Key, places: NDArray[np.intp], supposed: Value | None
+    ) -> list[PartialValue | None]:
+        """What states at some places say of a name, or what is supposed where it is not known."""
+        declaration, columns = self._vocabulary.declarations[key[0]], self.columns
+        if key not in columns.values:
+            values: list[Any] = [declaration.default] * len(places)
+        else:
+            values = columns.values[key][places].tolist()
+            if isinstance(declaration, Enumeration):
+                values = [declaration.values[number] for number in values]
+            elif isinstance(declaration, Signal):
+                values = list(map(bool, values))
+            elif key in columns.upper:
+                bounds = zip(values, columns.upper[key][places].tolist(), strict=True)
+                values = [low if low == high else Interval(low, high) for low, high in bounds]
+            if key in columns.unknown:
+                dark = columns.unknown[key][places].tolist()
+                values = [UNKNOWN if x else value for x, value in zip(dark, values, strict=True)]
+        if supposed is not None:
+            values = [supposed if type(value) in UNKNOWN_TYPES else value for value in values]
+        return values
 
     def is_dark(self, key: Key) -> bool:
         """Whether no state says a name, and its default is unknown."""

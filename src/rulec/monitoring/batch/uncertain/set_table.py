@@ -6,10 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
 from rulec.monitoring.batch.machines.joint_machine import JointMachine
-from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterSets
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterSets, Numbers
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 
 MOST_ENTRIES = 1 << 18
@@ -42,6 +45,13 @@ class SetTables:
         self._meanings = meanings
         self.letters = LetterSets(machine.classes.diagram, meanings)
         self._known: tuple[int, SetTable | None] = 0, None
+
+    def digits(self, read: int, numbers: Numbers, places: NDArray[np.intp]) -> list[int]:
+        """The digits, as bits, that a read may have at some places of a column of its numbers."""
+        own = self._meanings[read]
+        if not isinstance(numbers, np.ndarray):
+            return [own[numbers]] * len(places)
+        return [own[number] for number in numbers[places].tolist()]
 
     def now(self) -> SetTable | None:
         """The machine for all sets met; None if it gets too large, and they are forgotten."""

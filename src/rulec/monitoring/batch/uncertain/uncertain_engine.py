@@ -12,7 +12,6 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.monitoring.batch.engine import rule_bindings
 from rulec.monitoring.batch.machines.table_run import run
-from rulec.monitoring.batch.uncertain.correlated_letters import CorrelatedLetters
 from rulec.monitoring.batch.uncertain.partial_reader import (
     PartialReader,
     meanings_of,
@@ -27,11 +26,16 @@ from rulec.monitoring.batch.uncertain.set_table import (
     set_tables,
 )
 from rulec.monitoring.batch.verdict_columns import RuleBinding, VerdictColumns
+from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules
 from rulec.monitoring.uncertainty.state_letters.completions import Subject
-from rulec.monitoring.uncertainty.state_letters.entanglement import NothingKnown, entanglement
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
+    EntangledReads,
+    NothingKnown,
+    bound_reads,
+)
+from rulec.monitoring.uncertainty.state_letters.letter_classes import RuleLetters
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
-from rulec.monitoring.uncertainty.state_letters.possible_letters import is_joint
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from rulec.trace import Value
@@ -81,13 +85,13 @@ class _Engine:
         self._reader = PartialReader(columns, vocabulary)
         self._constants = ConstantsReader(rulebook, vocabulary, columns.objects)
         self._everybody = NothingKnown(columns.objects, vocabulary)
-        self._correlated: dict[str, CorrelatedLetters | None] = {}
+        self._bound: dict[tuple[str, ...], RuleLetters] = {}
         self._machines: dict[str, SetTables] = {}
 
     def outcomes(self, binding: RuleBinding, machine: UncertainMachine) -> UncertainOutcomes:
         """What a rule comes to for some objects."""
         machines = self._set_tables(binding.rule, machine)
-        alternatives, unread = self._alternatives(binding)
+        alternatives, unread = self._alternatives(binding, machine)
         words = [self._letters(binding, machines, values) for values in alternatives]
         tables = machines.now()
         n_traces = self._columns.layout.n_traces
@@ -115,11 +119,6 @@ class _Engine:
                 [tuple(meanings_of(read, self._vocabulary)) for read in rule.machine.reads]
             )
             self._machines[rule.name] = set_tables(machine, meanings)
-            self._correlated[rule.name] = None
-            if is_joint(rule, self._rulebook.axioms):
-                self._correlated[rule.name] = CorrelatedLetters(
-                    rule, self._columns, self._rulebook, self._vocabulary, machine
-                )
         return self._machines[rule.name]
 
     def _letters(
@@ -129,30 +128,61 @@ class _Engine:
         n_states = self._columns.layout.n_states
         numbers = [self._supposed(read, binding, supposed) for read in binding.rule.machine.reads]
         letters = np.broadcast_to(np.asarray(machines.letters.numbers(numbers)), (n_states,))
-        correlated = self._correlated[binding.rule.name]
-        if correlated is not None:
-            dark = self._are_entangled(binding) & machines.letters.are_partial(numbers)
+        own = self._rule_letters(binding, machines.machine)
+        if own.entangled.numbers:
+            dark = self._are_entangled(binding, own) & machines.letters.are_partial(numbers)
             places = self._on_stretch(binding, np.flatnonzero(dark))
             if len(places):
                 letters = letters.copy()
-                classes = correlated.of(binding.objects, places, supposed)
-                letters[places] = [machines.letters.number_of(each) for each in classes]
+                digits = [machines.digits(n, numbers[n], places) for n in own.independent]
+                keys = self._keys(binding, own.entangled, (places, digits), supposed)
+                letters[places] = [machines.letters.number_of(each) for each in own.classes(keys)]
         cells: Array = letters.astype(smallest_unsigned(len(machines.letters.sets)))
         return cells
 
-    def _are_entangled(self, binding: RuleBinding) -> NDArray[np.bool_]:
+    def _rule_letters(self, binding: RuleBinding, machine: UncertainMachine) -> RuleLetters:
+        """The letters of a rule that does not read its values apart from each other."""
+        rule, axioms = binding.rule, self._rulebook.axioms
+        key = rule.name, *binding.objects.values()
+        if key not in self._bound:
+            known = machine.classes.of_rule(rule, axioms, self._vocabulary)
+            if known is None:
+                reads = bound_reads(rule, binding.objects, axioms, self._everybody)
+                known = RuleLetters(machine.classes, rule, reads)
+            self._bound[key] = known
+        return self._bound[key]
+
+    def _keys(
+        self,
+        binding: RuleBinding,
+        entangled: EntangledReads,
+        told: tuple[Places, Sequence[Sequence[int]]],
+        supposed: Mapping[Subject, Value],
+    ) -> list[tuple[int, ...]]:
+        """The keys of letters at some places, where independent reads have these digits."""
+        places, digits = told
+        columns = [
+            self._reader.values_at(subject, places, supposed.get(subject))
+            for subject in entangled.subjects_of(binding.objects)
+        ]
+        rows = zip(*columns, strict=True) if columns else [()] * len(places)
+        numbers = map(entangled.number, rows)
+        if not entangled.is_local:
+            own, starts = self._columns, self._columns.layout.starts
+            steps = np.searchsorted(starts, places, side="right") - 1
+            there = [present_in(step, own.objects, own.present) for step in steps.tolist()]
+            numbers = map(entangled.number, rows, there)
+        return list(zip(*digits, numbers, strict=True))
+
+    def _are_entangled(self, binding: RuleBinding, own: RuleLetters) -> NDArray[np.bool_]:
         """The states in which unknown values have to do with each other."""
         columns = self._columns
         found = np.zeros(columns.layout.n_states, dtype=bool)
-        about = entanglement(
-            binding.rule.machine.reads, binding.objects, self._rulebook.axioms, self._everybody
-        )
-        for subject in about.entangled:
+        for subject in own.entangled.subjects_of(binding.objects):
             if self._reader.is_dark(subject):
                 found[:] = True
             if subject in columns.unknown:
                 found |= columns.unknown[subject]
-        for subject in about.entangled | about.counted:
             if subject in columns.upper:
                 found |= columns.upper[subject] != columns.values[subject]
         return found
@@ -185,7 +215,7 @@ class _Engine:
         return np.unique(self._columns.layout.traces_at(places))
 
     def _alternatives(
-        self, binding: RuleBinding
+        self, binding: RuleBinding, machine: UncertainMachine
     ) -> tuple[Sequence[Mapping[Subject, Value]], Places]:
         """Values of constants that are unknown in some trace, and traces to look at one by one."""
         columns, first = self._columns, binding.first
@@ -203,8 +233,8 @@ class _Engine:
         if not given:
             return [{}], np.flatnonzero(odd)
         supposed, _ = self._constants.suppositions(binding.rule, given)
-        bears_on_facts = self._rulebook.axioms and self._correlated[binding.rule.name]
-        if bears_on_facts or (supposed == [{}] and len(given) > 1):
+        own = self._rule_letters(binding, machine).entangled.numbers
+        if (own and self._rulebook.axioms) or (supposed == [{}] and len(given) > 1):
             return [{}], np.flatnonzero(odd | dark)
         return supposed, np.flatnonzero(odd)
 

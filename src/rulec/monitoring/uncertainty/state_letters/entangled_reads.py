@@ -1,148 +1,204 @@
-"""Reads of a rule that may have to do with each other, by what is known of its own objects.
+"""Reads of a rule that may have to do with each other, by what is known of their values.
 
 Most rules count at most what is true of the objects that they are bound to, as `some other: car
-(other = x and parked(other))` does. What such reads may be together depends on no one else, so that
-it is looked up by what a state says, whatever the objects are called.
+(other = x and parked(other))` does. What such reads may be together is looked up by what a state
+says, whatever the objects are called; else by what it says of everybody.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
-from rulec.logic.kleene import Between, Unknown, holds
-from rulec.monitoring.uncertainty.state_letters.completions import Subject, joint_digits
-from rulec.monitoring.uncertainty.state_letters.entanglement import (
-    Entanglement,
-    NothingKnown,
-    count_in,
-    counts,
-    deciding_subjects,
-    entanglement,
+from rulec.logic.kleene import Unknown, holds
+from rulec.monitoring.state_view import StateView, with_values
+from rulec.monitoring.uncertainty.state_letters.completions import (
+    Subject,
+    joint_digits,
+    subjects_in,
+    subjects_of_read,
 )
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     names_of_read,
     read_digits,
 )
-from rulec.trace import Value
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.vocabulary.partial_values import PartialValue
+from rulec.vocabulary.vocabulary_model import choices
 
 MOST_KNOWN = 1 << 14
 """Values whose letters are kept before all are forgotten."""
 
 
 @dataclass(frozen=True, slots=True)
-class _LocalState:
-    """What a state says of a rule's variables, as a ``StateView`` would."""
+class NothingKnown:
+    """A state of which only is known who is there."""
 
-    values: Mapping[Subject, PartialValue | None]
     objects: Mapping[str, str]
     vocabulary: Vocabulary
 
-    def given(self, name: str, items: tuple[str, ...]) -> PartialValue | None:
-        """The value, be it partial, or the declared default."""
-        return self.values.get((name, items))
-
-    def value(self, name: str, items: tuple[str, ...]) -> Value | Unknown:
-        """The value if it is known."""
-        value = self.values.get((name, items))
-        if value is None or value is UNKNOWN or isinstance(value, Interval):
-            return Unknown(name, items)
-        return value
+    def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
+        """Not known."""
+        return Unknown(name, items)
 
     def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
-        """The quantity's value: exact, or its bounds."""
-        value = self.values.get((name, items))
-        if isinstance(value, Interval):
-            return Between(name, items, exact(value.low), exact(value.high))
-        known = self.value(name, items)
-        assert not isinstance(known, str), "it is a quantity"
-        return known if isinstance(known, Unknown) else exact(known)
+        """Not known."""
+        return Unknown(name, items)
+
+    def given(self, name: str, items: tuple[str, ...]) -> None:
+        """Not known."""
 
 
 class EntangledReads:
-    """Reads that count, or that share values, of a rule that depends on its own objects alone.
+    """Reads of a rule that count, or that share values or facts.
 
-    ``numbers`` are their places among the rule's reads, ``subjects`` what they depend on, asked of
-    variables, ``others`` the places of reads that are independent of all others. ``found`` has what
-    these reads may be together, as cubes of their digits, and whether no more is said than is;
-    ``number`` finds its place by the values of the ``subjects``.
+    ``numbers`` are their places among the rule's reads, ``subjects`` what they depend on. If they
+    are local, on the rule's own objects alone, these are asked of variables, which have a
+    ``binding`` to themselves. ``found`` has what the reads may be together, as cubes of their
+    digits, and whether no more is said than is.
     """
 
-    def __init__(self, rule: CompiledRule, vocabulary: Vocabulary) -> None:
+    def __init__(
+        self,
+        rule: CompiledRule,
+        binding: Mapping[str, str],
+        axioms: Sequence[CompiledAxiom],
+        everybody: NothingKnown,
+        *,
+        is_local: bool,
+    ) -> None:
         reads = rule.machine.reads
-        self._objects = {variable.name: variable.type for variable in rule.variables}
-        self._vocabulary = vocabulary
-        self._binding = {name: name for name in self._objects}
-        everybody = NothingKnown(self._objects, vocabulary)
-        about = [set(deciding_subjects(read, self._binding, everybody)) for read in reads]
-        places = Counter(subject for own in about for subject in own)
+        self.is_local = is_local
+        self._binding = binding
+        self._axioms = axioms
+        self._everybody = everybody
+        deciding = _deciding_subjects if is_local else subjects_of_read
+        about = [set(deciding(read, binding, everybody)) for read in reads]
+        facts = set(_subjects_of(axioms, everybody))
+        places = Counter(subject for own in (*about, facts) for subject in own)
         self.numbers = tuple(
-            [
-                n
-                for n, read in enumerate(reads)
-                if count_in(read) or any(places[subject] > 1 for subject in about[n])
-            ]
+            n
+            for n, read in enumerate(reads)
+            if _count_in(read) or any(places[subject] > 1 for subject in about[n])
         )
-        self.others = tuple([n for n in range(len(reads)) if n not in self.numbers])
         self._reads = [reads[n] for n in self.numbers]
-        self.subjects = tuple(sorted(set[Subject]().union(*[about[n] for n in self.numbers])))
-        self._about: Entanglement = entanglement(self._reads, self._binding, (), everybody)
+        read = set[Subject]().union(*[about[n] for n in self.numbers])
+        self.subjects = tuple(sorted(read | facts if read & facts else read))
         self.found: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
-        self._known: dict[tuple[PartialValue | None, ...], int] = {}
+        self._known: dict[tuple[object, ...], int] = {}
 
-    def number(self, values: tuple[PartialValue | None, ...]) -> int:
-        """The place of what reads may be for these values. Raises MissingValueError."""
-        known = self._known.get(values)
+    def subjects_of(self, objects: Mapping[str, str]) -> list[Subject]:
+        """The subjects, asked of a binding's objects."""
+        if not self.is_local:
+            return list(self.subjects)
+        return [(name, tuple([objects[item] for item in items])) for name, items in self.subjects]
+
+    def number(
+        self, values: tuple[PartialValue | None, ...], there: Mapping[str, str] | None = None
+    ) -> int:
+        """The place of what is found for these values of the subjects.
+
+        Unless the reads are local it matters who is ``there``. Raises MissingValueError.
+        """
+        key = values if there is None else (values, *there)
+        known = self._known.get(key)
         if known is None:
-            found = self._letters(values)
+            found = self._letters(values, self._everybody.objects if there is None else there)
             known = self._numbers.setdefault(found, len(self.found))
             if known == len(self.found):
                 self.found.append(found)
             if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
-            self._known[values] = known
+            self._known[key] = known
         return known
 
-    def _letters(self, values: Sequence[PartialValue | None]) -> tuple[Letters, bool]:
-        given = dict(zip(self.subjects, values, strict=True))
-        state = _LocalState(given, self._objects, self._vocabulary)
+    def _letters(
+        self, values: Sequence[PartialValue | None], there: Mapping[str, str]
+    ) -> tuple[Letters, bool]:
+        given = with_values({}, dict(zip(self.subjects, values, strict=True)))
+        state = StateView(given, there, self._everybody.vocabulary)
         digits = [read_digits(read).in_state(self._binding, state) for read in self._reads]
-        if all(own & (own - 1) == 0 for own in digits) or not self._about.is_met(state):
+        if all(own & (own - 1) == 0 for own in digits):
             return (tuple(digits),), True
-        joint = joint_digits(self._reads, self._binding, state, ())
+        joint = joint_digits(self._reads, self._binding, state, self._axioms)
         letters = [tuple([1 << digit for digit in one]) for one in sorted(joint.digits)]
         return tuple(letters), joint.exact
 
 
-def entangled_reads(
+def _subjects_of(axioms: Sequence[CompiledAxiom], everybody: NothingKnown) -> Iterator[Subject]:
+    for axiom in axioms:
+        types = [variable.type for variable in axiom.variables]
+        for chosen in choices(types, everybody.objects, everybody.vocabulary):
+            names = [variable.name for variable in axiom.variables]
+            yield from subjects_in(axiom.formula, dict(zip(names, chosen, strict=True)), everybody)
+
+
+def local_reads(
     rule: CompiledRule, axioms: Sequence[CompiledAxiom], vocabulary: Vocabulary
 ) -> EntangledReads | None:
-    """The entangled reads of a rule; None if they depend on who else is there, or on facts."""
+    """The entangled reads of a rule, if its own objects alone decide what they may be."""
     names = {name for read in rule.machine.reads for name in names_of_read(read)}
     if any(not names.isdisjoint(names_in(axiom.formula)) for axiom in axioms):
         return None
     if not all(_is_local(read, rule, vocabulary) for read in rule.machine.reads):
         return None
-    return EntangledReads(rule, vocabulary)
+    own = {variable.name: variable.type for variable in rule.variables}
+    binding = {name: name for name in own}
+    return EntangledReads(rule, binding, (), NothingKnown(own, vocabulary), is_local=True)
+
+
+def bound_reads(
+    rule: CompiledRule,
+    objects: Mapping[str, str],
+    axioms: Sequence[CompiledAxiom],
+    everybody: NothingKnown,
+) -> EntangledReads:
+    """The entangled reads of a rule and its objects, among everybody who may be there."""
+    return EntangledReads(rule, objects, axioms, everybody, is_local=False)
+
+
+def _count_in(read: Read | NumberRead) -> ltl.Count | None:
+    terms = read.terms if isinstance(read, NumberRead) else ()
+    return next((term for _, term in terms if isinstance(term, ltl.Count)), None)
+
+
+def _counts(part: ltl.Proposition) -> bool:
+    return isinstance(part, ltl.Comparison) and any(
+        isinstance(term, ltl.Count) for _, term in part.terms
+    )
+
+
+def _deciding_subjects(
+    read: Read | NumberRead, binding: Mapping[str, str], everybody: NothingKnown
+) -> Iterator[Subject]:
+    """What decides a read, with repetitions; of a count what decides whether objects count."""
+    count = _count_in(read)
+    if count is None:
+        yield from subjects_of_read(read, binding, everybody)
+        return
+    vocabulary = everybody.vocabulary
+    for item, kind in everybody.objects.items():
+        inner = {**binding, count.variable: item}
+        if vocabulary.is_subtype(kind, count.type) and isinstance(
+            holds(count.body, inner, everybody), Unknown
+        ):
+            yield from subjects_in(count.body, inner, everybody)
 
 
 def _is_local(read: Read | NumberRead, rule: CompiledRule, vocabulary: Vocabulary) -> bool:
     """Whether a read depends on nobody but the objects that the rule is bound to."""
-    count = count_in(read)
+    count = _count_in(read)
     if count is None:
         return True
-    if any(map(counts, ltl.atoms_of(count.body))):
+    if any(map(_counts, ltl.atoms_of(count.body))):
         return False
     variables = {variable.name: variable.type for variable in rule.variables}
     for kind in variables.values():

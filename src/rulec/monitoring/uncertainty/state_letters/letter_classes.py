@@ -10,7 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
-    entangled_reads,
+    local_reads,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram, bits_of
 from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters, read_digits
@@ -30,7 +30,7 @@ class LetterClasses:
         self.diagram = LetterDiagram(machine)
         self._known: dict[Letters, int] = {}
         self._groups: dict[tuple[Letters, tuple[int, ...]], Mapping[Cube, int]] = {}
-        self._rules: dict[str, RuleLetters] = {}
+        self._rules: dict[str, tuple[tuple[object, ...], RuleLetters | None]] = {}
 
     def of(self, letters: Letters) -> int:
         """The classes of letters; 0 if facts exclude them all."""
@@ -44,14 +44,15 @@ class LetterClasses:
 
     def of_rule(
         self, rule: CompiledRule, axioms: Sequence[CompiledAxiom], vocabulary: Vocabulary
-    ) -> RuleLetters:
-        """The letters of a rule that has this machine."""
+    ) -> RuleLetters | None:
+        """The letters of a rule that has this machine; None if others decide, too."""
         about = (rule.variables, axioms, vocabulary.types)
         known = self._rules.get(rule.name)
-        if known is None or any(x is not y for x, y in zip(known.about, about, strict=True)):
-            known = RuleLetters(self, rule, axioms, vocabulary)
+        if known is None or any(x is not y for x, y in zip(known[0], about, strict=True)):
+            reads = local_reads(rule, axioms, vocabulary)
+            known = about, None if reads is None else RuleLetters(self, rule, reads)
             self._rules[rule.name] = known
-        return known
+        return known[1]
 
     def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
         """The classes of letters by the digits, as bits, of ``fixed`` reads."""
@@ -70,24 +71,17 @@ class LetterClasses:
 class RuleLetters:
     """The letters that a rule may read of its objects, by keys.
 
-    A key has the digits, as bits, of each read that is independent of the others, and last the
-    place of what the others may be among ``entangled.found``. That is None if these depend on more
-    than the rule's own objects; then a key has the digits of all ``reads``.
+    A key has the digits, as bits, of each read that is independent of the others, and last, if
+    there are others, the place of what these may be among what is found of ``entangled`` ones.
     """
 
     def __init__(
-        self,
-        classes: LetterClasses,
-        rule: CompiledRule,
-        axioms: Sequence[CompiledAxiom],
-        vocabulary: Vocabulary,
+        self, classes: LetterClasses, rule: CompiledRule, entangled: EntangledReads
     ) -> None:
-        self.about = (rule.variables, axioms, vocabulary.types)
         self.reads = tuple([read_digits(read) for read in rule.machine.reads])
-        self.entangled: EntangledReads | None = entangled_reads(rule, axioms, vocabulary)
-        self.independent = tuple(range(len(self.reads)))
-        if self.entangled is not None:
-            self.independent = self.entangled.others
+        self.entangled = entangled
+        own = range(len(self.reads))
+        self.independent = tuple([n for n in own if n not in entangled.numbers])
         self._classes = classes
         self._known: dict[tuple[int, ...], int] = {}
 
@@ -109,17 +103,14 @@ class RuleLetters:
 
     def letters(self, key: tuple[int, ...]) -> Letters:
         """The letters with a key."""
-        if self.entangled is None or not self.entangled.numbers:
-            return (key[: len(self.reads)],)
+        numbers = self.entangled.numbers
+        if not numbers:
+            return (key,)
         found, _ = self.entangled.found[key[-1]]
-        alone = dict(zip(self.independent, key, strict=False))
-        return tuple(
-            [
-                tuple([by_read[n] for n in range(len(self.reads))])
-                for cube in found
-                for by_read in [{**alone, **dict(zip(self.entangled.numbers, cube, strict=True))}]
-            ]
-        )
+        # Which place a read has among the others, and then the entangled ones.
+        order = sorted(range(len(self.reads)), key=(*self.independent, *numbers).__getitem__)
+        alone = key[:-1]
+        return tuple([tuple([(*alone, *cube)[n] for n in order]) for cube in found])
 
 
 def _keep(known: dict[_Key, _Value], key: _Key, value: _Value) -> None:

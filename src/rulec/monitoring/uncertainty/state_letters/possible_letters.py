@@ -2,39 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
-from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import NumberRead
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.logic import formula as ltl
-from rulec.logic.free_names import names_in
 from rulec.monitoring.axiom_violations import StatePlace, impossible_state
 from rulec.monitoring.bindings import Binding
 from rulec.monitoring.letter_reader import missing_value, present_in
-from rulec.monitoring.state_view import StateView
+from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import (
     MissingValueError,
     Subject,
-    joint_digits,
     unknown_in_read,
 )
-from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
-from rulec.monitoring.uncertainty.state_letters.entanglement import (
-    Entanglement,
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
+    EntangledReads,
     NothingKnown,
-    entanglement,
+    bound_reads,
 )
-from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
+from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses, RuleLetters
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     ReadDigits,
-    names_of_read,
 )
-from rulec.trace import State, Trace, Value
+from rulec.trace import Trace, Value
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
@@ -85,6 +79,10 @@ def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
     return Vocabulary(vocabulary.name, vocabulary.types, declarations)
 
 
+BoundLetters: TypeAlias = dict[tuple[object, ...], RuleLetters]
+"""Letters of rules, by these and their objects."""
+
+
 @dataclass(frozen=True, slots=True)
 class _About:
     """A rule's objects and their states, and the values that are supposed of constants."""
@@ -102,7 +100,8 @@ class _About:
 class PossibleLetters:
     """A reader of the possible letters of a checked trace.
 
-    ``vocabulary`` has the defaults of what its states do not say.
+    ``vocabulary`` has the defaults of what its states do not say. ``bound`` is kept from one trace
+    to another one of the same objects.
     """
 
     def __init__(
@@ -112,7 +111,7 @@ class PossibleLetters:
         vocabulary: Vocabulary,
         where: Callable[[int], str] = "state {}".format,
         *,
-        entangled: dict[tuple[str, tuple[str, ...]], Entanglement] | None = None,
+        bound: BoundLetters | None = None,
     ) -> None:
         self._trace = trace
         self._rulebook = rulebook
@@ -121,7 +120,7 @@ class PossibleLetters:
         self._views: dict[tuple[object, ...], StateView] = {}
         self._given: dict[Subject, list[PartialValue | None]] = {}
         self._columns: dict[tuple[object, ...], list[int]] = {}
-        self._entangled = {} if entangled is None else entangled
+        self._bound = {} if bound is None else bound
 
     def view(self, number: int, supposed: Mapping[Subject, Value] = NOTHING) -> StateView:
         """A state with the objects that are present, in which some values are supposed."""
@@ -129,7 +128,7 @@ class PossibleLetters:
         if key not in self._views:
             trace = self._trace
             present = present_in(number, trace.objects, trace.present)
-            state = _with_supposed(trace.states[number], supposed)
+            state = with_values(trace.states[number], supposed)
             self._views[key] = StateView(state, present, self._vocabulary)
         return self._views[key]
 
@@ -146,61 +145,31 @@ class PossibleLetters:
         """
         about = _About(rule, binding, supposed)
         letters = classes.of_rule(rule, self._rulebook.axioms, self._vocabulary)
+        letters = letters or self._bound_letters(rule, classes, binding.objects)
         columns = [self._digits(letters.reads[n], about) for n in letters.independent]
         is_exact = True
-        if letters.entangled is not None and letters.entangled.numbers:
+        if letters.entangled.numbers:
             columns.append(self._entangled_numbers(letters.entangled, about))
             found = letters.entangled.found
             is_exact = all(found[number][1] for number in set(columns[-1]))
         keys = list(zip(*columns, strict=True)) or [()] * (binding.last - binding.first + 1)
-
-        def unknown() -> tuple[frozenset[str], ...]:
-            return tuple([self._unknown_names(read, about) for read in letters.reads])
-
-        if letters.entangled is None:
-            states, is_exact = self._joint_letters(keys, about)
-            own = tuple([classes.of(each) for each in states])
-            return PossibleWord(own, is_exact, lambda: states, unknown)
         return PossibleWord(
             tuple(letters.classes(keys)),
             is_exact,
             lambda: tuple([letters.letters(key) for key in keys]),
-            unknown,
+            lambda: tuple([self._unknown_names(read, about) for read in letters.reads]),
         )
 
-    def _joint_letters(
-        self, cubes: Sequence[tuple[int, ...]], about: _About
-    ) -> tuple[tuple[Letters, ...], bool]:
-        """The letters within cubes that are possible if all is looked at together."""
-        states: list[Letters] = [(cube,) for cube in cubes]
-        rule, binding = about.rule, about.binding
-        is_exact = True
-        for index, cube in enumerate(cubes):
-            number = binding.first + index
-            if all(mask & (mask - 1) == 0 for mask in cube):
-                continue
-            view = self.view(number, about.supposed)
-            if not self._entanglement(rule, binding.objects).is_met(view):
-                continue
-            try:
-                joint = joint_digits(
-                    rule.machine.reads, binding.objects, view, self._rulebook.axioms
-                )
-            except MissingValueError as error:
-                raise self._missing(error.subject, number, rule) from None
-            is_exact &= joint.exact
-            states[index] = tuple(
-                [tuple([1 << digit for digit in digits]) for digits in sorted(joint.digits)]
-            )
-        return tuple(states), is_exact
-
-    def _entanglement(self, rule: CompiledRule, objects: Mapping[str, str]) -> Entanglement:
-        key = rule.name, tuple(objects.values())
-        if key not in self._entangled:
+    def _bound_letters(
+        self, rule: CompiledRule, classes: LetterClasses, objects: Mapping[str, str]
+    ) -> RuleLetters:
+        """The letters of a rule that depends on more than its own objects."""
+        key = rule.name, classes, tuple(objects.values())
+        if key not in self._bound:
             everybody = NothingKnown(self._trace.objects, self._vocabulary)
-            axioms = self._rulebook.axioms
-            self._entangled[key] = entanglement(rule.machine.reads, objects, axioms, everybody)
-        return self._entangled[key]
+            reads = bound_reads(rule, objects, self._rulebook.axioms, everybody)
+            self._bound[key] = RuleLetters(classes, rule, reads)
+        return self._bound[key]
 
     def impossible(self, rule: CompiledRule, objects: Mapping[str, str], number: int) -> RulecError:
         """The error (R0508) about a state that contradicts a fact."""
@@ -251,19 +220,22 @@ class PossibleLetters:
         """The places of what entangled reads may be in each state."""
         objects = about.binding.objects
         columns = [
-            self.values(name, tuple([objects[variable] for variable in variables]), about.supposed)[
-                about.stretch
-            ]
-            for name, variables in reads.subjects
+            self.values(*subject, about.supposed)[about.stretch]
+            for subject in reads.subjects_of(objects)
         ]
-        rows = zip(*columns, strict=True) if columns else [()] * len(self._numbers(about))
+        numbers = self._numbers(about)
+        rows = zip(*columns, strict=True) if columns else [()] * len(numbers)
         found: list[int] = []
         try:
             # One after the other, so that it is known in which state a value is missing.
-            found.extend(map(reads.number, rows))
+            if reads.is_local:
+                found.extend(map(reads.number, rows))
+            else:
+                there = [self.view(number).objects for number in numbers]
+                found.extend(map(reads.number, rows, there))
         except MissingValueError as error:
             name, variables = error.subject
-            subject = name, tuple([objects[variable] for variable in variables])
+            subject = name, tuple([objects.get(variable, variable) for variable in variables])
             number = about.binding.first + len(found)
             raise self._missing(subject, number, about.rule) from None
         return found
@@ -285,35 +257,3 @@ class PossibleLetters:
 
     def _missing(self, subject: Subject, number: int, rule: CompiledRule) -> RulecError:
         return missing_value(subject, self._where(number), rule.name, self._trace.place)
-
-
-def _with_supposed(state: State, values: Mapping[Subject, Value]) -> State:
-    """The state in which these are the values."""
-    if not values:
-        return state
-    changed: dict[str, Any] = dict(state)
-    for (name, items), value in values.items():
-        changed[name] = _nested(changed.get(name) or {}, items, value) if items else value
-    return changed
-
-
-def _nested(given: Mapping[str, Any], items: tuple[str, ...], value: Value) -> Mapping[str, Any]:
-    first, *others = items
-    inner = _nested(given.get(first) or {}, tuple(others), value) if others else value
-    return {**given, first: inner}
-
-
-def is_joint(rule: CompiledRule, axioms: Sequence[CompiledAxiom]) -> bool:
-    """Whether one read may bear on what another one, or a value that is not read, can be."""
-    terms = [
-        term
-        for read in rule.machine.reads
-        if isinstance(read, NumberRead)
-        for _, term in read.terms
-    ]
-    if any(isinstance(term, ltl.Count) for term in terms) or len(set(terms)) < len(terms):
-        return True
-    in_axioms = {name for axiom in axioms for name in names_in(axiom.formula)}
-    return not in_axioms.isdisjoint(
-        name for read in rule.machine.reads for name in names_of_read(read)
-    )
