@@ -16,7 +16,7 @@ from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALU
 from rulec.trace import State
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, UnknownValue
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
 
 NUMBERS = frozenset({int, float})
 TRUTHS = frozenset({bool})
@@ -224,38 +224,32 @@ def _look(declaration: Declaration, fitting: list[frozenset[str]], *, partial: b
 def _one_value(declaration: Declaration, *, partial: bool) -> _Look:
     match declaration:
         case Enumeration():
-            return _known_values(declaration, partial=partial).__contains__
+            return frozenset([*declaration.values, *([UNKNOWN] if partial else [])]).__contains__
         case Signal() if partial:
             return lambda value: type(value) is bool or value is UNKNOWN
         case Signal():
             return lambda value: type(value) is bool
         case Quantity() if partial:
-            return _fits_quantity
+            return lambda value: (
+                type(value) in UNKNOWN_TYPES or (type(value) in NUMBERS and math.isfinite(value))
+            )
         case Quantity():
             return lambda value: type(value) in NUMBERS and math.isfinite(value)
 
 
 def _many_values(declaration: Declaration, *, partial: bool) -> _Look:
+    if partial:
+        fits = _one_value(declaration, partial=True)
+        return lambda values: all(map(fits, values))
     match declaration:
         case Enumeration():
-            return _known_values(declaration, partial=partial).issuperset
+            return frozenset(declaration.values).issuperset
         case Signal():
-            truths = TRUTHS | {UnknownValue} if partial else TRUTHS
-            return lambda values: truths.issuperset(map(type, values))
-        case Quantity() if partial:
-            return lambda values: all(map(_fits_quantity, values))
+            return lambda values: TRUTHS.issuperset(map(type, values))
         case Quantity():
             return lambda values: (
                 NUMBERS.issuperset(map(type, values)) and all(map(math.isfinite, values))
             )
-
-
-def _known_values(declaration: Enumeration, *, partial: bool) -> frozenset[object]:
-    return frozenset([*declaration.values, UNKNOWN] if partial else declaration.values)
-
-
-def _fits_quantity(value: Any) -> bool:
-    return type(value) in UNKNOWN_TYPES or (type(value) in NUMBERS and math.isfinite(value))
 
 
 def _misfit(value: Any, declaration: Declaration) -> str:

@@ -70,6 +70,13 @@ PrefixCompiler: TypeAlias = "Callable[[CompiledRulebook], Mapping[str, OutcomeMa
 """What compiles each rule for prefixes, by name; None where that gets too large."""
 
 
+class Prepared(dict[object, Any]):
+    """What has been made of a rulebook's rules to run them; it is made anew for a copy."""
+
+    def __reduce__(self) -> tuple[type[Prepared], tuple[()]]:
+        return Prepared, ()
+
+
 @dataclass(frozen=True, slots=True)
 class CompiledRulebook(Rows):
     """Compiled rules of a rulebook, with the vocabulary of their traces.
@@ -77,7 +84,7 @@ class CompiledRulebook(Rows):
     ``rulec`` and ``spot`` are the versions that compiled it. ``source`` is the rulebook that it was
     compiled from, None if it was read from a compiled file. With ``recompile`` it fits itself to
     the step of the traces that it meets; None if it was read, or compiled for one step.
-    ``prefixes`` gives the machines for traces that are cut.
+    ``prefixes`` gives the machines for traces that are cut, ``prepared`` what engines keep.
     """
 
     __repr__ = short_repr
@@ -101,6 +108,7 @@ class CompiledRulebook(Rows):
     source: model.Rulebook | None = field(default=None, compare=False, repr=False)
     recompile: Recompiler | None = field(default=None, compare=False, repr=False)
     prefixes: PrefixCompiler | None = field(default=None, compare=False, repr=False)
+    prepared: Prepared = field(init=False, default_factory=Prepared, compare=False, repr=False)
 
     def at_step(self, step_s: Fraction | float) -> CompiledRulebook:
         """These rules for traces whose states are ``step_s`` seconds apart.

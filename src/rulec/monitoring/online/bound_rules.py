@@ -16,7 +16,8 @@ from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.group_letters import GroupLetters
-from rulec.monitoring.online.rule_group import GroupNode, PreparedRule, RuleGroup, RuleGroups
+from rulec.monitoring.online.prepared_rule import PreparedRule
+from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups
 from rulec.monitoring.state_validation import check_state, has_partial_values
 from rulec.trace import State
 from rulec.vocabulary import Quantity
@@ -108,11 +109,7 @@ class BoundRules:
                 encoded = reader.shape.encode(state)
                 known = reader.shape, encoded
                 if not self._counting:
-                    letters = reader.letters(state, encoded)
-                    if not any(group.closer for group, _ in self._bindings):
-                        return letters, known
-                    closely = self._looked_at_closer(letters, state, (f"state {number}", place))
-                    return closely, None if self._weighing else known
+                    return reader.letters(state, encoded), known
         except (LookupError, TypeError):
             pass
         with suppress(LookupError, TypeError):
@@ -141,27 +138,6 @@ class BoundRules:
             shape = StateShape(names, self.objects, vocabulary, breakpoints)
             self._readers[names] = GroupLetters(shape, self._bindings)
         return self._readers[names]
-
-    def _looked_at_closer(
-        self, letters: Letters, state: State, where: tuple[str, SourceLocation | None]
-    ) -> Letters:
-        """Letters of which some rules' classes are not known, with those of the state."""
-        reader: PartialStateReader | None = None
-        found, begin = list(letters), 0
-        for group, bindings in self._bindings:
-            for place, items in enumerate(bindings if group.closer else (), begin):
-                rules = group.closer.get(letters[place], ())
-                if rules and reader is None:
-                    reader = self._partial_state(state, where)
-                if rules and reader is not None:
-                    classes = list(group.classes[letters[place]])
-                    inexact = set()
-                    for number in rules:
-                        classes[number], is_exact = reader.letter_class(group.rules[number], items)
-                        inexact |= set() if is_exact else {number}
-                    found[place] = group.letter(tuple(classes), inexact)
-            begin += len(bindings)
-        return found
 
     def _partial_state(
         self, state: State, where: tuple[str, SourceLocation | None]

@@ -9,13 +9,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, TypeAlias
 
-from rulec.logic.formula import Count, QuantityTerm
-from rulec.logic.kleene import Unknown, weighted_sum
 from rulec.monitoring.online.encoding import encoded_values
 from rulec.monitoring.online.encoding.encoded_values import Encoded, MonitorInput
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.state_letters.completions import MissingValueError
+from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.trace import State
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -178,22 +178,18 @@ def _values_column(places: Sequence[tuple[int, int]]) -> _ReadColumn:
 def _sum_column(read: MonitorInput, about: Sequence[Items], shape: StateShape) -> _ReadColumn:
     number = read.number
     assert number is not None
+    ready = read_digits(number)
     bindings = [dict(zip(read.variables, items, strict=True)) for items in about]
 
     def digit(binding: Mapping[str, str], view: StateView) -> Any:
-        total = weighted_sum(number.terms, binding, view)
-        if not isinstance(total, Unknown):
-            return number.digit(total)
-        if isinstance(number.terms[0][1], Count):
-            return UNKNOWN
-        given = [
-            view.given(term.name, tuple([binding[variable] for variable in term.arguments]))
-            for _, term in number.terms
-            if isinstance(term, QuantityTerm)
-        ]
-        # Something may be missing, or the sum lie between two others.
-        if None in given or UNKNOWN not in given or len(given) < len(number.terms):
-            raise LookupError
+        try:
+            possible = ready.in_state(binding, view)
+        except MissingValueError:
+            raise LookupError from None
+        if possible & (possible - 1) == 0:
+            return possible.bit_length() - 1
+        if possible != (1 << number.size) - 1:
+            raise LookupError  # it lies between two others
         return UNKNOWN
 
     def column(state: State, _: Sequence[Encoded]) -> Sequence[Any]:

@@ -19,10 +19,10 @@ from rulec.monitoring.online.four_valued import (
     within,
     worst_of,
 )
+from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.online.rule_group import (
     GroupNode,
     OtherVerdictError,
-    PreparedRule,
     RuleGroup,
 )
 from rulec.value_display import short_repr

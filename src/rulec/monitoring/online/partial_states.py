@@ -9,7 +9,7 @@ from rulec.diagnostics import SourceLocation
 from rulec.monitoring.bindings import Binding
 from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import LetterClass
-from rulec.monitoring.online.rule_group import PreparedRule
+from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.uncertainty.state_letters.possible_letters import (
     BoundLetters,
     PossibleLetters,
@@ -49,5 +49,6 @@ class PartialStateReader:
         letter_class = prepared.uncertain.letter_class(word.classes[0])
         if letter_class is None:
             raise self._reader.impossible(prepared.rule, bound, 0)
-        is_constant = any(word.unknown[place] for place in prepared.constants)
+        constants = prepared.constants
+        is_constant = bool(constants) and any(constants & names for names in word.unknown)
         return letter_class, word.exact and not is_constant

@@ -8,89 +8,32 @@ when they are first met.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
-from rulec.automata.thresholds import scale
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.monitoring.online.encoding.encoded_values import (
     Breakpoints,
-    DigitWeight,
     MonitorInput,
     breakpoints_of,
-    monitor_inputs,
     values_at,
 )
 from rulec.monitoring.online.four_valued import (
-    FourValued,
     LetterClass,
-    MonitorEdge,
     RunningVerdict,
-    linked_edges,
 )
-from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
-    EntangledReads,
-    local_reads,
-)
+from rulec.monitoring.online.prepared_rule import PreparedRule, prepared_rule
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES
 
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
-    from rulec.monitoring.online.uncertain_steps import Edge, UncertainSteps
+    from rulec.monitoring.online.uncertain_steps import Edge
 
 MOST_CACHED = 1 << 18
 """Nodes, letters and transitions that are kept before all are forgotten."""
 
 
-CLOSER = -2
-"""Stands for classes that it takes a closer look at the state to know."""
-
 MOST_CLASSES = 1 << 12
 """Classes of a rule's letters that are kept before all are forgotten."""
-
-
-@dataclass(frozen=True, eq=False)
-class PreparedRule:
-    """A rule prepared for any objects: its monitor's ``start`` and ``edges``, and its inputs.
-
-    ``letters`` has the class of each letter. ``axioms`` are the rulebook's. ``constants`` are the
-    places of inputs that never change, ``entangled`` reads that have to do with each other, None if
-    it depends on others what these may be.
-    """
-
-    rule: CompiledRule
-    start: Edge
-    edges: Mapping[tuple[int, FourValued], MonitorEdge]
-    inputs: tuple[tuple[MonitorInput, DigitWeight], ...]
-    letters: tuple[int, ...]
-    axioms: tuple[CompiledAxiom, ...] = ()
-    constants: tuple[int, ...] = ()
-    entangled: EntangledReads | None = None
-
-    @cached_property
-    def uncertain(self) -> UncertainSteps:
-        """The steps where not all is known."""
-        # numpy, a tenth of a second, is loaded only where something is unknown.
-        from rulec.automata.outcome_machine import of_running_words
-        from rulec.monitoring.online.uncertain_steps import UncertainSteps
-
-        return UncertainSteps(of_running_words(self.rule.machine), self.edges)
-
-    @property
-    def is_joint(self) -> bool:
-        """Whether what is unknown may have to do with other values of a state."""
-        return self.entangled is None or bool(self.entangled.numbers)
-
-    @property
-    def name(self) -> str:
-        """The rule's name."""
-        return self.rule.name
-
-    def bound(self, items: Sequence[str]) -> dict[str, str]:
-        """Objects by the names of the variables that they stand for."""
-        return dict(zip([variable.name for variable in self.rule.variables], items, strict=True))
 
 
 class OtherVerdictError(Exception):
@@ -148,8 +91,8 @@ class CacheSize:
 class _ClassTable(dict[tuple[Any, ...], "LetterClass"]):
     """The classes that a rule reads, by its inputs' digits, or values that are partly known.
 
-    ``inexact`` are digits of which some is of a constant that is not known, and may be another one
-    in each state.
+    ``inexact`` are those of which more classes are said to be possible than are: a constant that is
+    not known may be another one in each state.
     """
 
     def __init__(self, prepared: PreparedRule) -> None:
@@ -157,24 +100,11 @@ class _ClassTable(dict[tuple[Any, ...], "LetterClass"]):
         self.inexact: set[tuple[Any, ...]] = set()
 
     def __missing__(self, digits: tuple[Any, ...]) -> LetterClass:
-        prepared = self._prepared
-        inputs = zip(prepared.inputs, digits, strict=True)
-        if UNKNOWN_TYPES.isdisjoint(map(type, digits)):
-            number = sum([weight_of(digit) for (_, weight_of), digit in inputs])
-            letter_class: LetterClass | None = prepared.letters[number]
-        else:
-            if prepared.is_joint:
-                for (_, weight_of), digit in inputs:
-                    if type(digit) not in UNKNOWN_TYPES:
-                        weight_of(digit)
-                return CLOSER
-            letter_class = prepared.uncertain.class_of(digits, prepared.inputs)
-        if letter_class is None or letter_class == IMPOSSIBLE:
-            raise LookupError
+        letter_class, is_exact = self._prepared.letter_class(digits)
         if len(self) >= MOST_CLASSES:
             self.clear()
             self.inexact.clear()
-        if any(type(digits[place]) in UNKNOWN_TYPES for place in prepared.constants):
+        if not is_exact:
             self.inexact.add(digits)
         self[digits] = letter_class
         return letter_class
@@ -185,25 +115,22 @@ class RuleGroup:
 
     ``own`` are their inputs about variables, ``world`` those about none. ``classes`` are the letter
     classes of each letter, one for each rule; ``cache_size`` counts for all groups together.
-    Letters that are ``inexact`` have names of rules of which more is taken to be possible than is,
-    those that need a ``closer`` look the numbers of rules whose classes are ``CLOSER``.
+    Letters that are ``inexact`` have names of rules of which more is taken to be possible than is.
     """
 
     def __init__(
         self, rules: Sequence[PreparedRule], types: tuple[str, ...], cache_size: CacheSize
     ) -> None:
         self.rules, self.types, self.cache_size = tuple(rules), types, cache_size
-        inputs = dict.fromkeys(read for prepared in rules for read, _ in prepared.inputs)
+        inputs = dict.fromkeys(read for prepared in rules for read in prepared.all_inputs)
         self.own = tuple([read for read in inputs if read.places or read.name is None])
         self.world = tuple([read for read in inputs if read not in self.own])
         self.classes: list[tuple[LetterClass, ...]] = []
         self.inexact: dict[int, frozenset[str]] = {}
-        self.closer: dict[int, Sequence[int]] = {}
         self._letters: dict[tuple[tuple[LetterClass, ...], frozenset[int]], int] = {}
         self._nodes: dict[tuple[Edge, ...], GroupNode] = {}
         self._tables = [
-            (_ClassTable(prepared), values_at([read for read, _ in prepared.inputs]))
-            for prepared in rules
+            (_ClassTable(prepared), values_at(prepared.all_inputs)) for prepared in rules
         ]
 
     def node(self, edges: tuple[Edge, ...]) -> GroupNode:
@@ -231,8 +158,8 @@ class RuleGroup:
     def letter_of(self, digits: Mapping[MonitorInput, Any]) -> int:
         """The letter where inputs have these digits, or values that are partly known.
 
-        Raises LookupError or TypeError if one is missing or wrong, or if no state is such. Of a
-        letter in ``closer`` some rules' classes are not known.
+        Raises LookupError or TypeError if one is missing or wrong, if no state is such, or if it
+        takes a look at the whole state.
         """
         classes = tuple([table[pick(digits)] for table, pick in self._tables])
         inexact = frozenset(
@@ -240,10 +167,7 @@ class RuleGroup:
             for number, (table, pick) in enumerate(self._tables)
             if table.inexact and pick(digits) in table.inexact
         )
-        letter = self.letter(classes, inexact)
-        if CLOSER in classes:
-            self.closer[letter] = [n for n, own in enumerate(classes) if own == CLOSER]
-        return letter
+        return self.letter(classes, inexact)
 
 
 class RuleGroups:
@@ -275,33 +199,10 @@ def rule_groups(
     rulebook: CompiledRulebook, cut: Mapping[str, OutcomeMachine] | None = None
 ) -> RuleGroups:
     """Prepare the rules of a rulebook; ``cut`` are their machines if the past is not known."""
-    rules, names = [], set(rulebook.vocabulary.constants)
-    for rule in rulebook.rules:
-        prepared = PreparedRule(
-            rule,
-            *linked_edges(rule.machine),
-            tuple(monitor_inputs(rule, rulebook.vocabulary)),
-            rule.machine.letters,
-            rulebook.axioms,
-            entangled=local_reads(rule, rulebook.axioms, rulebook.vocabulary),
-            constants=tuple(
-                place
-                for place, read in enumerate(rule.machine.reads)
-                if not names.isdisjoint(
-                    (read.name,) if isinstance(read, Read) else scale(read).names
-                )
-            ),
-        )
-        rules.append(prepared if cut is None else _of_cut(prepared, cut[rule.name]))
+    rules = [
+        prepared_rule(rule, rulebook, None if cut is None else cut[rule.name])
+        for rule in rulebook.rules
+    ]
     defaults = [declaration.default for declaration in rulebook.vocabulary.declarations.values()]
     is_partial = cut is not None or any(type(value) in UNKNOWN_TYPES for value in defaults)
     return RuleGroups(rules, breakpoints_of(rulebook), is_partial=is_partial)
-
-
-def _of_cut(prepared: PreparedRule, machine: OutcomeMachine) -> PreparedRule:
-    from rulec.monitoring.online.uncertain_steps import cut_edges  # numpy, as above
-
-    start, edges, steps = cut_edges(machine)
-    prepared = replace(prepared, start=start, edges=edges, letters=machine.letters)
-    vars(prepared)["uncertain"] = steps
-    return prepared

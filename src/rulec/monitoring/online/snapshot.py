@@ -24,7 +24,8 @@ from rulec.monitoring.online.monitor_state import (
     state_at,
     with_inexact,
 )
-from rulec.monitoring.online.rule_group import PreparedRule, RuleGroups
+from rulec.monitoring.online.prepared_rule import PreparedRule
+from rulec.monitoring.online.rule_group import RuleGroups
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
 

@@ -9,9 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine
-from rulec.monitoring.online.encoding.encoded_values import DigitWeight
 from rulec.monitoring.online.four_valued import (
     WORST_FIRST,
     FourValued,
@@ -23,8 +21,6 @@ from rulec.monitoring.online.four_valued import (
 )
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import bits_of
-from rulec.monitoring.uncertainty.state_letters.read_digits import possible_digits
-from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 
 MOST_STEPS = 1 << 16
 """Steps that are kept before all are forgotten."""
@@ -59,7 +55,6 @@ class UncertainSteps:
         self._machine = machine
         self.classes = LetterClasses(machine)
         self._single = edges
-        self._masks: list[dict[Any, int]] = [{} for _ in machine.reads]
         self._sets: dict[int, LetterClass | None] = {}
         self._edges: dict[tuple[frozenset[int], RunningVerdict], UncertainEdge] = {}
         self._steps: dict[tuple[Edge, LetterClass], Edge] = {}
@@ -95,27 +90,6 @@ class UncertainSteps:
             self._edges[key] = UncertainEdge(tuple(sorted(members)), verdict)
         return self._edges[key]
 
-    def class_of(
-        self, digits: Sequence[Any], inputs: Sequence[tuple[object, DigitWeight]]
-    ) -> LetterClass | None:
-        """The classes of a letter whose reads have these digits, or values that are partly known.
-
-        Raises LookupError if one is wrong, None if facts exclude them all.
-        """
-        cube = []
-        for read, known, digit, (_, weight_of) in zip(
-            self._machine.reads, self._masks, digits, inputs, strict=True
-        ):
-            mask = known.get(digit)
-            if mask is None:
-                if type(digit) not in UNKNOWN_TYPES:
-                    weight_of(digit)
-                mask = mask_of(read, digit)
-                if type(digit) is not Interval:
-                    known[digit] = mask
-            cube.append(mask)
-        return self.letter_class(self.classes.diagram.classes(cube))
-
     def letter_class(self, mask: int) -> LetterClass | None:
         """The classes given as bits; None if facts exclude them all."""
         if mask not in self._sets:
@@ -125,18 +99,6 @@ class UncertainSteps:
 
     def _verdict(self, state: int, symbol: int) -> FourValued:
         return _four_valued(self._machine, state, symbol)
-
-
-def mask_of(read: Read | NumberRead, digit: Any) -> int:
-    """The possible digits, as bits, of a read whose digit, or value if partly known, is given.
-
-    Raises LookupError for an interval of what is no number.
-    """
-    if isinstance(read, Read) and isinstance(digit, Interval):
-        raise LookupError
-    if type(digit) in UNKNOWN_TYPES or isinstance(read, Read):
-        return possible_digits(read, digit)
-    return 1 << int(digit)
 
 
 def cut_edges(

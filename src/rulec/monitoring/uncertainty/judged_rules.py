@@ -28,10 +28,6 @@ class JudgedRules:
     presumed: tuple[str, ...]
 
 
-_KNOWN: dict[tuple[int, frozenset[str] | None, bool], tuple[CompiledRulebook, JudgedRules]] = {}
-_MOST_KNOWN = 1 << 6
-
-
 def judged_rules(
     rulebook: CompiledRulebook, told: frozenset[str] | None, *, cut: bool
 ) -> JudgedRules:
@@ -41,14 +37,16 @@ def judged_rules(
     whose machine would be too large. Raises RulecError R0403 if Spot is not installed, which makes
     the machines for these. The answer is remembered: it is asked for every trace.
     """
-    key = id(rulebook), told, cut
-    known = _KNOWN.get(key)
-    if known is None or known[0] is not rulebook:
-        if len(_KNOWN) >= _MOST_KNOWN:
-            _KNOWN.clear()
-        known = rulebook, _judged_rules(rulebook, told, cut=cut)
-        _KNOWN[key] = known
-    return known[1]
+    known: dict[object, JudgedRules] = rulebook.prepared.setdefault(JudgedRules, {})
+    if (told, cut) not in known:
+        if len(known) >= _MOST_KNOWN:
+            known.clear()
+        known[told, cut] = _judged_rules(rulebook, told, cut=cut)
+    return known[told, cut]
+
+
+_MOST_KNOWN = 1 << 6
+"""Kinds of sources whose rules are kept before all are forgotten."""
 
 
 def _judged_rules(

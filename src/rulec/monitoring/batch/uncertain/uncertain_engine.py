@@ -32,7 +32,7 @@ from rulec.monitoring.uncertainty.state_letters.completions import Subject
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
-    bound_reads,
+    local_reads,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_classes import RuleLetters
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
@@ -145,11 +145,12 @@ class _Engine:
         rule, axioms = binding.rule, self._rulebook.axioms
         key = rule.name, *binding.objects.values()
         if key not in self._bound:
-            known = machine.classes.of_rule(rule, axioms, self._vocabulary)
-            if known is None:
-                reads = bound_reads(rule, binding.objects, axioms, self._everybody)
-                known = RuleLetters(machine.classes, rule, reads)
-            self._bound[key] = known
+            reads = local_reads(rule, self._rulebook)
+            if reads is not None:
+                self._bound[key] = machine.classes.of_rule(rule, reads)
+            else:
+                reads = EntangledReads(rule, binding.objects, axioms, self._everybody)
+                self._bound[key] = RuleLetters(machine.classes, rule, reads)
         return self._bound[key]
 
     def _keys(

@@ -172,6 +172,13 @@ class MonitorInput:
         reached = encoded if floors is None else floors[encoded - 1]
         return bisect_right(scale(self.number).floors, reached)
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names that it depends on."""
+        if self.name is not None:
+            return (self.name,)
+        return () if self.number is None else scale(self.number).names
+
 
 @lru_cache(maxsize=1 << 14)
 def _input(
@@ -212,3 +219,11 @@ def monitor_inputs(
             inputs.append((number, stride.__mul__))
         stride *= read.size
     return inputs
+
+
+def value_inputs(
+    rule: CompiledRule, subjects: Sequence[tuple[str, tuple[str, ...]]]
+) -> tuple[MonitorInput, ...]:
+    """Inputs that are values themselves, of names asked of a rule's variables."""
+    places = {variable.name: place for place, variable in enumerate(rule.variables)}
+    return tuple([_input(name, tuple([places[x] for x in items])) for name, items in subjects])

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
@@ -59,6 +59,7 @@ class NothingKnown:
 class EntangledReads:
     """Reads of a rule that count, or that share values or facts.
 
+    They are asked of a binding's objects among ``everybody`` who may be there.
     ``numbers`` are their places among the rule's reads, ``subjects`` what they depend on. If they
     are local, on the rule's own objects alone, these are asked of variables, which have a
     ``binding`` to themselves. ``found`` has what the reads may be together, as cubes of their
@@ -72,7 +73,7 @@ class EntangledReads:
         axioms: Sequence[CompiledAxiom],
         everybody: NothingKnown,
         *,
-        is_local: bool,
+        is_local: bool = False,
     ) -> None:
         reads = rule.machine.reads
         self.is_local = is_local
@@ -141,10 +142,17 @@ def _subjects_of(axioms: Sequence[CompiledAxiom], everybody: NothingKnown) -> It
             yield from subjects_in(axiom.formula, dict(zip(names, chosen, strict=True)), everybody)
 
 
-def local_reads(
+def local_reads(rule: CompiledRule, rulebook: CompiledRulebook) -> EntangledReads | None:
+    """The entangled reads of a rule, if its own objects alone decide what they may be."""
+    known: dict[str, EntangledReads | None] = rulebook.prepared.setdefault(EntangledReads, {})
+    if rule.name not in known:
+        known[rule.name] = _local_reads(rule, rulebook.axioms, rulebook.vocabulary)
+    return known[rule.name]
+
+
+def _local_reads(
     rule: CompiledRule, axioms: Sequence[CompiledAxiom], vocabulary: Vocabulary
 ) -> EntangledReads | None:
-    """The entangled reads of a rule, if its own objects alone decide what they may be."""
     names = {name for read in rule.machine.reads for name in names_of_read(read)}
     if any(not names.isdisjoint(names_in(axiom.formula)) for axiom in axioms):
         return None
@@ -153,16 +161,6 @@ def local_reads(
     own = {variable.name: variable.type for variable in rule.variables}
     binding = {name: name for name in own}
     return EntangledReads(rule, binding, (), NothingKnown(own, vocabulary), is_local=True)
-
-
-def bound_reads(
-    rule: CompiledRule,
-    objects: Mapping[str, str],
-    axioms: Sequence[CompiledAxiom],
-    everybody: NothingKnown,
-) -> EntangledReads:
-    """The entangled reads of a rule and its objects, among everybody who may be there."""
-    return EntangledReads(rule, objects, axioms, everybody, is_local=False)
 
 
 def _count_in(read: Read | NumberRead) -> ltl.Count | None:

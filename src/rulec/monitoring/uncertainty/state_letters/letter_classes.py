@@ -6,15 +6,11 @@ from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import TypeVar
 
-from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.outcome_machine import OutcomeMachine
-from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
-    EntangledReads,
-    local_reads,
-)
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram, bits_of
 from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters, read_digits
-from rulec.vocabulary import Vocabulary
 
 MOST_KEPT = 1 << 16
 """Letters whose classes are kept before all are forgotten."""
@@ -30,7 +26,7 @@ class LetterClasses:
         self.diagram = LetterDiagram(machine)
         self._known: dict[Letters, int] = {}
         self._groups: dict[tuple[Letters, tuple[int, ...]], Mapping[Cube, int]] = {}
-        self._rules: dict[str, tuple[tuple[object, ...], RuleLetters | None]] = {}
+        self._rules: dict[str, RuleLetters] = {}
 
     def of(self, letters: Letters) -> int:
         """The classes of letters; 0 if facts exclude them all."""
@@ -42,17 +38,12 @@ class LetterClasses:
             _keep(self._known, letters, known)
         return known
 
-    def of_rule(
-        self, rule: CompiledRule, axioms: Sequence[CompiledAxiom], vocabulary: Vocabulary
-    ) -> RuleLetters | None:
-        """The letters of a rule that has this machine; None if others decide, too."""
-        about = (rule.variables, axioms, vocabulary.types)
+    def of_rule(self, rule: CompiledRule, reads: EntangledReads) -> RuleLetters:
+        """The letters of a rule that has this machine, and of which these reads are entangled."""
         known = self._rules.get(rule.name)
-        if known is None or any(x is not y for x, y in zip(known[0], about, strict=True)):
-            reads = local_reads(rule, axioms, vocabulary)
-            known = about, None if reads is None else RuleLetters(self, rule, reads)
-            self._rules[rule.name] = known
-        return known[1]
+        if known is None or known.entangled is not reads:
+            known = self._rules[rule.name] = RuleLetters(self, rule, reads)
+        return known
 
     def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
         """The classes of letters by the digits, as bits, of ``fixed`` reads."""

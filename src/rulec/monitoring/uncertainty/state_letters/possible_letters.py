@@ -21,7 +21,7 @@ from rulec.monitoring.uncertainty.state_letters.completions import (
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
-    bound_reads,
+    local_reads,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses, RuleLetters
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
@@ -144,8 +144,7 @@ class PossibleLetters:
         Raises RulecError R0504 if a value without default is missing.
         """
         about = _About(rule, binding, supposed)
-        letters = classes.of_rule(rule, self._rulebook.axioms, self._vocabulary)
-        letters = letters or self._bound_letters(rule, classes, binding.objects)
+        letters = self._letters_of(rule, classes, binding.objects)
         columns = [self._digits(letters.reads[n], about) for n in letters.independent]
         is_exact = True
         if letters.entangled.numbers:
@@ -160,14 +159,16 @@ class PossibleLetters:
             lambda: tuple([self._unknown_names(read, about) for read in letters.reads]),
         )
 
-    def _bound_letters(
+    def _letters_of(
         self, rule: CompiledRule, classes: LetterClasses, objects: Mapping[str, str]
     ) -> RuleLetters:
-        """The letters of a rule that depends on more than its own objects."""
+        reads = local_reads(rule, self._rulebook)
+        if reads is not None:
+            return classes.of_rule(rule, reads)
         key = rule.name, classes, tuple(objects.values())
         if key not in self._bound:
             everybody = NothingKnown(self._trace.objects, self._vocabulary)
-            reads = bound_reads(rule, objects, self._rulebook.axioms, everybody)
+            reads = EntangledReads(rule, objects, self._rulebook.axioms, everybody)
             self._bound[key] = RuleLetters(classes, rule, reads)
         return self._bound[key]
 

@@ -1,0 +1,236 @@
+"""Rules prepared for any objects: what they read of a state, and the classes of what they read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
+from rulec.logic.free_names import names_in
+from rulec.monitoring.online.encoding.encoded_values import (
+    MISSING,
+    DigitWeight,
+    MonitorInput,
+    monitor_inputs,
+    value_inputs,
+)
+from rulec.monitoring.online.four_valued import (
+    FourValued,
+    LetterClass,
+    MonitorEdge,
+    linked_edges,
+)
+from rulec.monitoring.uncertainty.state_letters.completions import MissingValueError
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads, local_reads
+from rulec.monitoring.uncertainty.state_letters.read_digits import (
+    Letters,
+    names_of_read,
+    possible_digits,
+)
+from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
+
+if TYPE_CHECKING:
+    from rulec.automata.outcome_machine import OutcomeMachine
+    from rulec.monitoring.online.uncertain_steps import Edge, UncertainSteps
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedRule:
+    """A rule prepared for any objects: its monitor's ``start`` and ``edges``, and what it reads.
+
+    ``letters`` has the class of each letter. ``entangled`` are those reads, None if more than the
+    rule's own objects decides what they may be; their inputs are the ``values`` on which they
+    depend. ``alone`` are the places of the other reads, with an input for each.
+    """
+
+    rule: CompiledRule
+    start: Edge
+    edges: Mapping[tuple[int, FourValued], MonitorEdge]
+    letters: tuple[int, ...]
+    entangled: EntangledReads | None
+    alone: tuple[int, ...]
+    inputs: tuple[tuple[MonitorInput, DigitWeight], ...]
+    values: tuple[MonitorInput, ...]
+    vocabulary: Vocabulary
+    axioms: tuple[CompiledAxiom, ...]
+
+    @cached_property
+    def uncertain(self) -> UncertainSteps:
+        """The steps where not all is known."""
+        # numpy, a tenth of a second, is loaded only where something is unknown.
+        from rulec.automata.outcome_machine import of_running_words
+        from rulec.monitoring.online.uncertain_steps import UncertainSteps
+
+        return UncertainSteps(of_running_words(self.rule.machine), self.edges)
+
+    @cached_property
+    def _strides(self) -> tuple[int, ...]:
+        """By how much a digit of each read counts in the number of a letter."""
+        strides = [1]
+        for read in self.rule.machine.reads:
+            strides.append(strides[-1] * read.size)
+        return tuple(strides)
+
+    @property
+    def name(self) -> str:
+        """The rule's name."""
+        return self.rule.name
+
+    @cached_property
+    def all_inputs(self) -> tuple[MonitorInput, ...]:
+        """The inputs, and then the values."""
+        return (*[read for read, _ in self.inputs], *self.values)
+
+    @cached_property
+    def constants(self) -> frozenset[str]:
+        """Names that the rule reads and that never change."""
+        read = (name for own in self.rule.machine.reads for name in names_of_read(own))
+        return frozenset(read).intersection(self.vocabulary.constants)
+
+    def bound(self, items: Sequence[str]) -> dict[str, str]:
+        """Objects by the names of the variables that they stand for."""
+        return dict(zip([variable.name for variable in self.rule.variables], items, strict=True))
+
+    def letter_class(self, digits: Sequence[Any]) -> tuple[LetterClass, bool]:
+        """The classes that the rule reads, and whether no more are said than are.
+
+        ``digits`` are those of the ``inputs`` and then the ``values``, as encoded. Raises
+        LookupError if one is missing or wrong, or if it takes a look at the whole state.
+        """
+        own = digits[: len(self.inputs)]
+        place: tuple[int, ...] = ()
+        cubes, is_exact = _NO_CUBES
+        if self.entangled is not None and self.entangled.numbers:
+            place = (self._place(self.entangled, digits[len(own) :]),)
+            cubes, is_exact = self.entangled.found[place[0]]
+        letter_class: LetterClass | None
+        is_known = UNKNOWN_TYPES.isdisjoint(map(type, own))
+        if is_known and len(cubes) == 1 and not any(x & (x - 1) for x in cubes[0]):
+            letter = sum(
+                [weight_of(digit) for (_, weight_of), digit in zip(self.inputs, own, strict=True)]
+            )
+            if place and self.entangled is not None:
+                strides = [self._strides[n] for n in self.entangled.numbers]
+                letter += sum(
+                    [x * (y.bit_length() - 1) for x, y in zip(strides, cubes[0], strict=True)]
+                )
+            letter_class = self.letters[letter]
+        else:
+            masks = [known[digit] for known, digit in zip(self._masks, own, strict=True)]
+            letter_class = self.uncertain.letter_class(self._classes((*masks, *place)))
+        if letter_class is None or letter_class == IMPOSSIBLE:
+            raise LookupError
+        if self.constants:
+            unknown = [
+                name
+                for read, digit in zip(self.all_inputs, digits, strict=True)
+                if type(digit) in UNKNOWN_TYPES
+                for name in read.names
+            ]
+            is_exact = is_exact and self.constants.isdisjoint(unknown)
+        return letter_class, is_exact
+
+    def _classes(self, key: tuple[int, ...]) -> int:
+        """The classes, as bits, of letters. Raises LookupError if others decide these, too."""
+        classes = self.uncertain.classes
+        if self.entangled is not None:
+            return classes.of_rule(self.rule, self.entangled).classes_of(key)
+        if any(key[n] & (key[n] - 1) for n in self._perhaps_entangled):
+            raise LookupError
+        return classes.of((key,))
+
+    @cached_property
+    def _perhaps_entangled(self) -> Sequence[int]:
+        """The places of reads that count, and of those that share a name with others or facts."""
+        names = [set(names_of_read(read)) for read in self.rule.machine.reads]
+        facts = [names_in(axiom.formula) for axiom in self.axioms]
+        return [
+            n
+            for n, own in enumerate(names)
+            if self.inputs[n][0].name is None
+            or any(not own.isdisjoint(other) for other in (*names[:n], *names[n + 1 :], *facts))
+        ]
+
+    @cached_property
+    def _masks(self) -> Sequence[_Masks]:
+        reads = self.rule.machine.reads
+        return [_Masks(reads[n], own) for n, (_, own) in zip(self.alone, self.inputs, strict=True)]
+
+    def _place(self, entangled: EntangledReads, encoded: Sequence[Any]) -> int:
+        for allowed, value in zip(self._allowed, encoded, strict=True):
+            if allowed is not None and value not in allowed:
+                raise LookupError
+        try:
+            return entangled.number(tuple([None if x is MISSING else x for x in encoded]))
+        except MissingValueError:
+            raise LookupError from None
+
+    @cached_property
+    def _allowed(self) -> Sequence[frozenset[object] | None]:
+        """Of each value that is an enumeration's what it may be, encoded."""
+        declared = [self.vocabulary.declarations[read.names[0]] for read in self.values]
+        return [
+            frozenset([*own.values, MISSING, UNKNOWN]) if isinstance(own, Enumeration) else None
+            for own in declared
+        ]
+
+
+class _Masks(dict[Any, int]):
+    """The possible digits, as bits, of a read whose digit, or value if partly known, is given.
+
+    Raises LookupError if that is wrong.
+    """
+
+    def __init__(self, read: Read | NumberRead, weight_of: DigitWeight) -> None:
+        self._read = read
+        self._weight_of = weight_of
+
+    def __missing__(self, digit: Any) -> int:
+        read = self._read
+        if type(digit) is Interval:
+            if isinstance(read, Read):
+                raise LookupError
+            return possible_digits(read, digit)
+        if digit is not UNKNOWN:
+            self._weight_of(digit)
+        is_digit = digit is not UNKNOWN and isinstance(read, NumberRead)
+        self[digit] = 1 << digit if is_digit else possible_digits(read, digit)
+        return self[digit]
+
+
+_NO_CUBES: tuple[Letters, bool] = ((),), True
+
+
+def prepared_rule(
+    rule: CompiledRule, rulebook: CompiledRulebook, cut: OutcomeMachine | None = None
+) -> PreparedRule:
+    """Prepare a rule; ``cut`` is its machine if the past is not known."""
+    vocabulary, reads = rulebook.vocabulary, local_reads(rule, rulebook)
+    entangled = () if reads is None else reads.numbers
+    alone = tuple([n for n in range(len(rule.machine.reads)) if n not in entangled])
+    inputs = monitor_inputs(rule, vocabulary)
+    start, edges = linked_edges(rule.machine)
+    prepared = PreparedRule(
+        rule=rule,
+        start=start,
+        edges=edges,
+        letters=rule.machine.letters,
+        entangled=reads,
+        alone=alone,
+        inputs=tuple([inputs[n] for n in alone]),
+        values=() if reads is None else value_inputs(rule, reads.subjects),
+        vocabulary=vocabulary,
+        axioms=rulebook.axioms,
+    )
+    if cut is None:
+        return prepared
+    from rulec.monitoring.online.uncertain_steps import cut_edges  # numpy, as above
+
+    first, cut_edges_, steps = cut_edges(cut)
+    prepared = replace(prepared, start=first, edges=cut_edges_, letters=cut.letters)
+    vars(prepared)["uncertain"] = steps
+    return prepared
