@@ -104,7 +104,8 @@ class BoundRules:
         """
         known = None
         try:
-            reader = self._reader_of(tuple(state))
+            names = tuple(state)
+            reader = self._readers[names] if names in self._readers else self._reader_of(names)
             if reader is not None:
                 encoded = reader.shape.encode(state)
                 known = reader.shape, encoded
@@ -125,11 +126,7 @@ class BoundRules:
         return letters, known
 
     def _reader_of(self, names: tuple[str, ...]) -> GroupLetters | None:
-        """Reader of states with these names; None for the careful way."""
-        try:
-            return self._readers[names]
-        except KeyError:
-            pass
+        """New reader of states with these names; None for the careful way."""
         if len(self._readers) >= MOST_SHAPES:
             self._readers.clear()
         self._readers[names] = None

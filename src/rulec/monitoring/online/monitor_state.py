@@ -141,6 +141,8 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
         except OtherVerdictError:
             pass
         else:
+            if nodes == before:
+                return current, ()
             verdict, n_violations = current.verdict, current.n_violations
             after = MonitorState(
                 bound_rules,

@@ -83,9 +83,10 @@ class GroupNode(dict[int, "GroupNode"]):
 
 
 class CacheSize:
-    """Number of cached nodes, letters and transitions."""
+    """Number of cached nodes, letters and transitions, and whether some letter is inexact."""
 
     n = 0
+    is_inexact = False
 
 
 class _ClassTable(dict[tuple[Any, ...], "LetterClass"]):
@@ -152,6 +153,7 @@ class RuleGroup:
             self.classes.append(classes)
             self.cache_size.n += 1
             if inexact:
+                self.cache_size.is_inexact = True
                 self.inexact[letter] = frozenset(self.rules[number].name for number in inexact)
         return letter
 

@@ -154,10 +154,11 @@ class Monitor:
             # A method that is looked up and called at once would be looked up in the class first.
             key = cache.key
             try:
-                after, changes = current.after[key(state)]
+                known = current.after.get(key(state))
             except (LookupError, TypeError):
-                pass
-            else:
+                known = None
+            if known is not None:
+                after, changes = known
                 number += 1
                 self._now = after, number, changes, cache
                 return SoFar(number, after.verdict, after.rules, changes, after.exact)
@@ -189,8 +190,8 @@ class Monitor:
             raise _no_object(f"state {number}", "names and values", place)
         letters, known = bound_rules.read(state, number, place)
         after, changes = take_step(current, bound_rules, letters)
-        inexact = current.inexact | bound_rules.inexact(letters)
-        after = with_inexact(after, inexact)
+        if current.inexact or bound_rules.groups.cache_size.is_inexact:
+            after = with_inexact(after, current.inexact | bound_rules.inexact(letters))
         n_before = current.n_violations
         same = bound_rules is current.bound_rules and after.n_violations == n_before
         if same and known is not None:
