@@ -101,6 +101,12 @@ def test_oncoming_moves_against_ego_or_waits_beside_its_lanes():
     # One that has come on another road waits in a junction for its turn: nobody follows it
     elsewhere = np.array([[False] * 4, [True] * 4])
     ego, turning = steady(7, 0, 0, speed=10), steady(8, 60, 0, **waiting)
+    comes = steady(8, 65, 0, speed=-10, steps=2)
+    turning = replace(
+        turning,
+        states={**turning.states, **comes.states},
+        outlines={**turning.outlines, **comes.outlines},
+    )
     junction = participant_signals(
         context_of(recording(lanes(2), [ego, turning]), elsewhere=elsewhere)
     )

@@ -110,11 +110,12 @@ def _waits_oncoming(context: DriveContext) -> Flags:
     """Flags of vehicles that stand on lanes against ego's way, in a queue for example.
 
     Ego does not overtake them, no more than ones that move, nor follow one that waits in a junction
-    for its turn. A vehicle of ego's road that stands the wrong way round is an obstacle there.
+    for its turn. What only stands there, the wrong way round, is an obstacle in ego's lanes.
     """
     stands = np.abs(context.extents.along) * KMH < context.thresholds.standing_kmh
     vehicles = np.array(context.tracks.of_type("vehicle"), dtype=bool)[:, None]
-    waits: Flags = stands & vehicles & (context.elsewhere | ~context.touched.any(axis=-1))
+    moves_elsewhere = context.elsewhere & ~stands.all(axis=1, keepdims=True)
+    waits: Flags = stands & vehicles & (moves_elsewhere | ~context.touched.any(axis=-1))
     return waits & _faces_ego(context)
 
 
