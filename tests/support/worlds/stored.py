@@ -36,37 +36,38 @@ _AFTER_S = 25
 
 @dataclass(frozen=True)
 class StoredWorld:
-    """One of the stored worlds, by its kind's name."""
+    """One of the stored worlds, by its kind's name; stored with the tests, or in a folder."""
 
     name: str
+    folder: Path = FOLDER
 
-    net = property(lambda self: FOLDER / f"{self.name}.net.xml")
-    data = property(lambda self: FOLDER / f"{self.name}.fcd.xml.gz")
-    _truth = property(lambda self: FOLDER / f"{self.name}.truth.json")
+    net = property(lambda self: self.folder / f"{self.name}.net.xml")
+    data = property(lambda self: self.folder / f"{self.name}.fcd.xml.gz")
+    truth = property(lambda self: self.folder / f"{self.name}.truth.json")
 
     @property
     def book(self):
         return KINDS[self.name].book
 
     def facts(self):
-        stored = json.loads(self._truth.read_text(encoding="utf-8"))
+        stored = json.loads(self.truth.read_text(encoding="utf-8"))
         return [Fact(**fact) for fact in stored["facts"]]
 
-    def store(self, sumo, folder):
-        """Simulate it anew, and write its files."""
+    def store(self, sumo, work):
+        """Simulate it anew in a folder for work, and write its files."""
         kind, (seed, vehicles, over_s) = KINDS[self.name], SMALL[self.name]
         walkers = min(kind.demand.walkers, vehicles)
         demand = replace(kind.demand, vehicles=vehicles, over_s=over_s, walkers=walkers)
         small = replace(kind, demand=demand, ends_s=over_s + _AFTER_S)
-        files = simulate(sumo, small, seed, folder)
+        files = simulate(sumo, small, seed, work)
         facts = true_facts(WorldState(files, 0.1, kind.book))
-        FOLDER.mkdir(parents=True, exist_ok=True)
+        self.folder.mkdir(parents=True, exist_ok=True)
         self.net.write_bytes(files.net.read_bytes())
         packed = gzip.compress(_shorter(files.data).encode(), 9, mtime=0)
         self.data.write_bytes(packed)
         rows = ",\n  ".join(json.dumps(asdict(fact)) for fact in facts)
         head = json.dumps({"kind": self.name, "seed": seed})[:-1]
-        self._truth.write_text(f'{head}, "facts": [\n  {rows}\n]}}\n', encoding="utf-8")
+        self.truth.write_text(f'{head}, "facts": [\n  {rows}\n]}}\n', encoding="utf-8")
 
 
 def _shorter(file):
