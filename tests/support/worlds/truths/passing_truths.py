@@ -7,6 +7,7 @@ from support.worlds.world_state import LENGTH_M
 
 _QUEUE_M, _QUEUE = 110.0, 3
 _SLOW_MPS = 18.0
+_NEARER_M, _BESIDE_M, _ALIKE = 0.9, 6.0, 0.7
 _ABOUT_M = 0.5
 """Where two are so nearly level nobody can say whether they are."""
 
@@ -34,6 +35,7 @@ def _passes(world, track, other):
         ]
     )
     nearer = _index(world, track, own) < _index(world, other, theirs)
+    yield from _past_junctions(world, (track, own), (other, theirs), same)
     level = runs((np.abs(ahead) <= LENGTH_M) & same)
     about = runs((np.abs(ahead) <= LENGTH_M + _ABOUT_M) & same)
     for begin, end in sorted({*level, *about}):
@@ -51,6 +53,23 @@ def _passes(world, track, other):
         sure &= (begin, end) in level and not _in_queues(world, track, other, first + begin)
         at = ((first + begin - 10) * world.step_s, (first + end + 10) * world.step_s)
         yield Fact(track.id, "near_side_passing", *at, bool(sure), other.id)
+
+
+def _past_junctions(world, one, another, same):
+    """Unsure: who may get past where roads begin or end, by places in the plane."""
+    (track, own), (other, theirs) = one, another
+    x, y, turned = (
+        track.column(name)[own] - other.column(name)[theirs] for name in ("x", "y", "angle")
+    )
+    angle = np.radians(other.column("angle")[theirs])
+    ahead, aside = x * np.sin(angle) + y * np.cos(angle), x * np.cos(angle) - y * np.sin(angle)
+    beside = (np.abs(aside) < _BESIDE_M) & (np.cos(np.radians(turned)) > _ALIKE)
+    for begin, end in runs(beside & (np.abs(ahead) <= LENGTH_M + _ABOUT_M)):
+        nearer = (aside[begin : end + 1] * (-1 if world.net.lefthand else 1) > _NEARER_M).any()
+        if nearer and ahead[begin] < 0 < ahead[end] and not same[begin : end + 1].all():
+            first = track.step[own.start]
+            at = ((first + begin - 10) * world.step_s, (first + end + 10) * world.step_s)
+            yield Fact(track.id, "near_side_passing", *at, False, other.id)
 
 
 def _index(world, track, rows):
