@@ -18,6 +18,7 @@ MOST_POINTS = 1 << 12
 """Of more cells no points are given."""
 
 Point = dict[Term, Fraction]
+_Interval = tuple[Fraction, Fraction]
 
 
 class LinearPlane(NamedTuple):
@@ -41,6 +42,11 @@ def sample_points(
         limits = {limit / factor for limit, factor in own if factor}
         on_line = _on_a_line(limits, interval)
         return None if len(on_line) > MOST_POINTS else [{number: point} for point in on_line]
+    distinct = {(frozenset(plane.coefficients.items()), plane.limit): plane for plane in planes}
+    cutting = [plane for plane in distinct.values() if _cuts(plane, bounds)]
+    boxed = {number: interval for number, interval in bounds.items() if interval is not None}
+    if len(cutting) <= 1 and len(boxed) == len(bounds):
+        return list(_beside(cutting, boxed))
     within = [
         bound
         for number, interval in bounds.items()
@@ -50,13 +56,50 @@ def sample_points(
             LinearBound({number: Fraction(-1)}, -interval[0]),
         )
     ]
-    distinct = {(frozenset(plane.coefficients.items()), plane.limit): plane for plane in planes}
     points = []
-    for point in _cells(within, list(distinct.values()), list(bounds)):
+    for point in _cells(within, cutting, list(bounds)):
         points.append(point)
         if len(points) > MOST_POINTS:
             return None
     return points
+
+
+def _cuts(plane: LinearPlane, bounds: Mapping[Term, _Interval | None]) -> bool:
+    """True unless the sum is on one side of the limit everywhere within the bounds."""
+    intervals = [bounds.get(number) for number, factor in plane.coefficients.items() if factor]
+    boxed = {number: interval for number, interval in bounds.items() if interval is not None}
+    if None in intervals:
+        return True
+    least, most = (_sum(plane, corner) for corner in _corners(plane, boxed))
+    return least <= plane.limit <= most
+
+
+def _corners(plane: LinearPlane, box: Mapping[Term, _Interval]) -> tuple[Point, Point]:
+    """Where in a box the sum is least, and where greatest."""
+    falls = {number: plane.coefficients.get(number, 0) < 0 for number in box}
+    least = {number: interval[falls[number]] for number, interval in box.items()}
+    return least, {number: interval[not falls[number]] for number, interval in box.items()}
+
+
+def _sum(plane: LinearPlane, point: Point) -> Fraction:
+    terms = (factor * point[number] for number, factor in plane.coefficients.items() if factor)
+    return sum(terms, Fraction(0))
+
+
+def _beside(planes: Sequence[LinearPlane], box: Mapping[Term, _Interval]) -> Iterator[Point]:
+    """Points of a box on both sides of its only plane and on it, or any if there is none."""
+    if not planes:
+        yield {number: low for number, (low, _) in box.items()}
+        return
+    (plane,) = planes
+    least, most = _corners(plane, box)
+    low, high = _sum(plane, least), _sum(plane, most)
+    share = (plane.limit - low) / (high - low) if high > low else Fraction(0)
+    if low < plane.limit:
+        yield least
+    yield {number: least[number] + share * (most[number] - least[number]) for number in box}
+    if high > plane.limit:
+        yield most
 
 
 def _on_a_line(limits: Set[Fraction], interval: tuple[Fraction, Fraction] | None) -> list[Fraction]:
