@@ -62,6 +62,26 @@ def test_who_is_in_conflict(road, side, sign, comes_s, conflict):
     assert not found.unknown[side].any()
 
 
+def test_a_conflict_is_one_of_a_single_junction():
+    """Ego's front is in the first junction at 1.5 s, and 30 m on, at 4.5 s, in the second one."""
+    road = [
+        *EAST[:2],
+        straight(3, 4, 26, predecessors=(2,), successors=(10,)),
+        straight(10, 26, 34, predecessors=(3,), successors=(11,), types=INSIDE, junction="y"),
+        straight(11, 34, 120, predecessors=(10,)),
+        lanelet(14, [(30, -90), (30, -4)], successors=(15,)),
+        lanelet(15, [(30, -4), (30, 4)], predecessors=(14,), types=INSIDE, junction="y"),
+    ]
+    ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
+    places = {k: (30, -3 + 10 * (k / 2 - 6)) for k in STEPS}
+    other = vehicle(8, places, speed=10, heading=np.pi / 2)
+    found = replace(recording([*road, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
+    signals = priority_signals(context_of(found, route=("1", "2", "3", "10", "11")))
+    from_right = signals.world["conflict_from_right"]
+    assert not from_right[:4].any()
+    assert from_right[9]
+
+
 def test_one_that_would_have_come_at_once_was_held_up():
     """It comes 2 s after ego has left, for it brakes from 10 m/s 9 m before."""
     found = signals(NORTH, lambda t: np.interp(t, [0, 2, 4, 4.5], [-32, -12, -7, -3]), np.pi / 2)

@@ -90,12 +90,16 @@ def own_passages(context: DriveContext) -> tuple[Passage, ...]:
 
 
 def _approach(context: DriveContext, passage: Passage) -> slice:
-    """The states from which on ego nears the junction until it is through it."""
-    shift = first_column(context)
-    ways = context.surroundings.passages.travelled[passage.row]
+    """The states from which on ego nears the junction until it is through it.
+
+    It does so after it has entered the one before: who is in its way is so at one of them.
+    """
+    shift, passages = first_column(context), context.surroundings.passages
+    ways = passages.travelled[passage.row]
     near = ways[passage.first] - ways[shift : passage.first + 1] <= context.thresholds.approach_m
     first = passage.first - shift - int(near.sum()) + 1 if len(near) else 0
-    return slice(max(first, 0), passage.last - shift + 1)
+    entered = [x.first - shift + 1 for x in passages.of_row[passage.row] if x.first < passage.first]
+    return slice(max(first, 0, *entered), passage.last - shift + 1)
 
 
 def _roads(
