@@ -179,10 +179,12 @@ class _Engine:
         """The states in which unknown values have to do with each other."""
         columns = self._columns
         found = np.zeros(columns.layout.n_states, dtype=bool)
-        for subject in own.entangled.subjects_of(binding.objects):
-            if self._reader.is_dark(subject):
+        reads = own.entangled
+        asked = zip(reads.subjects, reads.subjects_of(binding.objects), strict=True)
+        for about, subject in asked:
+            if about in reads.shared and self._reader.is_dark(subject):
                 found[:] = True
-            if subject in columns.unknown:
+            if about in reads.shared and subject in columns.unknown:
                 found |= columns.unknown[subject]
             if subject in columns.upper:
                 found |= columns.upper[subject] != columns.values[subject]

@@ -62,8 +62,9 @@ class EntangledReads:
     They are asked of a binding's objects among ``everybody`` who may be there.
     ``numbers`` are their places among the rule's reads, ``subjects`` what they depend on. If they
     are local, on the rule's own objects alone, these are asked of variables, which have a
-    ``binding`` to themselves. ``found`` has what the reads may be together, as cubes of their
-    digits, and whether no more is said than is.
+    ``binding`` to themselves. Where none of those that are ``shared`` is unknown, nor another one
+    an interval, each read may have any of its digits whatever the others have. ``found`` has what
+    the reads may be together, as cubes of their digits, and whether no more is said than is.
     """
 
     def __init__(
@@ -92,6 +93,11 @@ class EntangledReads:
         self._reads = [reads[n] for n in self.numbers]
         read = set[Subject]().union(*[about[n] for n in self.numbers])
         self.subjects = tuple(sorted(read | facts if read & facts else read))
+        often = Counter(one for own in self._reads for one in deciding(own, binding, everybody))
+        self.shared = facts.union(subject for subject, n in often.items() if n > 1)
+        for n in self.numbers:
+            if _is_coarse(reads[n]):
+                self.shared |= about[n]
         self.found: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}
@@ -166,6 +172,15 @@ def _local_reads(
 def _count_in(read: Read | NumberRead) -> ltl.Count | None:
     terms = read.terms if isinstance(read, NumberRead) else ()
     return next((term for _, term in terms if isinstance(term, ltl.Count)), None)
+
+
+def _is_coarse(read: Read | NumberRead) -> bool:
+    """Whether not all digits between the least and the greatest may be those of a count."""
+    count = _count_in(read)
+    if count is None or not isinstance(read, NumberRead):
+        return False
+    is_plain = len(read.terms) == 1 and len(read.thresholds) == 1
+    return not is_plain or any(map(_counts, ltl.atoms_of(count.body)))
 
 
 def _counts(part: ltl.Proposition) -> bool:
