@@ -3,6 +3,7 @@
 import numpy as np
 
 from support.worlds.facts import Fact
+from support.worlds.truths.following_truths import BRAKING_MPS2, REACTION_S
 from support.worlds.world_state import LENGTH_M
 
 _SOON_S = 3.0
@@ -24,6 +25,8 @@ def pedestrian_facts(world):
         at = (steps[0] * world.step_s, steps[-1] * world.step_s)
         for walker in world.walkers.values():
             grade = _grade(world, walker, walk, (steps, crossing.link.inner[0]))
+            # Nobody has to do what cannot be done any more
+            grade = grade and _in_time(world, crossing, walker, walk)
             if grade is not None:
                 yield Fact(crossing.track.id, "give_way_to_pedestrians", *at, grade, walker.id)
 
@@ -38,6 +41,18 @@ def _grade(world, walker, walk, where):
     if found is False or _soon_on_it(world, walker, walk, steps):
         return False
     return None
+
+
+def _in_time(world, crossing, walker, walk):
+    """True if it was on the crossing, or stood beside it, when one could still stop for it."""
+    speed = crossing.track.column("speed")[crossing.row]
+    lead = REACTION_S + speed / (2 * BRAKING_MPS2)
+    row = walker.at(crossing.track.step[crossing.row] - round(lead / world.step_s))
+    if row is None:
+        return False
+    stands = walker.column("speed")[row] < _STANDS_MPS
+    area = walk.rpartition("_")[0] + "_w"
+    return walker.lane[row] == walk or bool(stands and walker.lane[row].startswith(area))
 
 
 def _on_crossing(world, walker, walk, where):
