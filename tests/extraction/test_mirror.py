@@ -8,6 +8,7 @@ from hypothesis import given
 from rulec.extraction.drives import Drive, Drives
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.vocabulary.partial_values import Interval
+from support.builders.recordings import recording, straight
 from support.generators.random_recordings import scenes
 from support.measured import middle
 
@@ -77,3 +78,14 @@ def test_a_mirror_in_a_mirror_shows_what_there_is(found):
 
 
 LINES = ("left", "right", "centre")
+
+
+def test_every_line_of_a_lanelet_is_mirrored():
+    drawn = straight(1, 0, 10, 3, stop_line=np.array([(10.0, 1.0), (10.0, 5.0)]))
+    (seen,) = mirrored_recording(recording([drawn], [])).lanelets.values()
+    lines = {x.name for x in fields(drawn) if isinstance(getattr(drawn, x.name), np.ndarray)}
+    assert lines == {*LINES, "stop_line"}
+    for name in lines:
+        places = {tuple(place) for place in getattr(seen, name).tolist()}
+        other = {"left": "right", "right": "left"}.get(name, name)
+        assert places == {(x, -y) for x, y in getattr(drawn, other).tolist()}

@@ -21,7 +21,7 @@ DISTURBANCES = {
     USUAL: thinned,
     "rounded": lambda files, folder: with_noise(files, folder, rounded_m=0.1),
     "noise": lambda files, folder: with_noise(files, folder, noise_m=0.3),
-    "mirrored": mirrored,
+    "mirrored": lambda files, folder: thinned(mirrored(files, folder / "whole"), folder),
     "24": lambda files, folder: at_frames(files, folder, 24),
     "29.97": lambda files, folder: at_frames(files, folder, 29.97),
     "30": lambda files, folder: at_frames(files, folder, 30),

@@ -41,6 +41,7 @@ def _lanelet(lanelet: model.Lanelet) -> model.Lanelet:
         right_of=lanelet.left_of,
         left_mark=lanelet.right_mark,
         right_mark=lanelet.left_mark,
+        stop_line=None if lanelet.stop_line is None else _points(lanelet.stop_line),
     )
 
 
