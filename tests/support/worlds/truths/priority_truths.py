@@ -97,7 +97,9 @@ def _grade(world, one, other):
         if row is None:
             return False
         speed = other.track.column("speed")
-        waited = speed[row : other.row + 1].min(initial=np.inf) if row <= other.row else np.inf
+        reaches = other.track.at(round(theirs[0] / world.step_s)) if theirs[0] < np.inf else None
+        until = max(other.row, reaches or 0)
+        waited = speed[row : until + 1].min(initial=np.inf) if row <= until else np.inf
         # Who had to stop for it, or to wait for others, may have had its own reasons
         moved = speed[row] > _MOVING_MPS and waited > _MOVING_MPS
         return bool(spare < _HINDERED_S and moved)
