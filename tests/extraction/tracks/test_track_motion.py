@@ -82,3 +82,16 @@ def test_who_brakes_as_hard_as_tyres_hold_has_not_slipped():
     t = np.arange(30) * 0.1
     error = motion(30 * t - 4.5 * t * t, 0.0, known=OTHERS).speed_error[0]
     assert error[10:20] == pytest.approx([0.1] * 10)
+
+
+def test_a_file_that_contradicts_itself_tells_speeds_no_better():
+    """Where stated speeds are not better than places: within a tenth both mean the same speed."""
+    x, v = braking()
+    plain, off = (motion(x, v * part, known=OTHERS) for part in (1.0, 1.05))
+    mean = float(np.mean(plain.speed))
+    assert off.speed == pytest.approx(plain.speed)
+    assert off.speed_error - plain.speed_error == pytest.approx(0.05 * mean, rel=0.05)
+    # What differs by more means something else, or nothing
+    assert motion(x, v * 0.0, known=OTHERS).speed_error == pytest.approx(
+        motion(x, v * 1.5, known=OTHERS).speed_error
+    )

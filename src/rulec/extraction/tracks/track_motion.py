@@ -18,6 +18,9 @@ _AGREES, _STANDS_MPS = 0.05, 0.1
 """Stated speeds count if they make the way that places do, to a twentieth, or so much in the mean.
 """
 
+_CONTRADICTS = 0.1
+"""Up to such a part stated speeds that differ from places mean the same, and one of both is off."""
+
 _SLIP_S, _GRIP_MPS2, _HAIR = 0.3, 10.0, 1e-6
 """A track that gains or loses more speed over so long than tyres can has slipped off its vehicle.
 
@@ -79,8 +82,12 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     )
     speed = np.where(steers[:, None], along, speed)
     own = np.zeros(len(present), dtype=bool)
-    if known.stated_mps is not None:
-        own = poses.steers & _agree(speed, stated)
+    differ, told = _differ(speed, stated)
+    contradicts = np.zeros(len(present))
+    if known.stated_mps is None:
+        contradicts = np.where(poses.steers & (differ <= _CONTRADICTS * told), differ, 0.0)
+    else:
+        own = poses.steers & (differ <= np.maximum(_AGREES * told, _STANDS_MPS))
         vx, vy = np.where(own[:, None], (stated * cos, stated * sin), (vx, vy))
         speed = np.where(own[:, None], stated, speed)
     gained = (speed[rows, after] - speed[rows, before]) / seconds
@@ -88,6 +95,8 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     beside = np.abs((before + after) / 2 - np.arange(present.shape[1])) * step_s
     error = known.speed_mps / np.where(single, 1.0, seconds)
     error += np.nan_to_num(np.abs(gained) * beside)
+    # What contradicts itself is known no better
+    error += contradicts[:, None]
     # A slip is anywhere in the time over which it shows
     steps = ceil(_SLIP_S / step_s - _HAIR)
     slips = poses.steers[:, None] * _slips(poses, steps, step_s)
@@ -131,12 +140,13 @@ def _most_around(values: NDArray[float64], reach: int) -> NDArray[float64]:
     return most
 
 
-def _agree(speed: NDArray[float64], stated: NDArray[float64]) -> NDArray[bool_]:
-    """Flags of participants whose stated speeds make the way that their places do."""
-    way, told = np.nansum(speed, axis=1), np.nansum(stated, axis=1)
-    count = np.sum(~np.isnan(stated), axis=1)
-    agree: NDArray[bool_] = np.abs(way - told) <= np.maximum(_AGREES * told, _STANDS_MPS * count)
-    return agree
+def _differ(
+    speed: NDArray[float64], stated: NDArray[float64]
+) -> tuple[NDArray[float64], NDArray[float64]]:
+    """By how much participants' mean speeds from places and stated ones differ; the latter."""
+    count = np.maximum(np.sum(~np.isnan(stated), axis=1), 1)
+    told = np.nansum(stated, axis=1) / count
+    return np.abs(np.nansum(speed, axis=1) / count - told), told
 
 
 def _windows(present: NDArray[bool_], reach: int) -> tuple[NDArray[intp], ...]:

@@ -103,19 +103,19 @@ def _town(context: DriveContext) -> Callable[[Lanelet], bool | None]:
     """A function that says of a lanelet whether it is in a built-up area, None if unknown.
 
     ``urban`` is what many maps call every road: it counts on a map that has junctions or
-    crossings, and where no limit contradicts it.
+    crossings, and on which no limit of an urban lanelet contradicts it.
     """
     lanelets = context.recording.lanelets.values()
     settled = bool(context.surroundings.passages.junctions) or any(
         "crosswalk" in x.types for x in lanelets
     )
+    fast = any("urban" in x.types and (x.limit_mps or 0.0) * KMH > _URBAN_KMH for x in lanelets)
 
     def town(lanelet: Lanelet) -> bool | None:
         types = lanelet.types
         if "intersection" in types and "urban" not in types:
             near = [context.recording.lanelets.get(x) for x in lanelet.predecessors]
             types = next((x.types for x in near if x is not None), types)
-        fast = (lanelet.limit_mps or 0.0) * KMH > _URBAN_KMH
         if "urban" in types and not types & _OUTSIDE:
             return True if settled and not fast else None
         return False if types & _OUTSIDE and "urban" not in types else None
