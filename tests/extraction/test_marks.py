@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rulec.extraction.drives import Drives
 from rulec.vocabulary.partial_values import UNKNOWN
-from support.builders.recordings import recording, straight, vehicle
+from support.builders.recordings import lanelet, recording, straight, vehicle
 
 
 def state(y, right="broken", left="broken", name="DEU_Test-1"):
@@ -60,3 +61,35 @@ def test_a_map_without_marks_says_nothing():
     found = recording([straight(1, 0, 100)], [vehicle(7, {0: (40, 0), 1: (50, 0)})])
     (drive,) = Drives(found, "right").of("7")
     assert not {"marked_lanes", "on_solid_line", "broken_on_own_side"} & drive.words
+
+
+@pytest.mark.parametrize(("name", "told"), [("DEU_Test-1", True), ("USA_Peach-1", UNKNOWN)])
+def test_a_badly_known_track_does_not_tell_how_its_body_stands(name, told):
+    """Askew by 0.35 rad a corner is 1 m over the line; along the lane its side would be on it."""
+    lanes = [
+        straight(1, 0, 100, left_of=2, left_mark="solid", right_mark="solid"),
+        straight(2, 0, 100, y=4, right_of=1, right_mark="solid", left_mark="solid"),
+    ]
+    ego = vehicle(7, {0: (40, 1.2), 1: (40.2, 1.2)}, heading=0.35)
+    found = replace(recording(lanes, [ego]), name=name)
+    (drive,) = Drives(found, "right").of("7")
+    assert drive.trace.states[0]["on_solid_line"] is told
+
+
+@pytest.mark.parametrize(("y", "told"), [(1.1, False), (1.6, True)])
+def test_where_a_lane_opens_a_body_reaches_no_farther(y, told):
+    """From x = 50 on a lane opens at the left; 4 m later it is 0.2 m wide, and drawn as 4 m."""
+    opening = lanelet(2, [(50, 2), (100, 4)], left_mark="solid", right_mark="solid", right_of=1)
+    opening = replace(
+        opening,
+        right=np.array([(50.0, 2.0), (100.0, 2.0)]),
+        left=np.array([(50.0, 2.01), (100.0, 6.0)]),
+    )
+    lanes = [
+        straight(3, 0, 50, successors=(1,), left_mark="solid", right_mark="solid"),
+        straight(1, 50, 100, left_of=2, predecessors=(3,), left_mark="solid", right_mark="solid"),
+        opening,
+    ]
+    places = {0: (40, y), 1: (52, y), 2: (53, y)}
+    (drive,) = Drives(recording(lanes, [vehicle(7, places)]), "right").of("7")
+    assert [state["on_solid_line"] for state in drive.trace.states] == [told] * 3

@@ -66,7 +66,7 @@ SIDE_ROAD = lanelet(8, [(110, -90), (110, 90)], types=INSIDE)
         (road(["urban"], ["urban"], ["urban"], ZEBRA), ["True"] * 3),
         # With neither of these maps call motorways urban, too; and a limit may contradict it
         (road(["urban"], ["urban"], ["urban"]), ["?"] * 3),
-        (road(["urban"], ["urban"], ["urban"], ZEBRA, limit_kmh=80), ["?", "True", "True"]),
+        (road(["urban"], ["urban"], ["urban"], ZEBRA, limit_kmh=80), ["?"] * 3),
         (road(["urban"], ["urban"], ["urban"], ZEBRA, limit_kmh=70), ["True"] * 3),
         (road(["country"], ["intersection"], ["urban"]), ["False", "False", "True"]),
         (road(["interstate"], ["highway"], ["mainCarriageWay"]), ["False", "False", "?"]),

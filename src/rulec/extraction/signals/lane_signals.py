@@ -25,6 +25,7 @@ _SINGLE = (
 """One line between two lanes is the mark of both, or of the one whose bound it is."""
 
 _Marks = tuple[LaneMark | None, LaneMark | None]
+_Body = tuple[float, float, float]
 
 
 def lane_change_signals(context: DriveContext) -> SignalColumns:
@@ -82,17 +83,22 @@ def lane_mark_signals(context: DriveContext) -> SignalColumns:
     place, offset = context.tolerances.place_m, context.map_offset_m
     others = list(product((place, -place), {0.0, offset}))
     near = _near_a_line(context, place + abs(offset))
+    bodies = _bodies(context)
     for state, piece in enumerate(pieces):
         lanelets = zip(context.road.rows[piece], context.existing_lanes[state], strict=True)
         row = [lanelet if exists else None for lanelet, exists in lanelets]
         between = [_between(*pair) for pair in pairwise(row) if all(pair)]
         unknown[state] = any(not any(marks) for marks in between)
         columns[0, state] = bool(between) and all(set(marks) != {"none"} for marks in between)
-        crossed = _marks_under_ego(context, state, row)
+        body, parallel = bodies[state]
+        crossed = _marks_under_ego(context, state, row, body)
         found = columns[1:, state] = _solid_lines(crossed)
         not_told[state] = not found[0] and any(not any(marks) for marks in crossed)
-        not_told[state] |= near[state] and any(
-            _solid_lines(_marks_under_ego(context, state, row, *other)) != found for other in others
+        tried = [(body, *other) for other in others] if near[state] else []
+        # Where places are known so badly, a body's direction is that of its slow or slipping track
+        tried += [(parallel, 0.0, 0.0)] if place >= context.thresholds.touching_m else []
+        not_told[state] |= any(
+            _solid_lines(_marks_under_ego(context, state, row, *each)) != found for each in tried
         )
     return SignalColumns(
         dict(zip(names, columns, strict=True)),
@@ -119,19 +125,45 @@ def _near_a_line(context: DriveContext, margin_m: float) -> Flags:
     return near
 
 
+def _bodies(context: DriveContext) -> list[tuple[_Body, _Body]]:
+    """Ego's body in each state, as it stands and parallel to the road.
+
+    From right to left (m), and how far that really is: where a lane opens, places are drawn apart.
+    """
+    own, bodies = context.ego_extents, []
+    low, middle, high = (bound[0].tolist() for bound in (own.w_min, own.w, own.w_max))
+    headings = context.ego.heading[0]
+    for _, state, outline in context.ego.outlines(repeated=True):
+        across, width = (
+            float(np.ptp(outline @ (-np.sin(way), np.cos(way))))
+            for way in (headings[state] - own.turned[0, state], headings[state])
+        )
+        parallel = middle[state] - width / 2, middle[state] + width / 2, width
+        bodies.append(((low[state], high[state], across), parallel))
+    return bodies
+
+
 def _marks_under_ego(
-    context: DriveContext, state: int, row: list[Lanelet | None], more: float = 0, shift: float = 0
+    context: DriveContext,
+    state: int,
+    row: list[Lanelet | None],
+    body: _Body,
+    more: float = 0,
+    shift: float = 0,
 ) -> list[_Marks]:
     """The marks of the lines that ego's body lies across, those at ego's side first.
 
     Line ``k`` lies right of lane ``k``. By so much (m) ``more``, and with ego so far right.
     """
-    straight, own = context.road.lanes.straight, context.ego_extents
-    low, high = (float(bound[0, state]) - shift for bound in (own.w_min, own.w_max))
+    straight = context.road.lanes.straight
+    low, high, across = body[0] - shift, body[1] - shift, body[2]
     reach = context.thresholds.touching_m + more
     crossed = []
     for line, (right, left) in enumerate(pairwise([None, *row, None])):
-        if min(straight[line] - low, high - straight[line]) > reach:
+        # Where there is no lane on one side, its other side tells how far it reaches over
+        first = low if right else max(low, high - across)
+        last = high if left else min(high, low + across)
+        if min(straight[line] - first, last - straight[line]) > reach:
             marks = _between(right, left)
             crossed.append(marks[::-1] if context.steady_lane[state] >= line else marks)
     return crossed
