@@ -3,6 +3,7 @@
 The crossing reaches from x = 58 to 62, over a road of one lane from y = -2 to 2.
 """
 
+import numpy as np
 import pytest
 
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
@@ -66,6 +67,20 @@ def test_who_has_crossed_egos_lane_is_let_across(y, across, expected):
     assert str(about["crossing_use"][0, 0]) == expected
     # Whoever stands in the next lane stands for it all the same
     assert about["stopped_for_pedestrian"][1, 0]
+
+
+def test_who_has_crossed_egos_lane_has_done_so_while_it_turns_along_the_road():
+    # Across ego's lane, up to y = 2, until 2 s; then along the next one for 3 s, and back
+    y = np.interp(np.arange(60) * 0.1, [0, 2, 5, 6], [-0.2, 2.8, 2.8, 1.8])
+    places = {k: (60, y[k]) for k in range(60)}
+    walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
+    ego = steady(7, 0, 0, speed=2, steps=60, step_s=0.1)
+    context = context_of(recording([*lanes(2), ZEBRA], [ego, walker], step_s=0.1))
+    uses = crossing_signals(context).about["crossing_use"][0]
+    assert uses[5] == "on_crossing"
+    assert set(uses[17:28]) == {"not_crossing"}
+    # Who stays there for longer than a second may come back
+    assert uses[40] == uses[55] == "on_crossing"
 
 
 def test_walking_along_the_pavement_is_not_coming_to_cross():

@@ -112,16 +112,19 @@ def _towards(context: DriveContext) -> Floats:
 
 
 def _past_ego(context: DriveContext) -> Flags:
-    """Flags of participants that have left ego's lane, and ego's body, and walk away from them."""
+    """Flags of participants that have left ego's lane, and ego's body, and walk away from them.
+
+    Who turns along the road then has left them behind too, until they walk back, for ``away_s``.
+    """
     straight, own, others = context.road.lanes.straight, context.ego_extents, context.extents
     right = np.minimum(straight[context.ego_lane], own.w_min[0])
     left = np.maximum(straight[context.ego_lane + 1], own.w_max[0])
     least = context.thresholds.standing_kmh / KMH
-    past: Flags = np.where(
-        others.w_min > left,
-        others.across > least,
-        (others.w_max < right) & (others.across < -least),
-    )
+    beyond = np.where(others.w_min > left, 1.0, np.where(others.w_max < right, -1.0, 0.0))
+    away = latest(beyond * others.across > least)
+    back = latest((beyond == 0) | (beyond * others.across < -least))
+    longest = round(context.thresholds.away_s / context.recording.step_s)
+    past: Flags = (away > back) & (np.arange(context.states) - away <= longest)
     return past
 
 
