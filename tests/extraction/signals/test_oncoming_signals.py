@@ -90,6 +90,21 @@ def test_ego_turns_at_once_before_one_that_comes():
     assert not unknown.any()
 
 
+def test_a_recording_that_ends_while_both_are_there_tells_that_ego_did_not_wait():
+    # Ego is there from 4.6 s on, the other one from about 5.8 s on
+    conflict, unknown = told(at(5.5)[:28], ego=EGO[:28])
+    assert conflict.any()
+    assert not unknown.any()
+    # Ego may still stop for one that has come just then, or stands there
+    conflict, unknown = told(at(5.5)[:25], ego=EGO[:25])
+    assert not conflict.any()
+    assert unknown.any()
+    stands = np.minimum(EGO, 32 + 5 * 5.25)
+    conflict, unknown = told(at(5.5)[:28], ego=stands[:28])
+    assert not conflict.any()
+    assert unknown.any()
+
+
 @pytest.mark.parametrize("reaches_s", [2.0, 9.5], ids=["ego lets it pass", "it is far away"])
 def test_ego_turns_behind_or_long_before_one(reaches_s):
     conflict, unknown = told(at(reaches_s))

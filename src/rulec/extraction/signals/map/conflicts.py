@@ -48,7 +48,7 @@ def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int,
     if passed is not None and (leaves is None or passed < leaves) and waits:
         # Who waits a little too far ahead lets others pass all the same
         return None
-    return _held_up(context, (enters, leaves), other, comes)
+    return _held_up(context, (own, enters, leaves), other, comes)
 
 
 def _runs_into(
@@ -72,15 +72,12 @@ def _runs_into(
 
 
 def _held_up(
-    context: DriveContext, ego: tuple[int, int | None], other: Passage, comes: int | None
+    context: DriveContext, ego: tuple[Passage, int, int | None], other: Passage, comes: int | None
 ) -> tuple[int, bool] | None:
-    """The same of one that does not get there first, in the column ``comes`` if it does.
-
-    ``ego`` are the columns in which ego enters and leaves where their ways meet.
-    """
+    """The same of one that does not get there first, in the column ``comes`` if it does."""
     limits, step_s = context.thresholds, context.recording.step_s
     passages = context.surroundings.passages
-    enters, leaves = ego
+    own, enters, leaves = ego
     until = passages.tracks.x.shape[1] - 1 if leaves is None else leaves
     present = np.flatnonzero(passages.tracks.present[other.row])
     first, last = max(int(present[0]), first_column(context)), min(enters, int(present[-1]))
@@ -90,10 +87,18 @@ def _held_up(
     if comes is None:
         return (first, False) if int(present[-1]) < until else None
     if (comes - until) * step_s < limits.yielding_s:
-        return first, leaves is not None
+        return first, leaves is not None or _drives_on(context, own, comes)
     if (comes - until) * step_s >= limits.held_up_s:
         return None
     way = passages.travelled[other.row, comes] - passages.travelled[other.row, columns]
     speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
     soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
     return (int(columns[soon.argmax()]), leaves is not None) if soon[-1] else None
+
+
+def _drives_on(context: DriveContext, own: Passage, comes: int) -> bool:
+    """True if ego, whose track ends there, drove on when another one had come; it did not wait."""
+    tracks = context.surroundings.passages.tracks
+    there = np.flatnonzero(tracks.present[own.row, comes:]) + comes
+    longer = len(there) * context.recording.step_s > _BEHIND_S
+    return longer and bool((tracks.speed[own.row, there] > _DRIVES_MPS).all())
