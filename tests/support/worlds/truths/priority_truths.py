@@ -5,8 +5,11 @@ import numpy as np
 from support.worlds.facts import Fact
 from support.worlds.world_state import LENGTH_M, WIDTH_M
 
-_HINDERED_S, _FREE_S = 1.0, 3.5
-_BEHIND_S = 0.6
+_HINDERED_S, _FREE_S = 0.85, 3.5
+_INTO_S, _BEHIND_S = 0.55, 0.6
+"""Within the limits of the rules, 1 s and 0.3 s, as every second state tells times to 0.1 s, and
+half a width by which the area is too long at its ends takes another 0.1 s each."""
+
 _MOVING_MPS, _STOPS_MPS = 3.0, 1.0
 _APART_M = WIDTH_M + 0.2
 _SIDEWAYS_DEG = (40.0, 140.0)
@@ -113,7 +116,7 @@ def _grade(world, one, other):
     # far ahead, has let it pass all the same
     during = own[0], theirs[1]
     drives = _moves(world, one, during, _STOPS_MPS) and _moves(world, other, during, _MOVING_MPS)
-    return bool(spare < -0.3 and drives)
+    return bool(spare < -_INTO_S and drives)
 
 
 def _moves(world, crossing, during, least_mps):
