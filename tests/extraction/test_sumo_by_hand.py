@@ -42,9 +42,9 @@ EXPECTED = {
         "de": {"speed_limit": 20.0, "crossing_overtaking": 47.3},
         "gb": {"speed_limit": 20.0},
     },
-    # Passes ew.4 on the left, at times by less than 1 km/h
+    # Passes ew.4 on the left, at times by less than 1 km/h, but in a lane of its own all along
     "ew.5": {
-        "de": {"speed_limit": 25.8, "crossing_overtaking": 51.3, "speed_advantage": 51.3},
+        "de": {"speed_limit": 25.8, "crossing_overtaking": 51.3},
         "gb": {"speed_limit": 25.8, "crossing_overtaking": 51.3},
     },
     # 28.4 m behind ew.7, which stands across both lanes, at 15.1 m/s: it takes 29.4 m
@@ -52,17 +52,18 @@ EXPECTED = {
         "de": {"speed_limit": 41.2, "following_distance": 58.3},
         "gb": {"speed_limit": 41.2},
     },
-    # Stands askew into the lane beside; a corner of its front is on the crossing while p.5 is on
-    # that lane. Who crosses is not passed, though p.5 is 0.9 m away when they are level.
-    "we.9": {book: {"speed_limit": 36.0, "give_way_to_pedestrians": 70.6} for book in ("de", "gb")},
+    # Stands askew into the lane beside until p.5 has left its own, and turns away from p.5 into it.
+    # Who crosses is not passed, though p.5 is 0.9 m away when they are level.
+    "we.9": {book: {"speed_limit": 36.0} for book in ("de", "gb")},
     # Passes we.8 on the right where at times there is no queue; p.6 has left its lane
     "we.12": {
         book: {"near_side_passing": 81.2, "crossing_overtaking": 81.2} for book in ("de", "gb")
     },
-    # Passes we.11, which stood when that began, at the crossing
+    # Passes we.11 on the right, which stood when that began, at the crossing; with one more near
+    # behind it, and the next far behind, that is no queue
     "we.10": {
-        "de": {"speed_limit": 40.0, "crossing_overtaking": 74.8},
-        "gb": {"speed_limit": 40.0},
+        "de": {"speed_limit": 40.0, "near_side_passing": 74.8, "crossing_overtaking": 74.8},
+        "gb": {"speed_limit": 40.0, "near_side_passing": 74.8},
     },
 }
 COUNTED = {

@@ -204,6 +204,8 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     if writer.vocabulary is not None:
         signals = _projected(signals, types, writer.vocabulary, writer.names)
     signals = _with_assumed(signals, writer.assumed, context.states)
+    if writer.defaults and writer.vocabulary is not None:
+        signals = _with_likeliest(signals, writer.vocabulary)
     present = list(presences(context))
     own_types = {presence.name: types[presence.row] for presence in present}
     if writer.vocabulary is None:
@@ -242,6 +244,17 @@ def _with_assumed(
     unknown = {name: rows for name, rows in signals.unknown.items() if name not in assumed}
     bounds = {name: rows for name, rows in signals.bounds.items() if name not in assumed}
     return replace(signals, world={**signals.world, **values}, unknown=unknown, bounds=bounds)
+
+
+def _with_likeliest(signals: SignalColumns, vocabulary: Vocabulary) -> SignalColumns:
+    """The signals with measured values for what is unknown and has no default."""
+    declared = vocabulary.declarations
+    unknown = {
+        name: rows
+        for name, rows in signals.unknown.items()
+        if name not in declared or declared[name].default is not None
+    }
+    return replace(signals, unknown=unknown)
 
 
 def _places(context: DriveContext) -> Iterator[Place]:

@@ -83,6 +83,18 @@ def test_who_has_crossed_egos_lane_has_done_so_while_it_turns_along_the_road():
     assert uses[40] == uses[55] == "on_crossing"
 
 
+@pytest.mark.parametrize(
+    ("turn", "expected"), [(-1, "not_crossing"), (0, "on_crossing"), (1, "on_crossing")]
+)
+def test_who_turns_away_from_those_who_have_crossed_its_lane_is_not_in_their_way(turn, expected):
+    """Ego stands askew, its rear 1 m in the left lane; who walks there has left the right one."""
+    walker = vehicle(8, {0: (60, 2.5), 1: (60, 3.25)}, "pedestrian", length=0.4, width=0.4)
+    ego = vehicle(7, {0: (54, 1.6), 1: (54.5, 1.6 + 0.2 * turn)}, heading=-0.6, speed=1.0)
+    found = recording([*lanes(2), ZEBRA], [ego, walker])
+    about = crossing_signals(context_of(found)).about
+    assert str(about["crossing_use"][0, 0]) == expected
+
+
 def test_walking_along_the_pavement_is_not_coming_to_cross():
     assert use(60, -3, along=1.5, across=0.5) == "not_crossing"
     assert use(60, -3, along=0.5, across=1.5) == "about_to_cross"

@@ -114,11 +114,14 @@ def _towards(context: DriveContext) -> Floats:
 def _past_ego(context: DriveContext) -> Flags:
     """Flags of participants that have left ego's lane, and ego's body, and walk away from them.
 
-    Who turns along the road then has left them behind too, until they walk back, for ``away_s``.
+    Who turns along the road then has left them behind too, until they walk back, for ``away_s``. Of
+    ego's body counts the middle if it turns away from them: what reaches farther is its rear.
     """
     straight, own, others = context.road.lanes.straight, context.ego_extents, context.extents
-    right = np.minimum(straight[context.ego_lane], own.w_min[0])
-    left = np.maximum(straight[context.ego_lane + 1], own.w_max[0])
+    low = np.where(own.across[0] > 0, own.w[0], own.w_min[0])
+    high = np.where(own.across[0] < 0, own.w[0], own.w_max[0])
+    right = np.minimum(straight[context.ego_lane], low)
+    left = np.maximum(straight[context.ego_lane + 1], high)
     least = context.thresholds.standing_kmh / KMH
     beyond = np.where(others.w_min > left, 1.0, np.where(others.w_max < right, -1.0, 0.0))
     away = latest(beyond * others.across > least)
