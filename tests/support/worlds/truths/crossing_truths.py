@@ -63,6 +63,8 @@ def _on_crossing(world, walker, walk, where):
     grades = set()
     for step in steps:
         row = walker.at(step)
+        if row is not None and walk in walker.lane and _drawn_on_road(walker, row, walk, beside):
+            grades.add(False)
         if row is None or walker.lane[row] != walk:
             continue
         x, y = (walker.column(name)[row] for name in ("x", "y"))
@@ -71,6 +73,15 @@ def _on_crossing(world, walker, walk, where):
         own = (lane.shape.mean(axis=0) - (x, y)) @ ahead + lane.width / 2
         grades.add(True if own > 0.3 else (False if max(left) > -_CLEAR_M else None))
     return True if True in grades else (False if False in grades else None)
+
+
+def _drawn_on_road(walker, row, walk, lanes):
+    """True if it is on the pavement, but drawn on a lane: SUMO rounds its corners in jumps."""
+    if not walker.lane[row].startswith(walk.rpartition("_")[0] + "_w"):
+        return False
+    x, y = (walker.column(name)[row] for name in ("x", "y"))
+    ahead = _across(walker, walk)
+    return any(abs((one.shape.mean(axis=0) - (x, y)) @ ahead) < one.width / 2 for one in lanes)
 
 
 def _across(walker, walk):
