@@ -30,8 +30,9 @@ def queue_on_the_left(gaps, mps=0.0):
         ((5, 30, 5), 0.0, True),
         ((19,), 0.0, False),  # two cars are no queue
         ((30, 30), 15.5, True),  # 31 m are 2 s
-        ((32, 32), 15.5, False),
         ((31.1, 31.1), 15.5, UNKNOWN),  # speeds are good to 0.1 m/s
+        ((45, 45), 15.5, UNKNOWN),  # 2.9 s: some call that following
+        ((47, 47), 15.5, False),
     ],
 )
 def test_most_of_the_gaps_are_short(gaps, mps, queue):

@@ -116,17 +116,24 @@ EXACT = "DEU_Test-1"
 def test_who_is_on_the_mark_and_clear_of_ego_is_not_in_its_lane():
     # They reach 0.5 and 1.2 m into the lane, 0.5 m clear of ego, and not
     assert sides(2.5, 1.8, name=EXACT) == ["right_of", "same_lane"]
+    # Its middle is beyond the mark, and only 0.3 m of it in ego's way: it is leaving, or coming
+    assert sides(2.1, own_y=0.4, name=EXACT) == [None]
+    # Or half of it
+    assert sides(2.1, own_y=1.2, name=EXACT) == ["same_lane"]
     # Ego keeps 0.7 m to the right: there is 0.5 m between them
     assert sides(1.8, own_y=-0.7, name=EXACT) == ["right_of"]
-    # Who keeps within the lane is in it, wherever ego is: a motorcycle at its edge
-    assert sides(1.5, own_y=-0.9, width=0.8, name=EXACT) == ["same_lane"]
+    # Who keeps within the lane, but out of ego's way, does not surely drive ahead: a motorcycle
+    assert sides(1.5, own_y=-0.9, width=0.8, name=EXACT) == [None]
+    assert sides(0.3, own_y=-0.9, width=0.8, name=EXACT) == ["same_lane"]
     # And is on its way out where it reaches beyond it by 0.4 m
     assert sides(2.0, own_y=-0.9, width=0.8, name=EXACT) == ["right_of"]
 
 
 def test_who_hardly_reaches_in_but_is_in_the_way_of_ego_is_in_its_lane():
-    # Ego's own side is at y = 2.4, and theirs, 0.2 m in, at 1.8, and, 0.1 m beyond the mark, at 2.1
-    assert sides(2.8, 3.1, own_y=1.4, name=EXACT) == ["same_lane", "right_of"]
+    # Ego's own side is at y = 2.9, and theirs, 0.2 m in, at 1.8, and, 0.1 m beyond the mark, at 2.1
+    assert sides(2.8, 3.1, own_y=1.9, name=EXACT) == ["same_lane", "right_of"]
+    # At y = 2.4 less than half of it is in the way
+    assert sides(2.8, 3.1, own_y=1.4, name=EXACT) == [None, "right_of"]
 
 
 def test_within_the_tolerance_of_places_nobody_knows_who_is_in_the_lane():

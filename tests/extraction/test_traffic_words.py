@@ -86,7 +86,8 @@ def test_who_has_to_brake_for_a_change_of_lanes(behind_mps, gap_m, clear):
     ("cars", "queue"),
     [
         ([going(k, 20 * k, 2, 10) for k in range(1, 5)], True),  # 16 m
-        ([going(k, 25 * k, 2, 10) for k in range(1, 5)], False),  # 21 m, 2.1 s
+        ([going(k, 25 * k, 2, 10) for k in range(1, 5)], UNKNOWN),  # 21 m, 2.1 s
+        ([going(k, 35 * k, 2, 10) for k in range(1, 4)], False),  # 31 m, 3.1 s
         ([going(k, 25 * k, 2, 11) for k in range(1, 5)], True),  # 21 m, 1.9 s
         ([going(k, 45 * k, 2, 21) for k in range(1, 4)], False),  # 41 m, but 76 km/h
         ([going(k, 20 * k, 2, 10) for k in range(1, 3)], False),  # two are none

@@ -63,6 +63,8 @@ class Thresholds:
     queue_headway_s: float = 2.0
     queue_gap_m: float = 20.0
     """In a queue neighbours are no farther apart than either of these two."""
+    loose_headway_s: float = 3.0
+    """Up to this some still speak of one who follows: HCM 2000; the seventh edition has 2.5 s."""
     zone_m: float = 5.0
     """Immediately before a crossing or a junction is so near."""
     kerb_m: float = 2.0

@@ -56,14 +56,16 @@ def test_whom_nobody_is_ahead_of_is_in_no_queue(complete):
     assert signals.unknown["dense_all_lanes"][0] == (not complete)
 
 
-@pytest.mark.parametrize(("front", "queues"), [(25, True), (30, False)])
-def test_who_is_far_behind_the_next_one_leads_too(front, queues):
-    # Vehicles are 4 m long: 21 of 22 m of gap are allowed at 11 m/s, and 26 m are not
+@pytest.mark.parametrize(
+    ("front", "queues", "unknown"), [(25, True, False), (30, False, True), (39, False, False)]
+)
+def test_who_is_far_behind_the_next_one_leads_too(front, queues, unknown):
+    # Vehicles are 4 m long: 21 of 22 m of gap are allowed at 11 m/s, 26 of 33 may be, 35 are not
     behind = [*line(11, 2, start=-30), *line(11, 3, y=4.0, start=-30, number=30)]
     found = recording(lanes(2), [steady(7, 0, 0, speed=11), steady(9, front, 0, speed=11), *behind])
     signals = flow_signals(context_of(found))
     assert signals.world["dense_all_lanes"][0] == queues
-    assert not signals.unknown["dense_all_lanes"][0]
+    assert signals.unknown["dense_all_lanes"][0] == unknown
 
 
 @pytest.mark.parametrize(("stood_s", "known"), [(9, False), (11, True)])

@@ -62,9 +62,15 @@ def test_when_it_came_in_is_known_no_better_than_places():
 
 
 def test_who_is_only_just_in_the_lane_may_have_come_this_moment():
-    least, most = times(drifting(8, 30, [2.2, 2.2, 2.2, 2.2]))
-    assert 0 < least[0] < sqrt(2 * 2.0 * 0.05) / 2.0
+    """Its middle is 0.1 m in the lane, and 0.4 m from where it would be clear of ego's side."""
+    least, most = times(drifting(8, 30, [1.9, 1.9, 1.9, 1.9]))
+    assert 0 < least[0] < sqrt(2 * 2.0 * (0.4 - PLACE_M)) / 2.0
     assert most[0] == LONGEST_S
+
+
+def test_who_reaches_into_the_lane_only_may_be_at_its_side():
+    """Its middle is 0.2 m beyond the mark, and its side 0.2 m clear of ego's."""
+    assert times(drifting(8, 30, [2.2, 2.2])) == ([0] * 4, [LONGEST_S] * 2 + [0] * 2)
 
 
 def test_who_comes_into_sight_later_was_somewhere_before():

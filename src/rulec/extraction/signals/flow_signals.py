@@ -8,15 +8,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.queues import (
-    WAYS,
+    LOOSE,
     close_by,
-    gap_error,
     lanes_that_decide,
-    longest_gap,
+    longest_gaps,
     queues_by_lane,
 )
 from rulec.extraction.signals.signal_columns import SignalColumns
@@ -33,7 +34,8 @@ def flow_signals(context: DriveContext) -> SignalColumns:
     enough = counts >= limits.fewest
     congested = enough & (speeds < limits.congested_kmh)
     queues, queue_speeds = queues_by_lane(context)
-    overtakes, unsure, overtaken, open_end = _overtaking(context)
+    overtakes, unsure = _overtaking(context)
+    overtaken, open_end = _overtaken(context)
     dense, surely, not_told = _dense_lines(context, queues)
     queue, fewer, more = (
         _beside(context, lanes & (queue_speeds < limits.slow_queue_kmh)) for lanes in queues
@@ -70,12 +72,12 @@ def _dense_lines(context: DriveContext, queues: Sequence[Flags]) -> tuple[Flags,
     ]
     # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more
     ahead = _ahead_in_lane(context)
-    cut_off = all_queue[-1] & ~ahead.any(axis=0) & ("light" not in context.recording.complete)
-    gap, longest = relations.gap(context), longest_gap(context)
-    wrong = gap_error(context, context.ego.speed_error[0])
+    cut_off = all_queue[LOOSE] & ~ahead.any(axis=0) & ("light" not in context.recording.complete)
+    gap, speed = relations.gap(context), context.ego_extents.along[0]
+    longest = longest_gaps(context, speed, context.ego.speed_error[0])
     dense, surely, perhaps = (
-        lines & (ahead & (gap <= longest + way * wrong)).any(axis=0)
-        for lines, way in zip(all_queue, WAYS, strict=True)
+        lines & (ahead & (gap <= most)).any(axis=0)
+        for lines, most in zip(all_queue, longest, strict=True)
     )
     # Nor is there a queue where the world ends, whose traffic is all recorded
     nobody_knows = ~np.any(decides[0], axis=1) & ("light" not in context.recording.complete)
@@ -118,33 +120,48 @@ def _beside(context: DriveContext, lanes: Flags) -> Flags:
     return beside
 
 
-def _overtaking(context: DriveContext) -> tuple[Flags, Flags, Flags, Flags]:
-    """Flags of ego overtaking a slower vehicle, perhaps so, and of a faster one overtaking ego.
+def _overtaking(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of ego overtaking a slower vehicle, and of it perhaps doing so.
 
-    Who overtakes is at the far side, from shortly before it is beside the other; ego overtakes
-    until it is just past. One that overtakes ego is on the next lane, clearly faster, and gets past
-    within ``catching_up_s``. The last are flags of states after which it is lost from sight.
+    Who overtakes is at the far side, from shortly before it is beside the other until it is just
+    past.
     """
-    limits = context.thresholds
-    station, lateral = relations.station(context), relations.lateral(context)
-    gap = relations.gap(context)
-    sides = (relations.LEFT_OF, relations.RIGHT_OF)
-    far, near = sides if context.side == "right" else sides[::-1]
-    faster = context.ego_extents.along - context.extents.along
+    far, _ = _sides(context)
+    beside = relations.station(context) == relations.BESIDE
+    slower: Flags = context.extents.along < context.ego_extents.along
+    slower &= (relations.lateral(context) == far) & context.driving_along
+    surely: Flags = np.any(slower & (_ahead_and_past(context, 0.0) | beside), axis=0)
+    perhaps: Flags = np.any(slower & _ahead_and_past(context, 1.0), axis=0)
+    return surely, perhaps
+
+
+def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of ego being overtaken, and of states after which nobody knows whether it was.
+
+    Who overtakes ego is with its middle on the next lane at the far side, clearly faster, and gets
+    past within ``catching_up_s``. Nobody knows of one that is lost from sight before, or that only
+    reaches into that lane.
+    """
+    limits, station = context.thresholds, relations.station(context)
+    _, near = _sides(context)
+    faster_mps = context.extents.along - context.ego_extents.along
     ahead, beside = station == relations.IN_FRONT_OF, station == relations.BESIDE
-    surely, perhaps = (_ahead_and_past(context, more) for more in (0.0, 1.0))
-    slower = (faster > 0) & (lateral == far) & context.driving_along
-    closing = ahead & (gap <= -faster * limits.passed_s)
-    clearly = -faster * KMH >= limits.clearly_faster_kmh
-    comes = clearly & (lateral == near) & _on_next_lane(context) & (closing | beside)
-    comes &= context.going_along
+    closing = ahead & (relations.gap(context) <= faster_mps * limits.passed_s)
+    comes = (closing | beside) & (faster_mps * KMH >= limits.clearly_faster_kmh)
+    comes &= (relations.lateral(context) == near) & context.going_along
     gets_past, lost = _gets_past(context, station == relations.BEHIND)
-    return (
-        (slower & (surely | beside)).any(axis=0),
-        (slower & perhaps).any(axis=0),
-        (comes & gets_past).any(axis=0),
-        (comes & lost).any(axis=0),
-    )
+    next_lane = _next_lane(context)
+    reaches, lanes = context.touched, np.arange(context.touched.shape[-1])
+    reaches = (reaches & (lanes == next_lane[None, :, None])).any(axis=-1)
+    inside = reaches & (context.road.lane_of(context.extents.w) == next_lane)
+    open_end = comes & (reaches & lost | reaches & ~inside & gets_past)
+    return (comes & inside & gets_past).any(axis=0), open_end.any(axis=0)
+
+
+def _sides(context: DriveContext) -> tuple[int, int]:
+    """Ego's sides of one that it overtakes, and of one that overtakes it."""
+    sides = (relations.LEFT_OF, relations.RIGHT_OF)
+    return sides if context.side == "right" else sides[::-1]
 
 
 def _ahead_and_past(context: DriveContext, tolerances: float) -> Flags:
@@ -162,8 +179,8 @@ def _ahead_and_past(context: DriveContext, tolerances: float) -> Flags:
     return near
 
 
-def _on_next_lane(context: DriveContext) -> Flags:
-    """Flags of participants that reach into the lane beside ego's at its far side.
+def _next_lane(context: DriveContext) -> NDArray[intp]:
+    """The lane beside ego's at its far side by state; there may be none of that number.
 
     While ego is on a mark that is the lane that it moves into, and none beyond.
     """
@@ -172,12 +189,12 @@ def _on_next_lane(context: DriveContext) -> Flags:
     inside = np.minimum(high, straight[1:]) - np.maximum(low, straight[:-1])
     lanes = np.arange(context.touched.shape[-1])
     used = (inside > context.thresholds.touching_m) | (lanes == context.ego_lane[:, None])
-    if context.side == "right":
-        lane = used.argmax(axis=1) + 1
-    else:
-        lane = len(lanes) - 2 - used[:, ::-1].argmax(axis=1)
-    on: Flags = (context.touched & (lanes == lane[None, :, None])).any(axis=-1)
-    return on
+    next_lane: NDArray[intp] = (
+        used.argmax(axis=1) + 1
+        if context.side == "right"
+        else len(lanes) - 2 - used[:, ::-1].argmax(axis=1)
+    )
+    return next_lane
 
 
 def _gets_past(context: DriveContext, past: Flags) -> tuple[Flags, Flags]:

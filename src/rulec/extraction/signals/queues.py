@@ -26,8 +26,9 @@ _UNEVEN_M = 20.0
 _MOST = 0.5
 """More than this part of a queue's gaps are short."""
 
-WAYS = (0, -1, 1)
-"""How many errors a gap is longer by: none, or as many as it may be."""
+READINGS = range(3)
+MEASURED, STRICT, LOOSE = READINGS
+"""What counts as a short gap: as measured, whatever is wrong, and what some call a queue, too."""
 
 
 def lanes_that_decide(context: DriveContext) -> Flags:
@@ -63,16 +64,22 @@ def _goes_on(context: DriveContext) -> Flags:
 
 def _shortest_queue(context: DriveContext) -> Floats:
     """How much (m) ``fewest`` vehicles take up at the largest distances of a queue, by state."""
-    length: Floats = context.thresholds.fewest * (longest_gap(context) + _BODY_M)
+    limits, speed = context.thresholds, context.ego_extents.along[0]
+    gap = np.maximum(limits.queue_gap_m, limits.queue_headway_s * speed)
+    length: Floats = limits.fewest * (gap + _BODY_M)
     return length
 
 
-def longest_gap(context: DriveContext) -> Floats:
-    """The longest gap (m) in a queue at ego's speed, by state."""
+def longest_gaps(context: DriveContext, speed: Floats, speed_error: Floats) -> Floats:
+    """The longest gap (m) in a queue behind which one drives at ``speed`` (m/s), by reading."""
     limits = context.thresholds
-    speed = context.ego_extents.along[0]
-    gap: Floats = np.maximum(limits.queue_gap_m, limits.queue_headway_s * speed)
-    return gap
+    wrong = limits.queue_headway_s * np.nan_to_num(speed_error)
+    wrong = np.hypot(context.tolerances.place_m, wrong)
+    longest, loose = (
+        np.maximum(limits.queue_gap_m, headway_s * speed)
+        for headway_s in (limits.queue_headway_s, limits.loose_headway_s)
+    )
+    return np.stack((longest, longest - wrong, loose + wrong))
 
 
 def _reach(context: DriveContext) -> Floats:
@@ -87,22 +94,14 @@ def close_by(context: DriveContext) -> Flags:
     return context.going_along & (relations.gap(context) <= _reach(context))
 
 
-def gap_error(context: DriveContext, speed_error: Floats) -> Floats:
-    """How far (m) a gap and the longest one of a queue may be wrong."""
-    headway_s = context.thresholds.queue_headway_s
-    error: Floats = np.hypot(context.tolerances.place_m, headway_s * np.nan_to_num(speed_error))
-    return error
-
-
 def queues_by_lane(context: DriveContext) -> tuple[tuple[Flags, ...], Floats]:
     """Flags and median speeds (km/h) of queues, by state and lane.
 
-    In a queue more than half of the gaps are short: up to ``queue_gap_m`` or ``queue_headway_s``.
-    The flags are with gaps as measured, and as much longer and shorter as they may be.
+    In a queue more than half of the gaps are short. The flags are by what counts as short.
     """
     limits = context.thresholds
     lanes = len(context.road.lanes.straight) - 1
-    queues = np.zeros((len(WAYS), context.states, lanes), dtype=bool)
+    queues = np.zeros((len(READINGS), context.states, lanes), dtype=bool)
     middle = np.full((context.states, lanes), np.nan)
     s_min, s_max, along, w = (
         np.concatenate((getattr(context.ego_extents, name), getattr(context.extents, name)))
@@ -110,8 +109,7 @@ def queues_by_lane(context: DriveContext) -> tuple[tuple[Flags, ...], Floats]:
     )
     speed = np.maximum(along, 0.0)
     error = np.concatenate((context.ego.speed_error, context.tracks.speed_error))
-    wrong, own_lane = gap_error(context, error), context.road.lane_of(w)
-    ways = np.array(WAYS)[:, None]
+    longest, own_lane = longest_gaps(context, speed, error), context.road.lane_of(w)
     counted = np.concatenate((np.ones((1, context.states), dtype=bool), close_by(context)))
     for lane in range(lanes):
         inside = counted & (own_lane == lane)
@@ -121,8 +119,7 @@ def queues_by_lane(context: DriveContext) -> tuple[tuple[Flags, ...], Floats]:
             rows = rows[np.argsort(s_min[rows, state])]
             behind = rows[:-1]
             gaps = s_min[rows[1:], state] - s_max[behind, state]
-            allowed = np.maximum(limits.queue_gap_m, limits.queue_headway_s * speed[behind, state])
-            short = gaps <= allowed + ways * wrong[behind, state]
+            short = gaps <= longest[:, behind, state]
             queues[:, state, lane] = short.mean(axis=1) > _MOST
             middle[state, lane] = np.median(speed[rows, state]) * KMH
     return tuple(queues), middle

@@ -50,11 +50,34 @@ def lateral(context: DriveContext) -> Codes:
 def possible_laterals(context: DriveContext) -> tuple[Codes, ...]:
     """The same as far as places allow: with others further in and out, and the map where it may be.
 
-    What lies between these is among them.
+    What lies between these is among them. Who is ahead in ego's lane, but hardly in its way, may as
+    well be at its side.
     """
     place = context.tolerances.place_m
     shifts = {0.0, context.map_offset_m}
-    return tuple(_lateral(context, way * place, shift) for shift in shifts for way in (-1, 1))
+    shifted = (_lateral(context, way * place, shift) for shift in shifts for way in (-1, 1))
+    at_side = (station(context) == BEHIND) & ~_in_the_way(context)
+    return *shifted, np.where(at_side, _ego_at(context), lateral(context))
+
+
+def _in_the_way(context: DriveContext) -> Flags:
+    """Flags of who takes up some of ego's way, and whose middle is in ego's lane, or half of it.
+
+    Who leaves the lane or comes into it, or rides at its edge, is not driving in front of ego yet,
+    or any more.
+    """
+    own, others = context.ego_extents, context.extents
+    both = np.minimum(own.w_max, others.w_max) - np.maximum(own.w_min, others.w_min)
+    narrower = np.minimum(own.w_max - own.w_min, others.w_max - others.w_min)
+    inside = context.road.lane_of(others.w) == context.road.lane_of(own.w)
+    least = np.where(inside, context.tolerances.place_m, narrower / 2)
+    takes: Flags = both > least
+    return takes
+
+
+def _ego_at(context: DriveContext) -> Codes:
+    """On which side of others ego is."""
+    return np.where(context.ego_extents.w < context.extents.w, RIGHT_OF, LEFT_OF)
 
 
 def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
@@ -80,8 +103,7 @@ def _lateral(context: DriveContext, inward: float, shift: float) -> Codes:
     beside_way = (beyond > reach + inward) & (clear > reach + inward)
     into = np.minimum(others.w_max - straight[lane], straight[lane + 1] - others.w_min)
     in_the_way = (into > -inward) & (clear < inward - reach)
-    at_side = np.where(own.w < others.w, RIGHT_OF, LEFT_OF)
-    sides = np.where((sides == SAME_LANE) & beside_way, at_side, sides)
+    sides = np.where((sides == SAME_LANE) & beside_way, _ego_at(context), sides)
     return np.where(in_the_way, SAME_LANE, sides)
 
 
