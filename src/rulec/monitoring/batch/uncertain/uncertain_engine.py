@@ -130,7 +130,8 @@ class _Engine:
         letters = np.broadcast_to(np.asarray(machines.letters.numbers(numbers)), (n_states,))
         own = self._rule_letters(binding, machines.machine)
         if own.entangled.numbers:
-            dark = self._are_entangled(binding, own) & machines.letters.are_partial(numbers)
+            partial = machines.letters.are_partial(numbers, own.entangled.numbers)
+            dark = self._are_entangled(binding, own) & partial
             places = self._on_stretch(binding, np.flatnonzero(dark))
             if len(places):
                 letters = letters.copy()

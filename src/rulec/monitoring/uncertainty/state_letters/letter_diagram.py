@@ -93,11 +93,11 @@ class LetterSets:
         places = self._places[0]
         return places.setdefault(classes << 1, len(places))
 
-    def are_partial(self, columns: Sequence[Numbers]) -> NDArray[np.bool_]:
-        """Whether some read may have several digits."""
+    def are_partial(self, columns: Sequence[Numbers], reads: Sequence[int]) -> NDArray[np.bool_]:
+        """Whether some of these reads may have several digits."""
         found: NDArray[np.bool_] = np.zeros(1, dtype=bool)
-        for several, column in zip(self._several, columns, strict=True):
-            found = found | several.take(column)
+        for read in reads:
+            found = found | self._several[read].take(columns[read])
         return found
 
     def numbers(self, columns: Sequence[Numbers]) -> Numbers:
