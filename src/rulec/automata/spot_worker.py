@@ -11,7 +11,7 @@ import resource
 import sys
 import time
 import traceback
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import repeat
 from typing import Literal
@@ -20,9 +20,9 @@ from rulec.automata.alphabet import AND, count_letters, joined, letters_with, pr
 from rulec.automata.axiom_instances import AxiomGroup, AxiomInstance, possible_letters
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.tables import build_machine
-from rulec.logic.bounds import operations_of, range_of
-from rulec.logic.formula import Constant, Formula
-from rulec.logic.semantics import Semantics, holds
+from rulec.logic.bounds import BOOLEAN, operations_of, range_of
+from rulec.logic.formula import Atom, Binary, Constant, Formula, Unary, with_operands
+from rulec.logic.semantics import Letter, Semantics, holds, truth_values
 
 MOST_WORDS, FEWEST_WORDS = 300, 40
 _EFFORT = 200_000
@@ -41,16 +41,39 @@ def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> boo
     size = 1 + sum(1 for _ in operations_of(formula))
     affordable = _EFFORT // (size * (8 + max(bounds, default=0)))
     n_words = max(FEWEST_WORDS, min(MOST_WORDS, affordable))
-    for _ in range(n_words):
-        numbers = list(_word(chance, possible, bounds))
-        letters = {
-            number: frozenset([each for each, true_in in sets.items() if true_in >> number & 1])
-            for number in set(numbers)
-        }
-        word = [letters[number] for number in numbers]
-        if verdict(machine, numbers) != holds(formula, word, semantics):
-            return False
-    return True
+    words = [list(_word(chance, possible, bounds)) for _ in range(n_words)]
+    letters = {
+        number: frozenset([each for each, true_in in sets.items() if true_in >> number & 1])
+        for number in {number for word in words for number in word}
+    }
+    outline, phases = _outlined(formula, letters)
+    return all(
+        verdict(machine, word) == holds(outline, [phases[number] for number in word], semantics)
+        for word in words
+    )
+
+
+def _outlined(
+    formula: Formula, letters: Mapping[int, Letter]
+) -> tuple[Formula, Mapping[int, Letter]]:
+    """The formula with an atom for each part that looks at the present alone, and its letters.
+
+    Such a part is evaluated once for all letters, not in every word.
+    """
+    found: dict[Formula, Atom] = {}
+    true_in: dict[int, set[Atom]] = {number: set() for number in letters}
+
+    def outlined(part: Formula) -> Formula:
+        is_timed = any(operation.operator not in BOOLEAN for operation in operations_of(part))
+        if is_timed and isinstance(part, Unary | Binary):
+            return with_operands(part, outlined)
+        atom = found.setdefault(part, Atom(f"part {len(found)}"))
+        values = truth_values(part, list(letters.values()))
+        for true, value in zip(true_in.values(), values, strict=True):
+            true.update([atom] if value else [])
+        return atom
+
+    return outlined(formula), true_in
 
 
 def _bounds(formula: Formula) -> list[int]:
