@@ -7,8 +7,6 @@ import pytest
 from rulec.cli.main import main
 from support.builders.recordings import ROAD_XML
 
-pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
-
 
 @pytest.fixture
 def road(tmp_path):

@@ -7,8 +7,6 @@ import pytest
 from rulec.cli.main import main
 from support.builders.recorded_cars import three_cars
 
-pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
-
 BOOK = """\
 rulebook tiny
 use road

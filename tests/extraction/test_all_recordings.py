@@ -11,7 +11,6 @@ from rulec.monitoring.verify import verify
 from rulec.scenario.scenario_files import read_recording
 from support.builders.recordings import RECORDINGS
 
-pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FILES = sorted(RECORDINGS.glob("*.xml"))
 if not FILES:
     pytest.skip(

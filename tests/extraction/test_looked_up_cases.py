@@ -14,7 +14,6 @@ from rulec.extraction.selection import RequestedDrives
 from rulec.scenario.scenario_files import read_recording
 from support.builders.recordings import RECORDINGS
 
-pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FOLDER = RECORDINGS.parent / "commonroad_more"
 if not FOLDER.exists():
     pytest.skip("the looked-up recordings are not here: RULEC_RECORDINGS", allow_module_level=True)

@@ -7,8 +7,8 @@ import pytest
 from support.leftovers import POSITIONAL_CALLS, UNEXPLAINED_IMPORTS, WIDE_FOLDERS
 from support.source_modules import PACKAGE, rooms, source_modules
 
-MOST_LINES = 52_750
-"""What stood before values could be unknown took 41,000; evidence has the rest."""
+MOST_LINES = 53_400
+"""What stood before values could be unknown took 41,000; evidence has most of the rest."""
 MOST_FILES = 15
 MOST_POSITIONAL = 5
 A_FILE_FOR_EACH = {"cli/commands": "verb"}

@@ -38,8 +38,11 @@ def scan(
     *,
     end: Callable[[str], None] | None = None,
     comment: Callable[[str], None] | None = None,
+    text: Callable[[str], None] | None = None,
 ) -> None:
-    """Scan an XML file once, with callbacks where elements begin and end, and for comments.
+    """Scan an XML file once, with callbacks where elements begin and end, for comments and text.
+
+    Text comes in pieces of some kB.
 
     Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
     """
@@ -65,6 +68,9 @@ def scan(
         parser.EndElementHandler = end
     if comment is not None:
         parser.CommentHandler = comment
+    if text is not None:
+        parser.buffer_text = True
+        parser.CharacterDataHandler = text
     size = 0
     try:
         for block in _blocks(path, form):
@@ -87,7 +93,8 @@ def scan(
         raise form.refused(path, why, problem.lineno) from None
     finally:
         # Parser and handlers hold each other, and all that has been read
-        parser.StartElementHandler = parser.EndElementHandler = parser.CommentHandler = None
+        parser.StartElementHandler = parser.EndElementHandler = None
+        parser.CommentHandler = parser.CharacterDataHandler = None
 
 
 def root_of(path: Path, form: XmlFormat) -> str:
@@ -131,12 +138,6 @@ def is_xml(path: Path) -> bool:
         return False
     text = start.removeprefix(b"\xef\xbb\xbf").lstrip()
     return text.startswith((b"<", b"\xff\xfe<", b"\xfe\xff\0<"))
-
-
-def is_packed(path: Path) -> bool:
-    """True if the file is a gzip file. Raises RulecError R0701."""
-    with opened(path) as stream:
-        return stream.read(len(_PACKED)) == _PACKED
 
 
 def _blocks(path: Path, form: XmlFormat) -> Iterator[bytes]:

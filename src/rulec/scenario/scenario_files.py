@@ -30,9 +30,9 @@ RECORDING = XmlFormat(
 def read_recording(path: Path, net: Path | None = None) -> Recording:
     """Read a file of recorded traffic; ``net`` is for SUMO's data, which have none.
 
-    Raises RulecError R0610 for a file that cannot be read as what it seems to be, R0611 without the
-    library for CommonRoad, R0613 for a net where none is needed, R0614 and R0615 for a missing or
-    wrong one, R0701 if a file cannot be opened.
+    Raises RulecError R0610 for a file that cannot be read as what it seems to be, R0613 for a net
+    where none is needed, R0614 and R0615 for a missing or wrong one, R0701 if a file cannot be
+    opened.
     """
     if is_protobuf(path):
         why = "it is Protocol Buffers, which are not read yet"

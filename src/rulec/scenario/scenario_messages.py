@@ -100,15 +100,6 @@ NOT_A_RECORDING = Code(
     kind="command",
 )
 
-COMMONROAD_MISSING = Code(
-    "R0611",
-    title="the package for CommonRoad scenarios is not installed",
-    why="They are read by `commonroad-io`, which is installed on request, because it takes some "
-    "370 MB with what it needs: `pip install 'rulec[commonroad]'`. In a checkout that is "
-    "`.venv/bin/python -m pip install -e '.[commonroad]'`.",
-    kind="circumstance",
-)
-
 NOT_IN_RECORDING = Code(
     "R0612",
     title="what is chosen is not in the recorded scene",

@@ -13,7 +13,6 @@ from rulec.scenario.scenario_files import read_recording
 from rulec.scenario.scenario_model import Choice
 from support.builders.recordings import RECORDINGS
 
-pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FILES = sorted(RECORDINGS.glob("*.xml"))
 if not FILES:
     pytest.skip(

@@ -2,8 +2,7 @@
 
 import pytest
 
-from rulec.scenario.commonroad import commonroad_file
-from rulec.scenario.commonroad.commonroad_file import side_in
+from rulec.scenario.commonroad.countries import LEFT_HAND, RIGHT_HAND, side_in
 
 
 @pytest.mark.parametrize(
@@ -24,7 +23,7 @@ def test_the_side(name, side):
 
 
 def test_no_country_drives_on_both_sides():
-    left, right = commonroad_file._LEFT_HAND.split(), commonroad_file._RIGHT_HAND.split()
+    left, right = LEFT_HAND.split(), RIGHT_HAND.split()
     assert not set(left) & set(right)
     assert left == sorted(set(left))
     assert right == sorted(set(right))

@@ -10,7 +10,6 @@ from rulec.scenario import Choice, load_scenario
 from rulec.scenario.motion import swept
 from support.builders.recordings import RECORDINGS
 
-pytest.importorskip("commonroad", reason="needs commonroad-io: pip install 'rulec[commonroad]'")
 FILE = RECORDINGS / "USA_US101-1_1_T-1.xml"
 RECORDED = {"o1": "489", "o2": "484"}
 

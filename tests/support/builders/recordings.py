@@ -18,6 +18,18 @@ from rulec.scenario.recorded.recording import (
 BESIDE = Path(__file__).resolve().parents[4] / "shared/data/commonroad"
 RECORDINGS = Path(os.environ.get("RULEC_RECORDINGS", BESIDE))
 
+_TOP = Path(__file__).resolve().parents[3]
+_SAMPLES = _TOP / "tests/scenario/commonroad/samples"
+SAMPLES = {
+    file: _SAMPLES / f"{file.stem}.json"
+    for file in (
+        _TOP / "docs/samples/following.xml",
+        _SAMPLES / "DEU_EveryElement-1_1_T-1.xml",
+        _SAMPLES / "USA_Old-1_1_T-1.xml",
+    )
+}
+"""Small files of CommonRoad -> what commonroad-io reads in them."""
+
 ROAD_XML = """\
 <commonRoad commonRoadVersion="2018b" benchmarkID="ZAM_Road-1_1_T-1" timeStepSize="0.1"
     author="" affiliation="" source="" tags="" date="2020-01-01">

@@ -1,1 +1,1 @@
-"""CommonRoad scenarios, read with the library ``commonroad-io`` as recordings."""
+"""CommonRoad scenarios, read as recordings without CommonRoad's library."""

@@ -1,4 +1,4 @@
-"""Obstacles and planning problems of the library's, as a recording has them.
+"""Obstacles of a CommonRoad file, as a recording has them.
 
 Places and headings in a file may be areas and intervals. What an obstacle occupies then is all that
 it may occupy; where only one number can be used it is the middle.
@@ -6,166 +6,139 @@ it may occupy; where only one number can be used it is the middle.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from operator import itemgetter
 
 import numpy as np
 
+from rulec.scenario.commonroad.areas import (
+    Area,
+    Rectangle,
+    corners,
+    geometry,
+    outline_around,
+    outline_at,
+    read_area,
+)
+from rulec.scenario.commonroad.states import State, read_state
+from rulec.scenario.commonroad.time_extent import TimeExtent, read_steps
 from rulec.scenario.recorded import recording as recorded
-from rulec.scenario.recorded.track import rectangles
-from rulec.scenario.xml_element import LARGEST
+from rulec.scenario.recorded.track import Track, TrackOutlines, TrackStates
+from rulec.scenario.xml_tree import XmlTree
+
+Outlines = dict[int, recorded.Points]
 
 
-def commonroad_participants(scenario: Any) -> Iterator[recorded.Participant]:
-    """All obstacles of a scenario of the library's, in its order."""
-    for obstacle in scenario.static_obstacles:
-        yield _participant(obstacle, [obstacle.initial_state], standing=True)
-    for obstacle in scenario.dynamic_obstacles:
-        yield _participant(obstacle, _states_of(obstacle), standing=False)
-    for obstacle in scenario.environment_obstacle:
-        outline = _corners(obstacle.occupancy_at_time(0))
-        yield recorded.Participant(
-            str(obstacle.obstacle_id), obstacle.obstacle_type.value, True, {}, {0: outline}
-        )
-    for obstacle in scenario.phantom_obstacle:
-        yield recorded.Participant(
-            str(obstacle.obstacle_id), "unknown", False, {}, dict(_predicted(obstacle))
-        )
-
-
-def _states_of(obstacle: Any) -> list[Any]:
-    trajectory = getattr(obstacle.prediction, "trajectory", None)
-    return [obstacle.initial_state, *(trajectory.state_list if trajectory else ())]
-
-
-def _participant(obstacle: Any, states: Iterable[Any], *, standing: bool) -> recorded.Participant:
-    known: dict[int, recorded.TrackState] = {}
-    outlines: dict[int, recorded.Points] = {}
-    for state in states:
-        step = int(state.time_step)
-        outline = _rectangle(obstacle.obstacle_shape, state)
-        if outline is None:
-            outline = _corners(obstacle.occupancy_at_time(step))
-        outlines[step] = outline
-        known[step] = _state(state, outline)
-    if not standing and not hasattr(obstacle.prediction, "trajectory"):
-        outlines.update(_predicted(obstacle))
-    lamps, shows = _lamps(obstacle)
+def read_body(tree: XmlTree, extent: TimeExtent, *, standing: bool) -> recorded.Participant:
+    """An obstacle with a shape, whether it stands or moves."""
+    kind = read_type(tree)
+    body = read_area(tree.child("shape"), body=True)
+    states = [read_state(tree.child("initialState"), initial=True)]
+    trajectory = None if standing else tree.first("trajectory")
+    states += [] if trajectory is None else map(read_state, trajectory.all("state"))
+    if not standing:
+        extent.add([state.step for state in states])
+    lamps, shows = _lamps(tree, extent)
+    known, outlines = _motion(body, states)
+    if not standing and trajectory is None:
+        predicted = _predicted(tree, extent)
+        outlines = {**outlines, **predicted} if predicted else outlines
     return recorded.Participant(
-        str(obstacle.obstacle_id),
-        obstacle.obstacle_type.value,
-        standing,
-        known,
-        outlines,
-        lamps=lamps,
-        shows=shows,
+        tree.id(), kind, standing, known, outlines, lamps=lamps, shows=shows
     )
 
 
+def read_thing(tree: XmlTree) -> recorded.Participant:
+    """Something that covers an area for ever: an ``environmentObstacle``."""
+    outlines = {0: corners(geometry(read_area(tree.child("shape"))))}
+    return recorded.Participant(tree.id(), read_type(tree), True, {}, outlines)
+
+
+def read_phantom(tree: XmlTree, extent: TimeExtent) -> recorded.Participant:
+    """Something that may be there, of which nothing is known but where."""
+    return recorded.Participant(tree.id(), "unknown", False, {}, _predicted(tree, extent))
+
+
+def read_type(tree: XmlTree) -> str:
+    """The type of an obstacle."""
+    return tree.child("type").one_of(recorded.OBSTACLE_TYPES)
+
+
+def _motion(
+    body: Area, states: Sequence[State]
+) -> tuple[Mapping[int, recorded.TrackState], Mapping[int, recorded.Points]]:
+    # If the file has two states of one step, the later one holds
+    by_step = {state.step: state for state in states}
+    only = body[0] if len(body) == 1 else None
+    if (
+        isinstance(only, Rectangle)
+        and only.x == only.y == only.heading == 0
+        and all(state.is_exact for state in by_step.values())
+    ):
+        ordered = sorted(by_step.values(), key=itemgetter(0))
+        rows = [(x, y, heading.low, *motion) for _, x, y, _, heading, *motion in ordered]
+        track = Track(
+            np.array([state.step for state in ordered], dtype=np.int64),
+            np.array(rows, dtype=float),
+            only.length,
+            only.width,
+            only.shift,
+        )
+        return TrackStates(track), TrackOutlines(track)
+    outlines = {step: _outline(body, state) for step, state in by_step.items()}
+    known = {step: track_state(state, outlines[step]) for step, state in by_step.items()}
+    return known, outlines
+
+
+def _outline(body: Area, state: State) -> recorded.Points:
+    if state.is_exact:
+        return outline_at(body, state.x, state.y, state.heading.low)
+    place = state.area or (Rectangle(0.0, 0.0, state.x, state.y),)
+    return outline_around(body, place, *state.heading)
+
+
+def track_state(state: State, outline: recorded.Points) -> recorded.TrackState:
+    """A state whose place, if it is an area, is the middle of an outline."""
+    x, y = outline.mean(axis=0).tolist() if state.area else (state.x, state.y)
+    return recorded.TrackState(x, y, state.heading.middle, state.speed, state.acceleration)
+
+
+def _predicted(tree: XmlTree, extent: TimeExtent) -> Outlines:
+    """What an obstacle occupies by time step; an interval of time has the same throughout."""
+    outlines: Outlines = {}
+    occupied = tree.first("occupancySet")
+    for occupancy in () if occupied is None else occupied.all("occupancy"):
+        steps = read_steps(occupancy.child("time"), extent)
+        outline = corners(geometry(read_area(occupancy.child("shape"))))
+        outlines.update(dict.fromkeys(steps, outline))
+    return outlines
+
+
 _SIGNALS: Mapping[str, recorded.Lamp] = {
-    "indicator_left": "left_indicator",
-    "indicator_right": "right_indicator",
-    "hazard_warning_lights": "hazard_lights",
-    "braking_lights": "brake_light",
-    "flashing_blue_lights": "blue_light",
+    "indicatorLeft": "left_indicator",
+    "indicatorRight": "right_indicator",
+    "hazardWarningLights": "hazard_lights",
+    "brakingLights": "brake_light",
+    "flashingBlueLights": "blue_light",
     "horn": "horn",
 }
 
 
-def _lamps(obstacle: Any) -> tuple[dict[int, frozenset[recorded.Lamp]], frozenset[recorded.Lamp]]:
+_LIT: Mapping[str, bool] = {"true": True, "1": True, "false": False, "0": False}
+
+
+def _lamps(
+    tree: XmlTree, extent: TimeExtent
+) -> tuple[dict[int, frozenset[recorded.Lamp]], frozenset[recorded.Lamp]]:
     """The lamps that are lit by time step, and all that the signal states speak of."""
-    series = [getattr(obstacle, "initial_signal_state", None)]
-    states = [state for state in series + list(obstacle.signal_series or ()) if state is not None]
-    lamps = {
-        int(state.time_step): frozenset(
-            lamp for name, lamp in _SIGNALS.items() if getattr(state, name, None)
-        )
-        for state in states
-    }
-    shows = [
-        {lamp for name, lamp in _SIGNALS.items() if getattr(state, name, None) is not None}
-        for state in states
-    ]
-    return lamps, frozenset(shows[0].intersection(*shows[1:])) if shows else frozenset()
-
-
-def _predicted(obstacle: Any) -> Iterator[tuple[int, recorded.Points]]:
-    for occupancy in getattr(obstacle.prediction, "occupancy_set", None) or ():
-        shape = getattr(occupancy, "shape", occupancy)
-        yield int(occupancy.time_step), _corners(shape)
-
-
-def _rectangle(shape: Any, state: Any) -> recorded.Points | None:
-    length, width = getattr(shape, "length", None), getattr(shape, "width", None)
-    position, heading = state.position, state.orientation
-    if not isinstance(length, (int, float)) or not isinstance(width, (int, float)):
-        return None
-    if not isinstance(position, np.ndarray) or not isinstance(heading, (int, float)):
-        return None
-    shift = getattr(shape, "origin_x_shift", 0.0)
-    place, turn = position[None, :2], np.array([heading])
-    outline: recorded.Points = rectangles(place, turn, length, width, shift)[0]
-    return outline
-
-
-def _corners(occupancy: Any) -> recorded.Points:
-    """Corners and side middles of a polygon, or of a group's polygons."""
-    shape = occupancy.shapely_object
-    outline = shape.convex_hull.exterior if shape.geom_type != "Polygon" else shape.exterior
-    corners = np.asarray(outline.coords, dtype=float)[:, :2]
-    middles = (corners[1:] + corners[:-1]) / 2
-    return np.concatenate((corners[:-1], middles))
-
-
-def _state(state: Any, outline: recorded.Points) -> recorded.TrackState:
-    position = state.position
-    x, y = position[:2] if isinstance(position, np.ndarray) else outline.mean(axis=0)
-    return recorded.TrackState(
-        _number(float(x)),
-        _number(float(y)),
-        _number(state.orientation),
-        _number(getattr(state, "velocity", None)),
-        _number(getattr(state, "acceleration", None)),
-    )
-
-
-def _number(value: Any) -> float:
-    """A number, an interval's middle, or 0 for a missing value."""
-    if value is None:
-        return 0.0
-    number = float(value) if isinstance(value, (int, float)) else (value.start + value.end) / 2
-    if not abs(number) < LARGEST:
-        raise ValueError("a state has a value that is no number, or out of all bounds")
-    return number
-
-
-def planning_problem(
-    problem: Any, lanelets: Mapping[str, recorded.Lanelet]
-) -> recorded.PlanningProblem:
-    """A planning problem of the library's."""
-    start = problem.initial_state
-    outline = (
-        np.zeros((1, 2)) if isinstance(start.position, np.ndarray) else _corners(start.position)
-    )
-    goals = [point for state in problem.goal.state_list for point in _goal(state)]
-    for numbers in (problem.goal.lanelets_of_goal_position or {}).values():
-        goals += [
-            lanelet.centre[len(lanelet.centre) // 2]
-            for number in numbers
-            if (lanelet := lanelets.get(str(number))) is not None
-        ]
-    return recorded.PlanningProblem(
-        str(problem.planning_problem_id),
-        int(start.time_step),
-        _state(start, outline),
-        np.array(goals, dtype=float).reshape(-1, 2),
-    )
-
-
-def _goal(state: Any) -> Iterator[recorded.Points]:
-    position: Any = getattr(state, "position", None)
-    if isinstance(position, np.ndarray):
-        yield position[:2]
-    elif hasattr(position, "shapely_object"):
-        centre = position.shapely_object.centroid
-        yield np.array([centre.x, centre.y])
+    states = tree.all("initialSignalState")[:1]
+    if (series := tree.first("signalSeries")) is not None:
+        states += series.all("signalState")
+    lamps: dict[int, frozenset[recorded.Lamp]] = {}
+    shows: frozenset[recorded.Lamp] | None = None
+    for state in states:
+        said = {_SIGNALS[child.name]: child for child in state.children if child.name in _SIGNALS}
+        lit = frozenset(lamp for lamp, child in said.items() if _LIT[child.one_of(_LIT)])
+        lamps.update(dict.fromkeys(read_steps(state.child("time"), extent), lit))
+        shows = frozenset(said) if shows is None else shows & frozenset(said)
+    return lamps, shows or frozenset()

@@ -1,67 +1,103 @@
-"""Intersections, stop lines and the weather of the library's, as a recording has them."""
+"""Lights, intersections and the weather of a CommonRoad file, as a recording has them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence, Set
+from typing import NamedTuple
 
 import numpy as np
 import shapely
 
 from rulec.scenario.recorded import recording
+from rulec.scenario.xml_tree import XmlTree
 
+_COLOURS = frozenset({"red", "yellow", "redYellow", "green", "inactive"})
 _WET = frozenset({"light_rain", "mid_rain", "heavy_rain", "hail"})
-_DRY = frozenset({"clear", "cloudy"})
+_DRY = frozenset({"clear", "sunny", "cloudy"})
+_WEATHERS = _WET | _DRY | {"fog", "snow", "unknown"}
+_GROUNDS = frozenset({"wet", "clean", "dirty", "damaged", "snow", "ice", "unknown"})
 _FAR_M = 1000.0
 _ACUTE = 0.5
+_WAYS = tuple(
+    f"{word}{way}" for word in ("outgoing", "successors") for way in ("Right", "Straight", "Left")
+)
 
 
-def commonroad_junctions(network: Any) -> dict[int, str]:
-    """Lanelet -> the intersection that it lies in, by the network's own intersections.
+class Intersection(NamedTuple):
+    """An intersection, and the lanelets that ways through it begin with."""
+
+    id: str
+    starts: tuple[str, ...]
+
+
+def read_light(tree: XmlTree) -> recording.Light | None:
+    """The programme of a traffic light; None if it has none, or is out of order."""
+    active, cycle = tree.first("active"), tree.first("cycle")
+    if cycle is None or (active is not None and active.word in ("false", "0")):
+        return None
+    phases = []
+    for element in cycle.all("cycleElement"):
+        steps = element.child("duration").whole()
+        if steps <= 0:
+            raise element.wrong("a traffic light has a phase that does not last")
+        phases.append((element.child("color").one_of(_COLOURS), steps))
+    offset = cycle.first("timeOffset")
+    begin = 0 if offset is None else offset.whole()
+    return recording.Light(begin, tuple(phases)) if phases else None
+
+
+def read_intersection(tree: XmlTree) -> Intersection:
+    """The intersection in an element."""
+    starts = [
+        number for incoming in tree.all("incoming") for way in _WAYS for number in incoming.ids(way)
+    ]
+    return Intersection(tree.id(), tuple(starts))
+
+
+def junctions(
+    intersections: Iterable[Intersection], lanelets: Mapping[str, recording.Lanelet]
+) -> dict[str, str]:
+    """Lanelet -> the intersection that it lies in, by the file's own intersections.
 
     Ways through an intersection may be of several lanelets, of which it names the first: those that
     nobody crosses, before others that are crossed, only lead to it.
     """
-    by_id = {lanelet.lanelet_id: lanelet for lanelet in network.lanelets}
-    crossed = _crossed(list(by_id.values())) if network.intersections else set()
-    inside: dict[int, str] = {}
-    for intersection in network.intersections:
-        starts = [
-            number
-            for incoming in intersection.incomings
-            for way in ("outgoing_right", "outgoing_straight", "outgoing_left")
-            for number in getattr(incoming, way) or ()
-            if number in by_id
-        ]
-        for start in starts:
-            chain = _crossed_after(start, by_id, crossed)
-            members = chain if start in crossed or not chain else chain - {start}
-            inside.update(dict.fromkeys(members or {start}, str(intersection.intersection_id)))
+    waiting = list(intersections)
+    crossed = _crossed(list(lanelets.values())) if waiting else set()
+    inside: dict[str, str] = {}
+    for intersection in waiting:
+        for start in intersection.starts:
+            if start in lanelets:
+                chain = _crossed_after(start, lanelets, crossed)
+                members = chain if start in crossed or not chain else chain - {start}
+                inside.update(dict.fromkeys(members or {start}, intersection.id))
     return inside
 
 
-def _crossed_after(start: int, by_id: Mapping[int, Any], crossed: Set[int]) -> set[int]:
+def _crossed_after(
+    start: str, lanelets: Mapping[str, recording.Lanelet], crossed: Set[str]
+) -> set[str]:
     """The lanelets that are crossed and follow one end to end, itself included."""
     found = {start} & crossed
     waiting = [start]
     while waiting:
-        for number in by_id[waiting.pop()].successor or ():
+        for number in lanelets[waiting.pop()].successors:
             if number in crossed and number not in found:
                 found.add(number)
                 waiting.append(number)
     return found
 
 
-def _crossed(lanelets: Sequence[Any]) -> set[int]:
+def _crossed(lanelets: Sequence[recording.Lanelet]) -> set[str]:
     """The lanelets whose middles others cross at more than an acute angle."""
-    lines = [shapely.LineString(lanelet.center_vertices[:, :2]) for lanelet in lanelets]
+    lines = [shapely.LineString(lanelet.centre) for lanelet in lanelets]
     pairs = shapely.STRtree(lines).query(lines, predicate="crosses").T.tolist()
-    crossed: set[int] = set()
+    crossed: set[str] = set()
     for one, other in pairs:
         place = shapely.point_on_surface(shapely.intersection(lines[one], lines[other]))
         turned = _direction(lines[one], place) - _direction(lines[other], place)
         if one < other and abs(np.sin(turned)) > _ACUTE:
-            crossed.update((lanelets[one].lanelet_id, lanelets[other].lanelet_id))
+            crossed.update((lanelets[one].id, lanelets[other].id))
     return crossed
 
 
@@ -71,18 +107,14 @@ def _direction(line: shapely.LineString, place: shapely.Point) -> float:
     return float(np.arctan2(after.y - before.y, after.x - before.x))
 
 
-def stop_line(lanelet: Any) -> recording.Points | None:
-    """The ends of a stop line; the library puts one without a place at the lanelet's end."""
-    line = lanelet.stop_line
-    if line is None or line.start is None or line.end is None:
-        return None
-    return np.array([line.start[:2], line.end[:2]], dtype=float)
-
-
-def commonroad_weather(environment: Any) -> recording.Weather:
-    """The weather that a scenario states; dry weather leaves only what lies on the road."""
-    weather = getattr(getattr(environment, "weather", None), "value", None)
-    ground = getattr(getattr(environment, "underground", None), "value", None)
+def read_weather(location: XmlTree) -> recording.Weather:
+    """The weather at a location; dry weather leaves only what lies on the road."""
+    environment = location.first("environment")
+    if environment is None:
+        return recording.Weather()
+    sky, soil = map(environment.first, ("weather", "underground"))
+    weather = None if sky is None else sky.one_of(_WEATHERS)
+    ground = None if soil is None else soil.one_of(_GROUNDS)
     wet = True if weather in _WET or ground == "wet" else None
     if ground in ("clean", "dirty", "damaged") and weather in _DRY:
         wet = False

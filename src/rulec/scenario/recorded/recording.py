@@ -21,6 +21,12 @@ Points = NDArray[float64]
 LONGEST_M = 20_000.0
 """Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
 
+MOST_STEPS = 1_000_000
+"""A recording has fewer, which is more than a day of tenths of a second."""
+
+SPARSEST = 1000
+"""One in so many time steps is in the file at least; else one of its times is a slip."""
+
 Side = Literal["left", "right"]
 LaneMark = Literal["solid", "double_solid", "broken", "none"]
 Lamp = Literal[

@@ -38,13 +38,15 @@ def rectangles(
 class Track:
     """The states of a rigid body by ascending time step.
 
-    Each of the ``rows`` has x, y, heading, speed and acceleration at one of the ``steps``.
+    Each of the ``rows`` has x, y, heading, speed and acceleration at one of the ``steps``. x and y
+    are ``shift`` ahead of the body's middle.
     """
 
     steps: NDArray[int64]
     rows: NDArray[float64]
     length: float
     width: float
+    shift: float = 0.0
 
     def row_of(self, step: int) -> int:
         """Raises KeyError if it is not there at that step."""
@@ -81,8 +83,8 @@ class TrackOutlines(Mapping[int, Points]):
         row = self.track.row_of(step)
         if not self._laid_out:
             rows = self.track.rows
-            length, width = self.track.length, self.track.width
-            self._laid_out.append(rectangles(rows[:, :2], rows[:, 2], length, width))
+            sizes = self.track.length, self.track.width, self.track.shift
+            self._laid_out.append(rectangles(rows[:, :2], rows[:, 2], *sizes))
         outline: Points = self._laid_out[0][row]
         return outline
 

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
 from rulec.scenario.recorded.recording import (
+    MOST_STEPS,
+    SPARSEST,
     Lamp,
     Lanelet,
     Participant,
@@ -46,12 +48,6 @@ NEAR_M = 1000.0
 """Nobody in the data is farther from the net than this."""
 
 _NAMED = 5
-
-MOST_STEPS = 1_000_000
-"""A recording has fewer, which is more than a day of tenths of a second."""
-
-SPARSEST = 1000
-"""One in so many time steps is in the file at least; else one of its times is a slip."""
 
 _LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
     (1, frozenset({"right_indicator"})),
