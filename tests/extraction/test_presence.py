@@ -20,12 +20,12 @@ def found(flags, away_s=1.0, nowhere=(), others=("8",)):
     bodies = [steady(name, 30 + 10 * k, 0, steps=STEPS) for k, name in enumerate(others)]
     cars = [steady(7, 0, 0, steps=STEPS), *bodies]
     context = context_of(recording(ROAD, cars), away_s=away_s)
-    w_min = context.extents.w_min.copy()
-    w_min[0, list(nowhere)] = np.nan
+    s_min = context.extents.s_min.copy()
+    s_min[0, list(nowhere)] = np.nan
     rows = np.zeros_like(context.relevant)
     rows[0] = flags
     rows[1:] = True
-    extents = replace(context.extents, w_min=w_min)
+    extents = replace(context.extents, s_min=s_min)
     context = replace(context, relevant=rows, extents=extents)
     return [(one.name, one.first, one.last) for one in presences(context)]
 

@@ -72,7 +72,7 @@ class DriveContext:
     @cached_property
     def ego_lane(self) -> NDArray[intp]:
         """The lane of ego's middle by state, numbered from the right, or the nearest that is."""
-        lane: NDArray[intp] = self.road.lane_of(self.ego_extents.w)[0]
+        lane: NDArray[intp] = self.ego_extents.lane[0]
         lanes = np.arange(self.existing_lanes.shape[1])
         away = np.where(self.existing_lanes, abs(lanes - lane[:, None]), len(lanes))
         return np.where(self.existing_lanes.any(axis=1), away.argmin(axis=1), lane)
@@ -94,12 +94,10 @@ class DriveContext:
     @cached_property
     def steady_lane(self) -> NDArray[intp]:
         """Ego's lane with hysteresis: it is left only ``changed_m`` beyond its mark."""
-        straight = self.road.lanes.straight
-        lane = np.array(self.ego_lane)
-        middle = self.ego_extents.w[0]
+        lane, left_of = np.array(self.ego_lane), self.ego_extents.left_of[0]
         for state in range(1, len(lane)):
             before = lane[state - 1]
-            beyond = max(straight[before] - middle[state], middle[state] - straight[before + 1])
+            beyond = max(-left_of[state, before], left_of[state, before + 1])
             if beyond < self.thresholds.changed_m and self.existing_lanes[state, before]:
                 lane[state] = before
         return lane
@@ -123,13 +121,14 @@ class DriveContext:
         The median of ``_ENOUGH_TRACKS`` vehicles or more, 0 up to ``touching_m``. Drivers keep to
         the middle on the whole: by so much the map may be off the tracks.
         """
-        middles = np.where(self.driving_along, self.extents.w, np.nan)
-        middles = middles[self.driving_along.any(axis=1)]
-        if len(middles) < _ENOUGH_TRACKS:
+        rows = self.driving_along.any(axis=1).nonzero()[0]
+        if len(rows) < _ENOUGH_TRACKS:
             return 0.0
-        straight, lane = self.road.lanes.straight, self.road.lane_of(np.nan_to_num(middles))
-        away = np.nanmedian(middles - (straight[lane] + straight[lane + 1]) / 2, axis=1)
-        offset = float(np.median(away))
+        extents = self.extents.part(rows, slice(None))
+        lane = extents.lane
+        away = (extents.middle_from(lane) + extents.middle_from(lane + 1)) / 2
+        away = np.where(self.driving_along[rows], away, np.nan)
+        offset = float(np.median(np.nanmedian(away, axis=1)))
         return offset if abs(offset) > self.thresholds.touching_m else 0.0
 
     def zero_if_standing(self, speed_kmh: Floats) -> Floats:
@@ -197,9 +196,8 @@ def _near(
     own = extents.of(ego)
     gap = np.maximum(extents.s_min - own.s_max, own.s_min - extents.s_max)
     on_lanes = lanes_touched(extents, road, thresholds.touching_m).any(axis=-1)
-    straight = road.lanes.straight
     beside = thresholds.beside_road_m
-    close = (extents.w_max > straight[0] - beside) & (extents.w_min < straight[-1] + beside)
+    close = (extents.left_of_max[..., 0] > -beside) & (extents.left_of_min[..., -1] < beside)
     vulnerable = tracks.of_type("vulnerable_user")
     fastest = np.nan_to_num(tracks.speed).max(axis=1, initial=0.0)
     moves = fastest * KMH >= thresholds.standing_kmh

@@ -119,7 +119,7 @@ class Drives:
             lanelets, elsewhere = lanelets[rows, driven], elsewhere[rows, driven]
             expected = self._expected(tracks, road, row, stretch, lanelets)
             extents = road_extents(tracks, road, expected)
-        if np.isnan(extents.w[row, columns]).any():
+        if np.isnan(extents.s[row, columns]).any():
             return NoDrive(ego, "it is far from its road for a while")
         context = drive_context(
             self.recording,

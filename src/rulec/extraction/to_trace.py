@@ -62,7 +62,7 @@ def presences(context: DriveContext) -> Iterator[Presence]:
     longest = round(context.thresholds.away_s / context.recording.step_s)
     participants = context.tracks.participants
     taken = {body.id for body in participants}
-    unknown = np.cumsum(np.isnan(context.extents.w), axis=1)
+    unknown = np.cumsum(np.isnan(context.extents.s), axis=1)
     for row, body in enumerate(participants):
         columns = np.flatnonzero(context.relevant[row])
         gone = unknown[row]

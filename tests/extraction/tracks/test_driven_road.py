@@ -32,11 +32,9 @@ def test_the_road_goes_on_before_and_after_the_way():
     assert [row[0].id for row in road(route=("1",)).rows] == ["1", "3"]
 
 
-def test_places_have_lanelets_and_lanes():
+def test_places_have_lanelets():
     found = road()
     assert found.piece(np.array([-5.0, 0.0, 99.0, 101.0, 250.0])).tolist() == [0, 0, 0, 1, 1]
-    # Marks lie at -2, 2 and 6; beside the road the nearest lane counts
-    assert found.lane_of(np.array([-9.0, 1.9, 2.1, 9.0])).tolist() == [0, 0, 1, 1]
 
 
 def test_a_lane_that_ends_is_missing_from_then_on():

@@ -1,6 +1,5 @@
 """Extents along and across a road, in Frenet coordinates."""
 
-from dataclasses import replace
 from math import cos, pi, radians, sin
 
 import numpy as np
@@ -14,7 +13,7 @@ from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
-BOUNDS = ("s_min", "s_max", "d_min", "d_max", "w_min", "w_max")
+BOUNDS = ("s_min", "s_max", "d_min", "d_max")
 
 
 def extents(lanes, *participants, route=("1",)):
@@ -31,7 +30,10 @@ def test_on_a_straight_road_extents_are_coordinates(x, y, length, width):
     found = extents([straight(1, 0, 100)], vehicle(7, {0: (x, y)}, length=length, width=width))
     along = [x - length / 2, x + length / 2]
     across = [y - width / 2, y + width / 2]
-    assert bounds(found) == pytest.approx([*along, *across, *across], abs=1e-6)
+    assert bounds(found) == pytest.approx([*along, *across], abs=1e-6)
+    # The lane is 4 m wide
+    assert found.left_of_min[0, 0] == pytest.approx([across[0] + 2, across[0] - 2], abs=1e-6)
+    assert found.left_of_max[0, 0] == pytest.approx([across[1] + 2, across[1] - 2], abs=1e-6)
 
 
 @given(st.floats(-pi, pi), st.floats(-900, 900), st.floats(-900, 900))
@@ -42,7 +44,8 @@ def test_they_do_not_depend_on_where_the_road_lies_and_leads(angle, x, y):
     road = lanelet(1, [placed(0, 0), placed(100, 0)])
     body = vehicle(7, {0: placed(40, 1), 1: placed(45, 1)}, heading=angle)
     found = extents([road], body)
-    assert bounds(found) == pytest.approx([38, 42, 0, 2, 0, 2], abs=1e-6)
+    assert bounds(found) == pytest.approx([38, 42, 0, 2], abs=1e-6)
+    assert found.left_of[0, 0] == pytest.approx([3, -1], abs=1e-6)
     assert found.turned[0] == pytest.approx([0, 0], abs=1e-6)
     assert (found.along[0, 0], found.across[0, 0]) == pytest.approx((10, 0), abs=1e-6)
 
@@ -58,13 +61,36 @@ def test_motion_is_seen_from_the_road():
     assert towards.along[0, 0] == pytest.approx(-20)
 
 
-def test_across_a_lane_that_widens_places_keep_their_proportion():
-    # 4 m wide at the middle of the road, where lanes have their usual width, 8 m at its end
+def test_across_a_lane_that_widens_places_are_measured_from_where_its_bounds_are():
+    # 4 m wide at the middle of the road, 8 m at its end
     road = lanelet(1, [(0, 0), (50, 0), (100, 0)], width=[4, 4, 8])
     found = extents([road], vehicle(7, {0: (99.9, 0)}, length=0.2, width=4.0))
-    _, _, d_min, d_max, w_min, w_max = bounds(found)
-    assert (d_min, d_max) == pytest.approx((-2, 2), abs=0.01)
-    assert (w_min, w_max) == pytest.approx((-1, 1), abs=0.05)
+    assert found.left_of_min[0, 0] == pytest.approx([2, -6], abs=0.05)
+    assert found.left_of_max[0, 0] == pytest.approx([6, -2], abs=0.05)
+
+
+# A lane 4 m wide, and left of it one that opens evenly to 4 m within 100 m
+OPENING = [
+    straight(1, 0, 100, left_of=2),
+    lanelet(2, [(0, 2), (100, 4)], width=[0, 4], right_of=1),
+]
+
+
+@given(st.floats(1, 99), st.floats(-1, 6))
+def test_who_reaches_into_a_lane_that_opens_is_in_it_by_so_much(x, y):
+    found = extents(OPENING, vehicle(7, {0: (x, y)}, length=0.2, width=2.0))
+    opened = 0.04 * x
+    into = max(0.0, min(y + 1, 2 + opened) - max(y - 1, 2))
+    assert np.maximum(found.inside[0, 0, 1], 0) == pytest.approx(into, abs=0.02)
+    assert found.left_of[0, 0] == pytest.approx([y + 2, y - 2, y - 2 - opened], abs=0.01)
+    assert found.lane[0, 0] == (y > 2)
+
+
+def test_beside_the_road_the_nearest_lane_counts():
+    # Marks lie at -2, 2 and 6
+    lanes = [straight(1, 0, 100, left_of=2), straight(2, 0, 100, y=4, right_of=1)]
+    bodies = [vehicle(k, {0: (50, y)}) for k, y in enumerate((-9.0, 1.9, 2.1, 9.0))]
+    assert extents(lanes, *bodies).lane[:, 0].tolist() == [0, 0, 1, 1]
 
 
 def test_a_standing_body_has_one_extent_for_all_steps():
@@ -78,7 +104,7 @@ def test_a_body_is_not_torn_apart_where_a_road_meets_itself():
     # There and back again, 5 m apart: a lorry that reaches over the middle stays on its side
     points = [(0, 0), (100, 0), (105, 2.5), (100, 5), (0, 5)]
     lorry = vehicle(7, {0: (30, 1.5)}, length=10, width=2.6)
-    s_min, s_max, d_min, d_max, _, _ = bounds(extents([lanelet(1, points, width=2)], lorry))
+    s_min, s_max, d_min, d_max = bounds(extents([lanelet(1, points, width=2)], lorry))
     assert (s_min, s_max) == pytest.approx((25, 35), abs=0.1)
     assert (d_min, d_max) == pytest.approx((0.2, 2.8), abs=0.05)
 
@@ -88,4 +114,4 @@ def test_one_row_and_a_part():
     found = extents([straight(1, 0, 100)], *bodies)
     assert found.of(1).s.tolist() == [[20, 21]]
     assert found.part(np.array([2, 0]), slice(1, 2)).s.tolist() == [[31], [11]]
-    assert replace(found, w_min=found.w_min + 2).w[0, 0] == 1
+    assert found.moved(0.5).left_of[2, 1] == pytest.approx([2.5, -1.5])

@@ -87,12 +87,17 @@ def _soon(flags: Flags, steps: int) -> Flags:
 
 def _beyond_own_lanes(context: DriveContext) -> Flags:
     """Flags of states in which ego reaches over the far edge of the lanes of its direction."""
-    straight, there = context.road.lanes.straight, context.existing_lanes
+    first, end = _edges(context)
     own, touching = context.ego_extents, context.thresholds.touching_m
-    first, end = there.argmax(axis=1), there.shape[1] - there[:, ::-1].argmax(axis=1)
-    left, right = own.w_max[0] - straight[end], straight[first] - own.w_min[0]
+    left, right = own.from_bound(end)[1][0], -own.from_bound(first)[0][0]
     beyond: Flags = (left if context.side == "right" else right) > touching
     return beyond
+
+
+def _edges(context: DriveContext) -> tuple[relations.Codes, relations.Codes]:
+    """The first and the last bound of the lanes beside ego, by state."""
+    there = context.existing_lanes
+    return there.argmax(axis=1), there.shape[1] - there[:, ::-1].argmax(axis=1)
 
 
 def _obstructed(context: DriveContext) -> Flags:
@@ -100,17 +105,16 @@ def _obstructed(context: DriveContext) -> Flags:
 
     Ahead, beside ego, or so near behind it that ego may still be on its way back.
     """
-    straight, own = context.road.lanes.straight, context.ego_extents
+    own = context.ego_extents
     width = own.d_max[0] - own.d_min[0] + _BESIDE_M
     stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
-    low, high = own.w_min[0][:, None], own.w_max[0][:, None]
-    used = np.minimum(high, straight[1:]) - np.maximum(low, straight[:-1]) > 0
+    used = own.inside[0] > 0
     used[np.arange(context.states), context.ego_lane] = True
     counts = context.relevant & stands & (relations.gap(context) <= _OBSTACLE_M)
     others = context.extents
     blocked = np.zeros(context.states, dtype=bool)
     for lane in range(used.shape[1]):
-        room = np.maximum(others.w_min - straight[lane], straight[lane + 1] - others.w_max)
+        room = np.maximum(others.left_of_min[..., lane], -others.left_of_max[..., lane + 1])
         blocks = counts & context.touched[..., lane] & (room < width)
         blocked |= used[:, lane] & blocks.any(axis=0)
     return blocked
@@ -118,11 +122,9 @@ def _obstructed(context: DriveContext) -> Flags:
 
 def _room_on_near_side(context: DriveContext) -> Flags:
     """Flags of participants that leave room for ego between them and the near edge of the road."""
-    straight, others = context.road.lanes.straight, context.extents
-    there = context.existing_lanes
-    first = straight[there.argmax(axis=1)]
-    last = straight[there.shape[1] - there[:, ::-1].argmax(axis=1)]
-    room = others.w_min - first if context.side == "right" else last - others.w_max
+    first, end = _edges(context)
+    others, right = context.extents, context.side == "right"
+    room = others.from_bound(first)[0] if right else -others.from_bound(end)[1]
     width = context.ego_extents.d_max[0] - context.ego_extents.d_min[0] + _BESIDE_M
     enough: Flags = room >= width
     return enough

@@ -71,23 +71,26 @@ def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
 
 def _straddling(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of ego in two lanes, and of states in which that cannot be told."""
-    straight, place = context.road.lanes.straight, context.tolerances.place_m
+    place = context.tolerances.place_m
     both = []
     for less, shift in ((0.0, 0.0), *product((place, -place), (0.0, context.map_offset_m))):
-        low = context.ego_extents.w_min[0][:, None] - shift
-        high = context.ego_extents.w_max[0][:, None] - shift
-        inside = np.minimum(high, straight[1:]) - np.maximum(low, straight[:-1])
+        inside = context.ego_extents.moved(-shift).inside[0]
         least = context.thresholds.touching_m + less
         both.append(((inside > least) & context.existing_lanes).sum(axis=1) > 1)
     return both[0], np.any(both, axis=0) & ~np.all(both, axis=0)
 
 
+def room_beside(context: DriveContext) -> tuple[Floats, Floats]:
+    """The room (m) in ego's lane to the right and to the left of it."""
+    lane, own = context.steady_lane, context.ego_extents
+    return own.from_bound(lane)[0][0], -own.from_bound(lane + 1)[1][0]
+
+
 def _place_in_lane(context: DriveContext) -> NDArray[intp]:
     """Indices into ``_PLACES``: 0 centred, 1 near edge, 2 far edge."""
-    straight, lane = context.road.lanes.straight, context.steady_lane
-    right: Floats = context.ego_extents.w_min[0] - straight[lane]
-    left: Floats = straight[lane + 1] - context.ego_extents.w_max[0]
-    near, far = (right, left) if context.side == "right" else (left, right)
+    near, far = room_beside(context)
+    if context.side == "left":
+        near, far = far, near
     # In a lane that is hardly wider than ego both edges are near, and neither is kept to
     edge = context.thresholds.at_edge_m
     kept = (np.minimum(near, far) < edge) & (np.abs(near - far) > edge)

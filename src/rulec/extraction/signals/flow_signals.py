@@ -86,7 +86,7 @@ def _dense_lines(context: DriveContext, queues: Sequence[Flags]) -> tuple[Flags,
 
 def _ahead_in_lane(context: DriveContext) -> Flags:
     """Flags of who is ahead of ego in its lane, as far as traffic reaches."""
-    own_lane = context.road.lane_of(context.extents.w) == context.ego_lane
+    own_lane = context.extents.lane == context.ego_lane
     ahead: Flags = close_by(context) & (relations.station(context) == relations.BEHIND) & own_lane
     return ahead
 
@@ -153,7 +153,7 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     next_lane = _next_lane(context)
     reaches, lanes = context.touched, np.arange(context.touched.shape[-1])
     reaches = (reaches & (lanes == next_lane[None, :, None])).any(axis=-1)
-    inside = reaches & (context.road.lane_of(context.extents.w) == next_lane)
+    inside = reaches & (context.extents.lane == next_lane)
     open_end = comes & (reaches & lost | reaches & ~inside & gets_past)
     return (comes & inside & gets_past).any(axis=0), open_end.any(axis=0)
 
@@ -184,10 +184,7 @@ def _next_lane(context: DriveContext) -> NDArray[intp]:
 
     While ego is on a mark that is the lane that it moves into, and none beyond.
     """
-    straight, own = context.road.lanes.straight, context.ego_extents
-    low, high = own.w_min[0][:, None], own.w_max[0][:, None]
-    inside = np.minimum(high, straight[1:]) - np.maximum(low, straight[:-1])
-    lanes = np.arange(context.touched.shape[-1])
+    lanes, inside = np.arange(context.touched.shape[-1]), context.ego_extents.inside[0]
     used = (inside > context.thresholds.touching_m) | (lanes == context.ego_lane[:, None])
     next_lane: NDArray[intp] = (
         used.argmax(axis=1) + 1

@@ -49,14 +49,13 @@ def _since(context: DriveContext, follows: Flags) -> tuple[NDArray[intp], Flags]
 def _before(context: DriveContext) -> Floats:
     """How long (s) others were ahead at least when first seen, by where they were across."""
     limits, own, others = context.thresholds, context.ego_extents, context.extents
-    straight, lane = context.road.lanes.straight, context.ego_lane
-    right, left, reach = straight[lane], straight[lane + 1], limits.touching_m
-    from_left = np.maximum(own.w_max + reach - others.w_min, left + reach - others.w_max)
-    from_right = np.maximum(others.w_max - own.w_min + reach, others.w_min - right + reach)
-    inside = np.minimum(
-        np.minimum(left - others.w_min - reach, from_left),
-        np.minimum(others.w_max - right - reach, from_right),
-    )
+    reach, right, left = limits.touching_m, context.ego_lane, context.ego_lane + 1
+    low, high = others.from_bound(left)
+    from_left = np.maximum(own.from_bound(left)[1] - low, -high) + reach
+    inside = np.minimum(-low - reach, from_left)
+    low, high = others.from_bound(right)
+    from_right = np.maximum(high - own.from_bound(right)[0], low) + reach
+    inside = np.minimum(inside, np.minimum(high - reach, from_right))
     way = np.nan_to_num(np.maximum(inside - context.tolerances.place_m, 0.0))
     speed = np.maximum(np.abs(others.across), np.abs(others.across - own.across))
     speed = np.nan_to_num(speed) + np.nan_to_num(context.tracks.speed_error)

@@ -189,7 +189,7 @@ def _ends_within(context: DriveContext, steps: int) -> Flags:
 def _overtaking_soon(context: DriveContext) -> SignalColumns:
     """The signal of those who have signalled to pull out to the far side, and do so soon."""
     far = 1 if context.side == "right" else -1
-    lane = context.road.lane_of(np.nan_to_num(context.extents.w))
+    lane = context.extents.lane
     steps = round(context.thresholds.signalling_s / context.recording.step_s)
     inside = context.touched.any(axis=-1)
     pulls_out = np.diff(lane, axis=1, append=lane[:, -1:]) * far > 0

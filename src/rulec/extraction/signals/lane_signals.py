@@ -9,7 +9,7 @@ import numpy as np
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns, named_values
-from rulec.extraction.tracks.tracks import Flags
+from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.recording import Lanelet, LaneMark
 
 _INDICATORS = frozenset({"left_indicator", "right_indicator"})
@@ -25,7 +25,8 @@ _SINGLE = (
 """One line between two lanes is the mark of both, or of the one whose bound it is."""
 
 _Marks = tuple[LaneMark | None, LaneMark | None]
-_Body = tuple[float, float, float]
+_Body = tuple[Floats, Floats]
+"""How far (m) left of each line a body begins and ends."""
 
 
 def lane_change_signals(context: DriveContext) -> SignalColumns:
@@ -119,27 +120,22 @@ def _solid_lines(crossed: list[_Marks]) -> tuple[bool, bool, bool]:
 
 def _near_a_line(context: DriveContext, margin_m: float) -> Flags:
     """Flags of states in which so much decides whether ego's body lies across a line."""
-    straight, own = context.road.lanes.straight, context.ego_extents
-    across = np.minimum(straight - own.w_min[0][:, None], own.w_max[0][:, None] - straight)
+    own = context.ego_extents
+    across = np.minimum(-own.left_of_min[0], own.left_of_max[0])
     near: Flags = (np.abs(across - context.thresholds.touching_m) <= margin_m).any(axis=1)
     return near
 
 
 def _bodies(context: DriveContext) -> list[tuple[_Body, _Body]]:
-    """Ego's body in each state, as it stands and parallel to the road.
-
-    From right to left (m), and how far that really is: where a lane opens, places are drawn apart.
-    """
+    """Ego's body in each state, as it stands and parallel to the road."""
     own, bodies = context.ego_extents, []
-    low, middle, high = (bound[0].tolist() for bound in (own.w_min, own.w, own.w_max))
+    low, middle, high = (values[0] for values in (own.left_of_min, own.left_of, own.left_of_max))
     headings = context.ego.heading[0]
     for _, state, outline in context.ego.outlines(repeated=True):
-        across, width = (
-            float(np.ptp(outline @ (-np.sin(way), np.cos(way))))
-            for way in (headings[state] - own.turned[0, state], headings[state])
-        )
-        parallel = middle[state] - width / 2, middle[state] + width / 2, width
-        bodies.append(((low[state], high[state], across), parallel))
+        way = headings[state]
+        width = float(np.ptp(outline @ (-np.sin(way), np.cos(way))))
+        parallel = middle[state] - width / 2, middle[state] + width / 2
+        bodies.append(((low[state], high[state]), parallel))
     return bodies
 
 
@@ -155,15 +151,11 @@ def _marks_under_ego(
 
     Line ``k`` lies right of lane ``k``. By so much (m) ``more``, and with ego so far right.
     """
-    straight = context.road.lanes.straight
-    low, high, across = body[0] - shift, body[1] - shift, body[2]
     reach = context.thresholds.touching_m + more
+    across = np.minimum(shift - body[0], body[1] - shift).tolist()
     crossed = []
     for line, (right, left) in enumerate(pairwise([None, *row, None])):
-        # Where there is no lane on one side, its other side tells how far it reaches over
-        first = low if right else max(low, high - across)
-        last = high if left else min(high, low + across)
-        if min(straight[line] - first, last - straight[line]) > reach:
+        if across[line] > reach:
             marks = _between(right, left)
             crossed.append(marks[::-1] if context.steady_lane[state] >= line else marks)
     return crossed

@@ -93,10 +93,9 @@ def _goes_across(context: DriveContext) -> Flags:
     along, across = np.abs(context.extents.along), np.abs(context.extents.across)
     moves: Flags = (across >= least) & (across > along)
     # Step by step: in means over a second a blow that moves a body at once lasts as long
-    s, w = (
-        np.abs(np.diff(x, axis=1, prepend=np.nan)) for x in (context.extents.s, context.extents.w)
-    )
-    turns = (s >= least * step_s) & (s > w)
+    s = np.abs(np.diff(context.extents.s, axis=1, prepend=np.nan))
+    d = np.abs(np.diff(context.extents.d_min + context.extents.d_max, axis=1, prepend=np.nan)) / 2
+    turns = (s >= least * step_s) & (s > d)
     steps = max(round(context.thresholds.smoothing_s / step_s), 1)
     sums = np.pad(np.cumsum(turns, axis=1), ((0, 0), (steps, 0)))
     mostly = 2 * (sums[:, steps:] - sums[:, :-steps]) > steps

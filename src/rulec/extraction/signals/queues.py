@@ -100,16 +100,16 @@ def queues_by_lane(context: DriveContext) -> tuple[tuple[Flags, ...], Floats]:
     In a queue more than half of the gaps are short. The flags are by what counts as short.
     """
     limits = context.thresholds
-    lanes = len(context.road.lanes.straight) - 1
+    lanes = context.existing_lanes.shape[1]
     queues = np.zeros((len(READINGS), context.states, lanes), dtype=bool)
     middle = np.full((context.states, lanes), np.nan)
-    s_min, s_max, along, w = (
+    s_min, s_max, along, own_lane = (
         np.concatenate((getattr(context.ego_extents, name), getattr(context.extents, name)))
-        for name in ("s_min", "s_max", "along", "w")
+        for name in ("s_min", "s_max", "along", "lane")
     )
     speed = np.maximum(along, 0.0)
     error = np.concatenate((context.ego.speed_error, context.tracks.speed_error))
-    longest, own_lane = longest_gaps(context, speed, error), context.road.lane_of(w)
+    longest = longest_gaps(context, speed, error)
     counted = np.concatenate((np.ones((1, context.states), dtype=bool), close_by(context)))
     for lane in range(lanes):
         inside = counted & (own_lane == lane)

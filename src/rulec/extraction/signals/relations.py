@@ -7,8 +7,6 @@ within a lane is in that lane. For the paper's ``position`` see ``docs/scenarios
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
@@ -67,17 +65,27 @@ def _in_the_way(context: DriveContext) -> Flags:
     or any more.
     """
     own, others = context.ego_extents, context.extents
-    both = np.minimum(own.w_max, others.w_max) - np.maximum(own.w_min, others.w_min)
-    narrower = np.minimum(own.w_max - own.w_min, others.w_max - others.w_min)
-    inside = context.road.lane_of(others.w) == context.road.lane_of(own.w)
-    least = np.where(inside, context.tolerances.place_m, narrower / 2)
+    narrower = np.minimum(own.d_max - own.d_min, others.d_max - others.d_min)
+    both = np.minimum(-np.maximum(*_aside(context)), narrower)
+    least = np.where(others.lane == own.lane, context.tolerances.place_m, narrower / 2)
     takes: Flags = both > least
     return takes
 
 
+def _aside(context: DriveContext) -> tuple[Floats, Floats]:
+    """How far (m) others are clear of ego on its left and on its right, in their lanes.
+
+    That is by the left and by the right bound of ego's lane, beside either.
+    """
+    own, others = context.ego_extents, context.extents
+    (right, _), (_, left) = own.from_bound(own.lane), own.from_bound(own.lane + 1)
+    return others.from_bound(own.lane + 1)[0] - left, right - others.from_bound(own.lane)[1]
+
+
 def _ego_at(context: DriveContext) -> Codes:
     """On which side of others ego is."""
-    return np.where(context.ego_extents.w < context.extents.w, RIGHT_OF, LEFT_OF)
+    on_left, on_right = _aside(context)
+    return np.where(on_left > on_right, RIGHT_OF, LEFT_OF)
 
 
 def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
@@ -90,43 +98,33 @@ def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
 
 def _lateral(context: DriveContext, inward: float, shift: float) -> Codes:
     """Sides, with others so much (m) further in ego's lane and all so much right of the map."""
-    own, others = _moved(context.ego_extents, -shift), _moved(context.extents, -shift)
+    own, others = context.ego_extents.moved(-shift), context.extents.moved(-shift)
     reach = context.thresholds.touching_m
     touched = context.touched
     if inward or shift:
         touched = lanes_touched(others, context.road, reach - inward)
-    sides = _across(own, *_lane_bounds(context, touched, others))
-    lane = context.road.lane_of(own.w)
-    straight = context.road.lanes.straight
-    beyond = np.maximum(others.w_max - straight[lane + 1], straight[lane] - others.w_min)
-    clear = np.maximum(others.w_min - own.w_max, own.w_min - others.w_max)
-    beside_way = (beyond > reach + inward) & (clear > reach + inward)
-    into = np.minimum(others.w_max - straight[lane], straight[lane + 1] - others.w_min)
-    in_the_way = (into > -inward) & (clear < inward - reach)
+    lane, clear = own.lane, np.maximum(*_aside(context))
+    # How far left of the two bounds of ego's lane they begin and end
+    (low_r, high_r), (low_l, high_l) = others.from_bound(lane), others.from_bound(lane + 1)
+    sides = _across(own, touched, low_l, high_r)
+    beside_way = (np.maximum(high_l, -low_r) > reach + inward) & (clear > reach + inward)
+    in_the_way = (np.minimum(high_r, -low_l) > -inward) & (clear < inward - reach)
     sides = np.where((sides == SAME_LANE) & beside_way, _ego_at(context), sides)
     return np.where(in_the_way, SAME_LANE, sides)
 
 
-def _moved(extents: RoadExtents, across: float) -> RoadExtents:
-    moved = {name: getattr(extents, name) + across for name in ("w_min", "w_max")}
-    return replace(extents, **moved) if across else extents
+def _across(own: RoadExtents, lanes: Flags, low: Floats, high: Floats) -> Codes:
+    """Ego's middle right of others' lanes (third axis), in or left of them; without any, of them.
 
-
-def _across(ego: RoadExtents, low: Floats, high: Floats) -> Codes:
-    return np.where(ego.w <= low, RIGHT_OF, np.where(ego.w >= high, LEFT_OF, SAME_LANE))
-
-
-def _lane_bounds(
-    context: DriveContext, touched: Flags, others: RoadExtents
-) -> tuple[Floats, Floats]:
-    straight = context.road.lanes.straight
-    first = touched.argmax(axis=-1)
-    last = touched.shape[-1] - touched[..., ::-1].argmax(axis=-1)
-    inside = touched.any(axis=-1)
-    return (
-        np.where(inside, straight[first], others.w_min),
-        np.where(inside, straight[last], others.w_max),
-    )
+    ``low``: how far (m) left of the left bound of ego's lane others begin; ``high``: how far left
+    of its right bound they end.
+    """
+    first = lanes.argmax(axis=-1)
+    last = lanes.shape[-1] - lanes[..., ::-1].argmax(axis=-1)
+    inside, lane = lanes.any(axis=-1), own.lane
+    right_of = own.middle_from(np.where(inside, first, lane + 1)) <= np.where(inside, 0.0, low)
+    left_of = own.middle_from(np.where(inside, last, lane)) >= np.where(inside, 0.0, high)
+    return np.where(right_of, RIGHT_OF, np.where(left_of, LEFT_OF, SAME_LANE))
 
 
 def gap(context: DriveContext) -> Floats:
@@ -161,11 +159,9 @@ def position(context: DriveContext) -> NDArray[np.str_]:
     """
     ego, others = context.ego_extents, context.extents
     walking = context.tracks.of_type("pedestrian")[:, None]
-    low, high = _lane_bounds(context, context.touched, others)
     s_min, s_max = others.s_min, others.s_max
     facing = np.where(walking, _facing(others), 0)
     across = walking & (facing % 2 == 1)
-    low, high = np.where(across, others.w_min, low), np.where(across, others.w_max, high)
     for start, end in context.road.crossings:
         on = across & (s_min < end) & (s_max > start)
         s_min, s_max = (
@@ -173,7 +169,8 @@ def position(context: DriveContext) -> NDArray[np.str_]:
             np.where(on, np.maximum(s_max, end), s_max),
         )
     column = _along(ego, s_min, s_max)
-    row = _across(ego, low, high)
+    low, high = others.from_bound(ego.lane + 1)[0], others.from_bound(ego.lane)[1]
+    row = _across(ego, context.touched & ~across[..., None], low, high)
     inside = (row == SAME_LANE) & (column == BESIDE)
     column = np.where(inside, np.where(ego.s < others.s, BEHIND, IN_FRONT_OF), column)
     tables = np.array([list(PAPER_TABLES[name].decode()) for name in _FACING])

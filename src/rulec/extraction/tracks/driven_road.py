@@ -90,10 +90,6 @@ class DrivenRoad:
         """The numbers of the lanelets at places."""
         return pieces_at(self.borders, s)
 
-    def lane_of(self, d: Floats) -> NDArray[intp]:
-        """The lanes at straightened offsets, the nearest beside the road."""
-        return pieces_at(self.lanes.straight, d)
-
 
 def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
     """The road of a chain of lanelets, extended straight at both ends.
@@ -118,9 +114,8 @@ def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -
     lanes = lanes_along(recording, entries, line, middle, numbers)
     probed = _straight_piece(pieces, int(pieces_at(borders, np.array(middle))))
     place = middle if borders[probed] <= middle <= borders[probed + 1] else borders[probed]
-    ((_, own_d),) = lanes.straightened(np.array([[place, 0.0]])).tolist()
-    count = len(lanes.straight) - 1
-    own = int(np.searchsorted(lanes.straight, own_d)) - 1 - numbers[probed]
+    count = lanes.there.shape[1]
+    own = int((lanes.from_bounds(np.array([[place, 0.0]])) > 0).sum()) - 1 - numbers[probed]
     own_lanes = tuple(int(np.clip(own + number, 0, count - 1)) for number in numbers)
     return DrivenRoad(
         rows=tuple(

@@ -2,14 +2,14 @@
 
 Rows are participants and columns time steps, as in ``Tracks``; NaN for who is not beside the road.
 Frenet coordinates are the arc length ``s`` along a reference line and the offset ``d`` from it (m,
-positive to the left); ``w`` is ``d`` between the lanes' straight bounds, so that lanes are numbered
-by it.
+positive to the left). Lanes get wider and narrower, so across them places are measured from each of
+their bounds: who reaches into a lane that opens by some centimetres is in it by so much.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy import intp
@@ -20,8 +20,7 @@ from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
 
-_BOUNDS = ("s_min", "s_max", "d_min", "d_max", "w_min", "w_max")
-
+_BOUNDS = ("s_min", "s_max", "d_min", "d_max")
 
 _MORE_M = 10.0
 
@@ -43,16 +42,18 @@ class EgoPieces:
 class RoadExtents:
     """The bounds and the motion of participants in coordinates of the road.
 
-    ``turned`` is the heading relative to the road's direction (rad, in [-pi, pi)), ``along`` and
-    ``across`` are the velocity along the road and to its left (m/s).
+    ``left_of_min`` and ``left_of_max`` say how far (m) left of each bound of the lanes (third axis,
+    from the right) bodies begin and end. ``turned`` is the heading relative to the road's direction
+    (rad, in [-pi, pi)), ``along`` and ``across`` are the velocity along the road and to its left
+    (m/s).
     """
 
     s_min: Floats
     s_max: Floats
     d_min: Floats
     d_max: Floats
-    w_min: Floats
-    w_max: Floats
+    left_of_min: Floats
+    left_of_max: Floats
     turned: Floats
     along: Floats
     across: Floats
@@ -63,9 +64,41 @@ class RoadExtents:
         return (self.s_min + self.s_max) / 2
 
     @property
-    def w(self) -> Floats:
-        """The middle across the road (m, straightened)."""
-        return (self.w_min + self.w_max) / 2
+    def left_of(self) -> Floats:
+        """How far (m) left of each bound of the lanes the middle is."""
+        return (self.left_of_min + self.left_of_max) / 2
+
+    @property
+    def lane(self) -> NDArray[intp]:
+        """The lane of the middle, the nearest one beside the road."""
+        last = self.left_of_min.shape[-1] - 2
+        lane: NDArray[intp] = np.clip((self.left_of >= 0).sum(axis=-1) - 1, 0, last)
+        return lane
+
+    @property
+    def inside(self) -> Floats:
+        """How far (m) bodies reach into each lane (last axis), less than 0 beside it."""
+        into = np.minimum(self.left_of_max[..., :-1], -self.left_of_min[..., 1:])
+        across = (self.left_of_max - self.left_of_min)[..., :-1]
+        return np.minimum(into, np.minimum(across, -np.diff(self.left_of, axis=-1)))
+
+    def from_bound(self, bound: NDArray[intp]) -> tuple[Floats, Floats]:
+        """How far (m) left of one bound of the lanes, by column, bodies begin and end."""
+        number = np.atleast_2d(bound)[..., None]
+        low = np.take_along_axis(self.left_of_min, number, axis=-1)
+        high = np.take_along_axis(self.left_of_max, number, axis=-1)
+        return low[..., 0], high[..., 0]
+
+    def middle_from(self, bound: NDArray[intp]) -> Floats:
+        """How far (m) left of one bound of the lanes the middle is."""
+        number = np.atleast_2d(bound)[..., None]
+        middle: Floats = np.take_along_axis(self.left_of, number, axis=-1)[..., 0]
+        return middle
+
+    def moved(self, across: float) -> RoadExtents:
+        """The same so much (m) farther left in the lanes."""
+        moved = {name: getattr(self, name) + across for name in ("left_of_min", "left_of_max")}
+        return replace(self, **moved) if across else self
 
     def of(self, row: int) -> RoadExtents:
         """One participant's extents, with an axis of length 1 for it."""
@@ -87,23 +120,28 @@ def road_extents(
     meets itself passes a place more than once.
     """
     bounds = {name: np.full(tracks.present.shape, np.nan) for name in _BOUNDS}
+    left_of = np.full((2, *tracks.present.shape, road.lanes.bounds.shape[1]), np.nan)
     located = list(tracks.outlines(repeated=expected is not None))
     if located:
         rows, columns = np.array([(row, column) for row, column, _ in located]).T
         near = expected and (expected[0][rows, columns], expected[1][rows, columns])
         outlines = [outline for _, _, outline in located]
-        low, high = outline_bounds(outlines, road.line, road.lanes, near)
-        standing = [row for row, body in enumerate(tracks.participants) if body.standing]
-        by_bound = np.stack((low, high), axis=2).reshape(-1, len(_BOUNDS)).T
-        for bound, values in zip(bounds.values(), by_bound, strict=True):
-            bound[rows, columns] = values
-            if expected is None:
-                bound[standing] = bound[standing][:, :1]
+        ends = outline_bounds(outlines, road.line, road.lanes.from_bounds, near)
+        for which, values in enumerate(ends):
+            left_of[which, rows, columns] = values[:, 2:]
+            for name, column in zip(_BOUNDS[which::2], values.T, strict=False):
+                bounds[name][rows, columns] = column
+        if expected is None:
+            standing = [row for row, body in enumerate(tracks.participants) if body.standing]
+            for array in (*bounds.values(), *left_of):
+                array[standing] = array[standing][:, :1]
     middle = (bounds["s_min"] + bounds["s_max"]) / 2
     directions = road.line.headings_at(np.nan_to_num(middle))
     cos, sin = np.cos(directions), np.sin(directions)
     return RoadExtents(
         **bounds,
+        left_of_min=left_of[0],
+        left_of_max=left_of[1],
         turned=turn(directions, tracks.heading),
         along=tracks.vx * cos + tracks.vy * sin,
         across=tracks.vy * cos - tracks.vx * sin,
@@ -143,9 +181,6 @@ def expected_places(
 
 def lanes_touched(extents: RoadExtents, road: DrivenRoad, touching_m: float) -> Flags:
     """Flags of lanes (last axis) that bodies reach into by more."""
-    right, left = road.lanes.straight[:-1], road.lanes.straight[1:]
-    low, high = extents.w_min[..., None], extents.w_max[..., None]
-    inside = np.minimum(high, left) - np.maximum(low, right)
     # A narrow body, such as a pedestrian's, is in a lane with most of it
-    enough = np.minimum(touching_m, (high - low) / 2)
-    return (inside > enough) & road.lanes.existing_at(extents.s)
+    enough = np.minimum(touching_m, (extents.left_of_max - extents.left_of_min)[..., :-1] / 2)
+    return (extents.inside > enough) & road.lanes.existing_at(extents.s)

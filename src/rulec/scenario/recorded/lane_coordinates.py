@@ -8,7 +8,7 @@ have the width that they have there.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 from operator import itemgetter
@@ -53,22 +53,25 @@ class Lanes:
     there: NDArray[np.bool_]
 
     def straightened(self, places: Points) -> Points:
-        """Places (rows ``s``, ``d``) relative to the lanes' straight bounds."""
+        """The ``d`` of places (rows ``s``, ``d``) between the lanes' straight bounds, a column."""
+        left_of = self.from_bounds(places)
+        lane = np.clip((left_of >= 0).sum(axis=1) - 1, 0, left_of.shape[1] - 2)
+        row = np.arange(len(places))
+        from_right, from_left = left_of[row, lane], left_of[row, lane + 1]
+        low, high = self.straight[lane], self.straight[lane + 1]
+        stretched = low + from_right * (high - low) / (from_right - from_left)
+        beyond = np.where(from_right < 0, low + from_right, high + from_left)
+        inside = (from_right >= 0) & (from_left <= 0)
+        return np.column_stack((np.where(inside, stretched, beyond),))
+
+    def from_bounds(self, places: Points) -> Points:
+        """How far (m) left of each bound (columns) places are."""
         at = np.nan_to_num(places[:, 0])
         before = pieces_at(self.s, at)
         part = (at - self.s[before]) / (self.s[before + 1] - self.s[before])
         part = np.clip(part, 0.0, 1.0)[:, None]
         bounds = self.bounds[before] * (1 - part) + self.bounds[before + 1] * part
-        d = places[:, 1:]
-        lane = np.clip((bounds <= d).sum(axis=1) - 1, 0, bounds.shape[1] - 2)
-        row = np.arange(len(places))
-        right, left = bounds[row, lane], bounds[row, lane + 1]
-        low, high = self.straight[lane], self.straight[lane + 1]
-        offset = d[:, 0] - right
-        inside = (offset >= 0) & (d[:, 0] <= left)
-        stretched = low + offset * (high - low) / (left - right)
-        beyond = np.where(offset < 0, low + offset, high + d[:, 0] - left)
-        return np.stack((places[:, 0], np.where(inside, stretched, beyond)), axis=1)
+        return places[:, 1:] - bounds
 
     def existing_at(self, s: _Values) -> NDArray[np.bool_]:
         """Flags of the lanes (last axis, from the right) that exist at places."""
@@ -231,18 +234,16 @@ def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> 
 def outline_bounds(
     outlines: Sequence[Points],
     line: ReferenceLine,
-    lanes: Lanes,
+    across: Callable[[Points], Points],
     expected: tuple[_Values, _Values] | None = None,
 ) -> tuple[_Values, _Values]:
-    """The least and the greatest coordinates of each outline, a row each.
+    """The least and the greatest coordinates of each outline, of which there is one, a row each.
 
-    Columns: ``s``, ``d`` (m from the line), ``w`` (m, ``d`` between the lanes' straight bounds).
-    NaN for outlines that are not beside the line. Corners are projected near the foot of their
-    middle, so that no body is torn apart where a road meets itself. ``expected``: for each middle
-    about which ``s``, and how far from there, its foot is.
+    Columns: ``s``, ``d`` (m from the line), and those that ``across`` gives of these two. NaN for
+    outlines that are not beside the line. Corners are projected near the foot of their middle, so
+    that no body is torn apart where a road meets itself. ``expected``: for each middle about which
+    ``s``, and how far from there, its foot is.
     """
-    if not outlines:
-        return np.empty((0, 3)), np.empty((0, 3))
     counts = np.array([len(outline) for outline in outlines])
     starts = np.append(0, np.cumsum(counts)[:-1])
     corners = np.concatenate(outlines)
@@ -253,7 +254,7 @@ def outline_bounds(
     around = np.repeat(found[:, 0], counts)
     feet = line.coordinates_near(corners, around, np.repeat(reach, counts))
     feet[np.isnan(around)] = np.nan
-    coordinates = np.column_stack((feet, lanes.straightened(feet)[:, 1]))
+    coordinates = np.column_stack((feet, across(feet)))
     return np.minimum.reduceat(coordinates, starts), np.maximum.reduceat(coordinates, starts)
 
 
@@ -281,9 +282,9 @@ def crossings_along(
         if "crosswalk" not in lanelet.types:
             continue
         outline = np.concatenate((lanelet.right, lanelet.left[::-1], lanelet.right[:1]))
-        places = lanes.straightened(line.coordinates(densified(outline, _EDGE_EVERY_M)))
-        d = places[:, 1]
-        on_road = places[(d > lanes.straight[0]) & (d < lanes.straight[-1]), 0]
+        places = line.coordinates(densified(outline, _EDGE_EVERY_M))
+        left_of = lanes.from_bounds(places)
+        on_road = places[(left_of[:, 0] > 0) & (left_of[:, -1] < 0), 0]
         if len(on_road):
             low, high = max(float(on_road.min()), start), min(float(on_road.max()), end)
             if high - low >= _NARROWEST_M:

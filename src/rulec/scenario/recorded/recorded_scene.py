@@ -75,7 +75,7 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
             message, "choose with --reference a lanelet of the road that ego is on", file
         )
     lanes = lanes_along(recording, way, line, ego_s)
-    ((_, d),) = lanes.straightened(np.array([[ego_s, ego_d]])).tolist()
+    ((d,),) = lanes.straightened(np.array([[ego_s, ego_d]])).tolist()
     if not lanes.straight[0] <= d <= lanes.straight[-1]:
         message = f"ego is beside the road of lanelet {own}, {abs(ego_d):.1f} m from its middle"
         raise choice_error(

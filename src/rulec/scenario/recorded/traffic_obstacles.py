@@ -53,7 +53,9 @@ class TrafficView:
         """The bounds of outlines in the scenario; None far from the road."""
         # A closed road comes by a place again, too far away to be seen
         near = np.full(len(outlines), self.ego_s), np.full(len(outlines), REACH_M + _FAR_M)
-        low, high = outline_bounds(outlines, self.line, self.lanes, near)
+        if not outlines:
+            return []
+        low, high = outline_bounds(outlines, self.line, self.lanes.straightened, near)
         low[:, 2], high[:, 2] = kept_off_touched(low[:, 2], high[:, 2], self.lanes.straight)
         low, high = low[:, ::2] - (self.ego_s, 0.0), high[:, ::2] - (self.ego_s, 0.0)
         wide = Box(

@@ -65,10 +65,9 @@ def _crossing_uses(
     """
     start, end = stretch
     others, limits = context.extents, context.thresholds
-    straight = context.road.lanes.straight
     # Room for who does not walk exactly between the marks
     beside = (others.s_max > start - limits.kerb_m) & (others.s_min < end + limits.kerb_m)
-    to_road = np.maximum(np.maximum(straight[0] - others.w_max, others.w_min - straight[-1]), 0.0)
+    to_road = np.maximum(-others.left_of_max[..., 0], others.left_of_min[..., -1]).clip(0.0)
     walks = context.tracks.speed * KMH >= limits.standing_kmh
     towards = _towards(context)
     crossing = beside & on_it & context.tracks.on_lane
@@ -106,9 +105,8 @@ def _too_late(context: DriveContext, uses: NDArray[intp]) -> tuple[Flags, Flags]
 
 def _towards(context: DriveContext) -> Floats:
     """The speed towards the middle of the road, across it (m/s)."""
-    straight = context.road.lanes.straight
-    left = context.extents.across
-    return np.where(context.extents.w < (straight[0] + straight[-1]) / 2, left, -left)
+    left, left_of = context.extents.across, context.extents.left_of
+    return np.where(left_of[..., 0] + left_of[..., -1] < 0, left, -left)
 
 
 def _past_ego(context: DriveContext) -> Flags:
@@ -117,13 +115,13 @@ def _past_ego(context: DriveContext) -> Flags:
     Who turns along the road then has left them behind too, until they walk back, for ``away_s``. Of
     ego's body counts the middle if it turns away from them: what reaches farther is its rear.
     """
-    straight, own, others = context.road.lanes.straight, context.ego_extents, context.extents
-    low = np.where(own.across[0] > 0, own.w[0], own.w_min[0])
-    high = np.where(own.across[0] < 0, own.w[0], own.w_max[0])
-    right = np.minimum(straight[context.ego_lane], low)
-    left = np.maximum(straight[context.ego_lane + 1], high)
+    own, others, bound = context.ego_extents, context.extents, context.ego_lane
+    low = np.where(own.across > 0, own.middle_from(bound), own.from_bound(bound)[0])
+    high = np.where(own.across < 0, own.middle_from(bound + 1), own.from_bound(bound + 1)[1])
+    on_left = others.from_bound(bound + 1)[0] > np.maximum(high, 0.0)
+    on_right = others.from_bound(bound)[1] < np.minimum(low, 0.0)
     least = context.thresholds.standing_kmh / KMH
-    beyond = np.where(others.w_min > left, 1.0, np.where(others.w_max < right, -1.0, 0.0))
+    beyond = np.where(on_left, 1.0, np.where(on_right, -1.0, 0.0))
     away = latest(beyond * others.across > least)
     back = latest((beyond == 0) | (beyond * others.across < -least))
     longest = round(context.thresholds.away_s / context.recording.step_s)

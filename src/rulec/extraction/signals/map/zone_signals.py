@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.ego_signals import room_beside
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.driven_road import runs_along
@@ -118,10 +119,7 @@ def _directed_stretches(context: DriveContext) -> Stretches:
 
 
 def _at_edge(context: DriveContext) -> Flags:
-    straight, lane = context.road.lanes.straight, context.steady_lane
-    own, edge = context.ego_extents, context.thresholds.at_edge_m
-    right: Floats = own.w_min[0] - straight[lane]
-    left: Floats = straight[lane + 1] - own.w_max[0]
+    (right, left), edge = room_beside(context), context.thresholds.at_edge_m
     return (np.minimum(right, left) < edge) & (np.abs(right - left) > edge)
 
 
