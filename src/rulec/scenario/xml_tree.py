@@ -22,6 +22,9 @@ LONGEST_TEXT = 1_000
 LONGEST_ID = 18
 """Digits."""
 
+SMALLEST = 1e-100
+"""Numbers closer to 0 are 0: geometry squares what it divides by, which then is none."""
+
 
 @dataclass(slots=True)
 class XmlTree:
@@ -82,7 +85,7 @@ class XmlTree:
             value = LARGEST
         if not abs(value) < LARGEST or len(text) == LONGEST_TEXT:
             raise self.wrong(_said(key or self.name, text), f"a number below {LARGEST:.0e}")
-        return value
+        return value if abs(value) > SMALLEST else 0.0
 
     def whole(self) -> int:
         """The whole number that the text spells, which must not be huge."""
