@@ -14,6 +14,7 @@ import numpy as np
 import shapely
 from commonroad.common.file_reader import CommonRoadFileReader
 from commonroad.common.util import Interval
+from commonroad.geometry.occupancy.circle_occupancy import CircleOccupancy
 
 LAMPS = (
     "indicator_left",
@@ -146,6 +147,9 @@ def occupied(prediction):
 
 def corners(occupancy):
     """The corners of an area, or of what is around several."""
+    if isinstance(occupancy, CircleOccupancy):
+        # Its own polygon has half the radius, unlike what it draws and says to contain a point
+        return places(occupancy.circle_center.buffer(occupancy.radius).exterior.coords[:-1])
     shape = occupancy.shapely_object
     around = shape if shape.geom_type == "Polygon" else shape.convex_hull
     return places(around.exterior.coords[:-1])

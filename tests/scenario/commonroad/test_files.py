@@ -4,6 +4,7 @@ import subprocess
 import sys
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rulec.diagnostics import RulecError
@@ -78,6 +79,14 @@ def test_areas_and_intervals_are_taken_whole(written):
     (car,) = load_scenario(written(text)).obstacles
     assert car.length > 10
     assert car.width > 4
+
+
+def test_a_round_body_has_its_radius_in_every_direction(written):
+    box = "<rectangle><length>4</length><width>2</width></rectangle>"
+    text = ROAD_XML.replace(box, "<circle><radius>0.5</radius></circle>")
+    (person,) = read_recording(written(text)).participants
+    places = person.outlines[0] - (40, 0)
+    assert np.hypot(*places.T) == pytest.approx(0.5, abs=0.002)
 
 
 @pytest.mark.parametrize(

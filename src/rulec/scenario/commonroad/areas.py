@@ -158,7 +158,7 @@ def _geometry(part: Part) -> shapely.Polygon:
             around = shapely.Polygon([(rear, -y), (rear, y), (front, y), (front, -y)])
             return _placed(around, part.x, part.y, part.heading)
         case Circle():
-            return shapely.Point(part.x, part.y).buffer(part.radius / 2)
+            return shapely.Point(part.x, part.y).buffer(part.radius)
         case Polygon():
             return part.outline
 
