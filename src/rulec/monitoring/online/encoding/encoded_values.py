@@ -159,6 +159,7 @@ class MonitorInput:
     places: tuple[int, ...]
     number: NumberRead | None = None
     variables: tuple[str, ...] = ()
+    _floors: tuple[float, ...] = ()
 
     def digit(self, encoded: Any, breakpoints: Breakpoints) -> Any:
         """Digit of an encoded value; counts and sums are their own.
@@ -170,7 +171,7 @@ class MonitorInput:
         floors = breakpoints[self.name]
         # A number has reached just these of its own floors that the highest one of all has reached.
         reached = encoded if floors is None else floors[encoded - 1]
-        return bisect_right(scale(self.number).floors, reached)
+        return bisect_right(self._floors, reached)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -188,7 +189,8 @@ def _input(
     variables: tuple[str, ...] = (),
 ) -> MonitorInput:
     # Inputs are looked up all the time, and hashing a sum takes long.
-    return MonitorInput(name, places, number, variables)
+    floors = () if number is None else scale(number).floors
+    return MonitorInput(name, places, number, variables, floors)
 
 
 def monitor_inputs(
