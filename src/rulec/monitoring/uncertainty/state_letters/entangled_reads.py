@@ -91,6 +91,7 @@ class EntangledReads:
             if _count_in(read) or any(places[subject] > 1 for subject in about[n])
         )
         self._reads = [reads[n] for n in self.numbers]
+        self._ready = [read_digits(read) for read in self._reads]
         read = set[Subject]().union(*[about[n] for n in self.numbers])
         self.subjects = tuple(sorted(read | facts if read & facts else read))
         often = Counter(one for own in self._reads for one in deciding(own, binding, everybody))
@@ -132,7 +133,7 @@ class EntangledReads:
     ) -> tuple[Letters, bool]:
         given = with_values({}, dict(zip(self.subjects, values, strict=True)))
         state = StateView(given, there, self._everybody.vocabulary)
-        digits = [read_digits(read).in_state(self._binding, state) for read in self._reads]
+        digits = [read.in_state(self._binding, state) for read in self._ready]
         if all(own & (own - 1) == 0 for own in digits):
             return (tuple(digits),), True
         joint = joint_digits(self._reads, self._binding, state, self._axioms)

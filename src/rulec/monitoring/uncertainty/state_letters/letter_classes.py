@@ -73,7 +73,9 @@ class RuleLetters:
         self.entangled = entangled
         own = range(len(self.reads))
         self.independent = tuple([n for n in own if n not in entangled.numbers])
-        self._classes = classes
+        # Which place a read has among the others, and then the entangled ones.
+        self._order = sorted(own, key=(*self.independent, *entangled.numbers).__getitem__)
+        self._diagram = classes.diagram
         self._known: dict[tuple[int, ...], int] = {}
 
     def classes(self, keys: Sequence[tuple[int, ...]]) -> list[int]:
@@ -88,19 +90,18 @@ class RuleLetters:
         """The classes, as bits, of the letters with a key."""
         known = self._known.get(key)
         if known is None:
-            known = self._classes.of(self.letters(key))
+            known = 0
+            for cube in self.letters(key):
+                known |= self._diagram.classes(cube)
             _keep(self._known, key, known)
         return known
 
     def letters(self, key: tuple[int, ...]) -> Letters:
         """The letters with a key."""
-        numbers = self.entangled.numbers
-        if not numbers:
+        if not self.entangled.numbers:
             return (key,)
         found, _ = self.entangled.found[key[-1]]
-        # Which place a read has among the others, and then the entangled ones.
-        order = sorted(range(len(self.reads)), key=(*self.independent, *numbers).__getitem__)
-        alone = key[:-1]
+        alone, order = key[:-1], self._order
         return tuple([tuple([(*alone, *cube)[n] for n in order]) for cube in found])
 
 
