@@ -14,8 +14,8 @@ from rulec.monitoring.online.encoding.encoded_values import Encoded, MonitorInpu
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.uncertainty.state_letters.completions import MissingValueError
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.trace import State
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN

@@ -23,13 +23,13 @@ from rulec.monitoring.online.four_valued import (
     MonitorEdge,
     linked_edges,
 )
-from rulec.monitoring.uncertainty.state_letters.completions import MissingValueError
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads, local_reads
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     names_of_read,
     possible_digits,
 )
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
 

@@ -13,9 +13,9 @@ from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.uncertainty.state_letters.completions import Subject, subjects_of_read
 from rulec.monitoring.uncertainty.state_letters.linear_arrangement import LinearPlane, sample_points
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject, subjects_of_read
 from rulec.trace import Value
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue

@@ -8,8 +8,8 @@ from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.monitoring.bindings import Binding
-from rulec.monitoring.uncertainty.state_letters.completions import Subject
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.trace import Trace, Value
 from rulec.vocabulary import Vocabulary

@@ -28,7 +28,6 @@ from rulec.monitoring.batch.uncertain.set_table import (
 from rulec.monitoring.batch.verdict_columns import RuleBinding, VerdictColumns
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules
-from rulec.monitoring.uncertainty.state_letters.completions import Subject
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
@@ -36,6 +35,7 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
 )
 from rulec.monitoring.uncertainty.state_letters.letter_classes import RuleLetters
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from rulec.trace import Value

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
 from math import prod
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -19,74 +19,32 @@ from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import (
     Between,
-    PartialState,
     Unknown,
     holds,
     number_of,
     weighted_sum,
 )
 from rulec.monitoring.uncertainty.state_letters.linear_arrangement import LinearPlane, sample_points
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
+    CompletedView,
+    MissingValueError,
+    PartialView,
+    Subject,
+    candidates,
+    is_unknown,
+    unknown_in_read,
+    unknown_subjects,
+)
 from rulec.trace import Value
-from rulec.vocabulary import Enumeration, Quantity, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.vocabulary import Enumeration, Quantity
+from rulec.vocabulary.partial_values import Interval
 from rulec.vocabulary.vocabulary_model import choices
-
-Subject: TypeAlias = tuple[str, tuple[str, ...]]
-"""A declaration's name and the objects that it is asked of."""
 
 Digits: TypeAlias = tuple[int, ...]
 """A digit for each read."""
 
 MOST_COMPLETIONS = 1 << 12
 """Unknown values with more joint completions are taken to be independent."""
-
-
-class MissingValueError(Exception):
-    """Some completion needs a value that is neither given nor has a default."""
-
-    def __init__(self, name: str, objects: tuple[str, ...]) -> None:
-        super().__init__(name)
-        self.subject = name, objects
-
-
-class PartialView(PartialState, Protocol):
-    """A state, as a ``StateView``, of which some values may be partial."""
-
-    def given(self, name: str, items: tuple[str, ...]) -> PartialValue | None:
-        """The value, be it partial, that the state gives, or the declared default."""
-
-
-@dataclass(frozen=True, slots=True)
-class CompletedView:
-    """A state in which some values are supposed."""
-
-    view: PartialView
-    supposed: Mapping[Subject, Value | Fraction]
-
-    @property
-    def objects(self) -> Mapping[str, str]:
-        """The objects that are there, with their types."""
-        return self.view.objects
-
-    @property
-    def vocabulary(self) -> Vocabulary:
-        """The declarations."""
-        return self.view.vocabulary
-
-    def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
-        """The value of a signal or an enumeration."""
-        supposed = self.supposed.get((name, items))
-        if supposed is None or isinstance(supposed, Fraction):
-            return self.view.value(name, items)
-        return supposed
-
-    def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
-        """The value of a quantity: exact."""
-        supposed = self.supposed.get((name, items))
-        if supposed is None:
-            return self.view.number(name, items)
-        assert not isinstance(supposed, str)
-        return exact(supposed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +131,7 @@ def _links_of_reads(
         match read:
             case NumberRead(terms=((_, ltl.Count() as count),)):
                 counted[number] = 0
-                for item in _candidates(count, view):
+                for item in candidates(count, view):
                     inner = {**binding, count.variable: item}
                     value = holds(count.body, inner, view)
                     if isinstance(value, Unknown):
@@ -193,62 +151,6 @@ def _is_sure(read: Read | NumberRead, binding: Mapping[str, str], view: PartialV
     if not (isinstance(total, Between) and isinstance(read, NumberRead)):
         return False
     return read.digit(total.low) == read.digit(total.high)
-
-
-def unknown_in_read(
-    read: Read | NumberRead, binding: Mapping[str, str], view: PartialView
-) -> frozenset[Subject]:
-    """The unknown subjects of a read."""
-    return frozenset(x for x in subjects_of_read(read, binding, view) if _is_unknown(x, view))
-
-
-def subjects_of_read(
-    read: Read | NumberRead, binding: Mapping[str, str], view: PartialView
-) -> Iterator[Subject]:
-    """What a read depends on, with repetitions."""
-    if isinstance(read, Read):
-        yield read.name, tuple([binding[variable] for variable in read.variables])
-    else:
-        for _, term in read.terms:
-            yield from subjects_in(term, binding, view)
-
-
-def unknown_subjects(
-    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
-) -> frozenset[Subject]:
-    """The unknown subjects of which a formula or a term speaks."""
-    return frozenset(x for x in subjects_in(what, environment, view) if _is_unknown(x, view))
-
-
-def _is_unknown(subject: Subject, view: PartialView) -> bool:
-    given = view.given(*subject)
-    return given is UNKNOWN or isinstance(given, Interval)
-
-
-def subjects_in(
-    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
-) -> Iterator[Subject]:
-    """What a formula or a term speaks of, for these objects and those that may count."""
-    match what:
-        case ltl.Atom(name, arguments) | ltl.QuantityTerm(name, arguments):
-            yield name, tuple([environment[variable] for variable in arguments])
-        case ltl.Count(variable, _, body):
-            for item in _candidates(what, view):
-                yield from subjects_in(body, {**environment, variable: item}, view)
-        case ltl.Comparison(terms):
-            for _, term in terms:
-                yield from subjects_in(term, environment, view)
-        case ltl.Unary(_, operand):
-            yield from subjects_in(operand, environment, view)
-        case ltl.Binary(_, left, right):
-            yield from subjects_in(left, environment, view)
-            yield from subjects_in(right, environment, view)
-
-
-def _candidates(count: ltl.Count, view: PartialView) -> Iterator[str]:
-    return (
-        name for name, own in view.objects.items() if view.vocabulary.is_subtype(own, count.type)
-    )
 
 
 def _clusters(
@@ -410,7 +312,7 @@ def _planes_of_sum(
         match term:
             case ltl.QuantityTerm(name, arguments):
                 subject = name, tuple([environment[variable] for variable in arguments])
-                if _is_unknown(subject, view):
+                if is_unknown(subject, view):
                     number = ltl.QuantityTerm(*subject)
                     coefficients[number] = coefficients.get(number, Fraction(0)) + factor
                 else:
@@ -419,7 +321,7 @@ def _planes_of_sum(
                         return  # a value is missing, which a completion may do without
                     limits = [each - factor * known for each in limits]
             case ltl.Count(variable, _, body):
-                items = list(_candidates(term, view))
+                items = list(candidates(term, view))
                 limits = [each - factor * n for each in limits for n in range(len(items) + 1)]
                 for item in items:
                     yield from _planes_in(body, {**environment, variable: item}, view)

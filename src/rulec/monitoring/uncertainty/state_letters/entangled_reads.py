@@ -18,16 +18,16 @@ from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import Unknown, holds
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.state_letters.completions import (
-    Subject,
-    joint_digits,
-    subjects_in,
-    subjects_of_read,
-)
+from rulec.monitoring.uncertainty.state_letters.completions import joint_digits
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     names_of_read,
     read_digits,
+)
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
+    Subject,
+    subjects_in,
+    subjects_of_read,
 )
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import PartialValue

@@ -13,11 +13,6 @@ from rulec.monitoring.axiom_violations import StatePlace, impossible_state
 from rulec.monitoring.bindings import Binding
 from rulec.monitoring.letter_reader import missing_value, present_in
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.state_letters.completions import (
-    MissingValueError,
-    Subject,
-    unknown_in_read,
-)
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
@@ -27,6 +22,11 @@ from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClas
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     ReadDigits,
+)
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
+    MissingValueError,
+    Subject,
+    unknown_in_read,
 )
 from rulec.trace import Trace, Value
 from rulec.vocabulary import Vocabulary

@@ -13,7 +13,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import Between, Unknown, holds, weighted_sum
-from rulec.monitoring.uncertainty.state_letters.completions import (
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     MissingValueError,
     PartialView,
     Subject,

@@ -1,0 +1,125 @@
+"""What reads and formulas speak of in a state, and of that what is not known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Protocol, TypeAlias
+
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.thresholds import exact
+from rulec.logic import formula as ltl
+from rulec.logic.kleene import PartialState, Unknown
+from rulec.trace import Value
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+
+Subject: TypeAlias = tuple[str, tuple[str, ...]]
+"""A declaration's name and the objects that it is asked of."""
+
+
+class MissingValueError(Exception):
+    """Some completion needs a value that is neither given nor has a default."""
+
+    def __init__(self, name: str, objects: tuple[str, ...]) -> None:
+        super().__init__(name)
+        self.subject = name, objects
+
+
+class PartialView(PartialState, Protocol):
+    """A state, as a ``StateView``, of which some values may be partial."""
+
+    def given(self, name: str, items: tuple[str, ...]) -> PartialValue | None:
+        """The value, be it partial, that the state gives, or the declared default."""
+
+
+@dataclass(frozen=True, slots=True)
+class CompletedView:
+    """A state in which some values are supposed."""
+
+    view: PartialView
+    supposed: Mapping[Subject, Value | Fraction]
+
+    @property
+    def objects(self) -> Mapping[str, str]:
+        """The objects that are there, with their types."""
+        return self.view.objects
+
+    @property
+    def vocabulary(self) -> Vocabulary:
+        """The declarations."""
+        return self.view.vocabulary
+
+    def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
+        """The value of a signal or an enumeration."""
+        supposed = self.supposed.get((name, items))
+        if supposed is None or isinstance(supposed, Fraction):
+            return self.view.value(name, items)
+        return supposed
+
+    def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
+        """The value of a quantity: exact."""
+        supposed = self.supposed.get((name, items))
+        if supposed is None:
+            return self.view.number(name, items)
+        assert not isinstance(supposed, str)
+        return exact(supposed)
+
+
+def unknown_in_read(
+    read: Read | NumberRead, binding: Mapping[str, str], view: PartialView
+) -> frozenset[Subject]:
+    """The unknown subjects of a read."""
+    return frozenset(x for x in subjects_of_read(read, binding, view) if is_unknown(x, view))
+
+
+def subjects_of_read(
+    read: Read | NumberRead, binding: Mapping[str, str], view: PartialView
+) -> Iterator[Subject]:
+    """What a read depends on, with repetitions."""
+    if isinstance(read, Read):
+        yield read.name, tuple([binding[variable] for variable in read.variables])
+    else:
+        for _, term in read.terms:
+            yield from subjects_in(term, binding, view)
+
+
+def unknown_subjects(
+    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
+) -> frozenset[Subject]:
+    """The unknown subjects of which a formula or a term speaks."""
+    return frozenset(x for x in subjects_in(what, environment, view) if is_unknown(x, view))
+
+
+def is_unknown(subject: Subject, view: PartialView) -> bool:
+    """Whether no single value is known."""
+    given = view.given(*subject)
+    return given is UNKNOWN or isinstance(given, Interval)
+
+
+def subjects_in(
+    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
+) -> Iterator[Subject]:
+    """What a formula or a term speaks of, for these objects and those that may count."""
+    match what:
+        case ltl.Atom(name, arguments) | ltl.QuantityTerm(name, arguments):
+            yield name, tuple([environment[variable] for variable in arguments])
+        case ltl.Count(variable, _, body):
+            for item in candidates(what, view):
+                yield from subjects_in(body, {**environment, variable: item}, view)
+        case ltl.Comparison(terms):
+            for _, term in terms:
+                yield from subjects_in(term, environment, view)
+        case ltl.Unary(_, operand):
+            yield from subjects_in(operand, environment, view)
+        case ltl.Binary(_, left, right):
+            yield from subjects_in(left, environment, view)
+            yield from subjects_in(right, environment, view)
+
+
+def candidates(count: ltl.Count, view: PartialView) -> Iterator[str]:
+    """The objects that may count."""
+    return (
+        name for name, own in view.objects.items() if view.vocabulary.is_subtype(own, count.type)
+    )
