@@ -88,6 +88,17 @@ def test_one_that_would_have_come_at_once_was_held_up():
     assert found.world["conflict_from_right"][3]
 
 
+@pytest.mark.parametrize(("front", "conflict"), [(-1.3, False), (-0.2, True)])
+def test_who_stops_too_far_ahead_lets_one_pass_unless_it_runs_into_it(front, conflict):
+    """Their ways meet from 1.6 m before the other's middle on; its body begins 1 m before that."""
+    ego = vehicle(7, {k: (min(-22 + 5 * k, front - 2), 0) for k in STEPS}, speed=0)
+    places = {k: (0, -3 + 10 * (k / 2 - 3)) for k in STEPS}
+    other = vehicle(8, places, speed=10, heading=np.pi / 2)
+    found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
+    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    assert signals.world["conflict_from_right"].any() == conflict
+
+
 def test_signs_order_a_junction_where_the_map_has_them():
     steady = lambda t: -50.0 + t  # noqa: E731
     free = signals(NORTH, steady, np.pi / 2)

@@ -2,7 +2,8 @@
 
 Another one is in conflict with ego if ego gets there first although the other one would be there
 within ``yielding_s`` after ego, or does come within ``held_up_s`` although it would have been there
-so soon; and if ego drives into the side of one that is there. Whom ego lets pass is in none.
+so soon; and if ego drives into the side of one that is there. Whom ego lets pass is in none, but
+for one that runs into it.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from typing import TypeAlias
 
 import numpy as np
+import shapely
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
@@ -45,10 +47,25 @@ def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int,
         return _runs_into(context, (own, enters), foe)
     speed = context.surroundings.passages.tracks.speed[own.row, enters:passed]
     waits = speed.min(initial=np.inf) < SLOWEST_MPS
+    held_up = _held_up(context, (own, enters, leaves), other, comes)
     if passed is not None and (leaves is None or passed < leaves) and waits:
         # Who waits a little too far ahead lets others pass all the same
-        return None
-    return _held_up(context, (own, enters, leaves), other, comes)
+        collide = held_up and _collide(context, own, other, slice(enters, passed))
+        return (held_up[0], True) if held_up and collide else None
+    return held_up
+
+
+def _collide(context: DriveContext, own: Passage, other: Passage, columns: slice) -> bool:
+    """True if two bodies overlap in one of the columns, by more than places may be wrong."""
+    tracks = context.surroundings.passages.tracks
+    ours, theirs = (tracks.participants[passage.row].outlines for passage in (own, other))
+    steps = range(tracks.first + columns.start, tracks.first + columns.stop)
+    inner = -context.tolerances.place_m
+    return any(
+        shapely.Polygon(ours[step]).buffer(inner).intersects(shapely.Polygon(theirs[step]))
+        for step in steps
+        if step in ours and step in theirs
+    )
 
 
 def _runs_into(
