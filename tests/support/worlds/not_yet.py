@@ -10,8 +10,8 @@ STORED = {}
 STORED_UNDECIDED = {}
 """Rules under which a true violation is open, or not judged."""
 
-SIMULATED = {"priority": {"give_way_sign"}}
-"""The same of simulated worlds: of 76 who ignored a sign one is not found."""
+SIMULATED = {}
+"""The same of simulated worlds."""
 
 SIMULATED_UNDECIDED = {}
 """The same of simulated worlds."""
