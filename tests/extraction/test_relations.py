@@ -114,11 +114,12 @@ EXACT = "DEU_Test-1"
 
 
 def test_who_is_on_the_mark_and_clear_of_ego_is_not_in_its_lane():
-    # They reach 0.5 and 1.2 m into the lane, 0.5 m clear of ego, and not
-    assert sides(2.5, 1.8, name=EXACT) == ["right_of", "same_lane"]
-    # Its middle is beyond the mark, and only 0.3 m of it in ego's way: it is leaving, or coming
+    # They reach 0.5 and 1.6 m into the lane, 0.5 m clear of ego, and not
+    assert sides(2.5, 1.4, name=EXACT) == ["right_of", "same_lane"]
+    # It is leaving, or coming: less than a quarter of it, 0.2 m, is in ego's way
+    assert sides(1.8, name=EXACT) == [None]
+    # Where its middle is beyond the mark less than half, and more
     assert sides(2.1, own_y=0.4, name=EXACT) == [None]
-    # Or half of it
     assert sides(2.1, own_y=1.2, name=EXACT) == ["same_lane"]
     # Ego keeps 0.7 m to the right: there is 0.5 m between them
     assert sides(1.8, own_y=-0.7, name=EXACT) == ["right_of"]
@@ -138,7 +139,7 @@ def test_who_hardly_reaches_in_but_is_in_the_way_of_ego_is_in_its_lane():
 
 def test_within_the_tolerance_of_places_nobody_knows_who_is_in_the_lane():
     # Video is good to 0.3 m: 0.5 and 0.1 m between them may be 0.2 and 0.4 m
-    assert sides(2.5, 2.1, 1.6, 2.65) == [None, None, "same_lane", "right_of"]
+    assert sides(2.5, 2.1, 1.4, 2.65) == [None, None, "same_lane", "right_of"]
 
 
 def test_a_map_that_lies_off_the_tracks_does_not_tell_lanes():

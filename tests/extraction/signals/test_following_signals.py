@@ -48,23 +48,23 @@ def test_who_may_be_slowed_down_harder_may_have_come_later():
 
 
 def test_who_comes_in_is_known_to_have_just_come():
-    """Its side is 0.5 m clear of ego's, at y = 1, in state 2, and 0.25 m beyond it in state 3."""
-    least, most = times(drifting(8, 30, [4.0, 3.25, 2.5, 1.75, 1.0, 0.25]), steps=6)
+    """Its side is 0.5 m clear of ego's, at y = 1, in state 2, and 0.6 m beyond it in state 3."""
+    least, most = times(drifting(8, 30, [4.0, 3.25, 2.5, 1.4, 1.0, 0.25]), steps=6)
     assert least == [0, 0, 0, 0, 0.5, 1.0]
     assert most == [0, 0, 0, 0.5, 1.0, 1.5]
 
 
 def test_when_it_came_in_is_known_no_better_than_places():
     """At y = 2.3 it is 0.3 m clear: in a lane by as little or not, and so for half a second."""
-    least, most = times(drifting(8, 30, [4.0, 3.0, 2.3, 1.75, 1.0, 0.25]), steps=6)
+    least, most = times(drifting(8, 30, [4.0, 3.0, 2.3, 1.4, 1.0, 0.25]), steps=6)
     assert least == [0, 0, 0, 0, 0.5, 1.0]
     assert most == [0, 0, 0.5, 1.0, 1.5, 2.0]
 
 
 def test_who_is_only_just_in_the_lane_may_have_come_this_moment():
-    """Its middle is 0.1 m in the lane, and 0.4 m from where it would be clear of ego's side."""
-    least, most = times(drifting(8, 30, [1.9, 1.9, 1.9, 1.9]))
-    assert 0 < least[0] < sqrt(2 * 2.0 * (0.4 - PLACE_M)) / 2.0
+    """Its side is 0.55 m in ego's way, and 0.85 m from where it would be clear of it."""
+    least, most = times(drifting(8, 30, [1.45, 1.45, 1.45, 1.45]))
+    assert 0 < least[0] < sqrt(2 * 2.0 * (0.85 - PLACE_M)) / 2.0
     assert most[0] == LONGEST_S
 
 

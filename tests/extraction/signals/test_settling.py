@@ -22,10 +22,31 @@ def test_a_short_value_between_equal_ones_is_noise():
     assert after("aaabaaa") == "aaaaaaa"
     assert after("aaabbaaa") == "aaaaaaaa"
     assert after("aaabbbaaa") == "aaabbbaaa"
-    # Between different ones it is a passage, and at an end nothing is known of the other side
+    # Between different ones it is a passage, and at an end nobody knows the other side
     assert after("aaabccc") == "aaabccc"
     assert after("baaaa") == "baaaa"
     assert after("aaaab") == "aaaab"
+
+
+@pytest.mark.parametrize(
+    ("values", "unknown"),
+    [
+        ([1, 0, 0, 0], "?..."),
+        ([1, 1, 0, 0, 0], "??..."),
+        ([1, 1, 1, 0, 0, 0], "......"),
+        ([0, 0, 0, 1, 1], "...??"),
+        ([1, 0, 0, 0, 1, 1], "?...??"),
+        # Whatever it is, each lasts too short
+        ([1, 1, 0, 0], "????"),
+        ([1, 1], ".."),
+    ],
+)
+def test_at_the_ends_of_a_recording_a_short_value_is_not_known(values, unknown):
+    column = np.array([values], dtype=bool)
+    found = settled(SignalColumns({"w": column[0]}, {"p": column}), {"p": 0.3, "w": 0.3}, 0.1)
+    for name in ("p", "w"):
+        flags = found.unknown.get(name, np.zeros(len(values), dtype=bool))
+        assert "".join("?" if flag else "." for flag in np.ravel(flags).tolist()) == unknown
 
 
 def test_flicker_is_settled_by_what_it_began_with():
@@ -45,7 +66,7 @@ def test_what_is_said_of_one_line_is_settled_alike():
         ([1, 1, 1, 0, 1, 1, 1], "....?..", "...??.."),
         ([1, 1, 1, 0, 0, 1, 1, 1], "..?.....", "..???..."),
         ([1, 1, 1, 0, 1, 1, 1], ".?...?.", ".?...?."),
-        ([1, 1, 1, 0, 0, 0, 1, 1], "..?...?.", "..?...?."),
+        ([1, 1, 1, 0, 0, 0, 1, 1, 1], "..?...?..", "..?...?.."),
     ],
 )
 @pytest.mark.parametrize("rows", [1, 2])

@@ -59,16 +59,16 @@ def possible_laterals(context: DriveContext) -> tuple[Codes, ...]:
 
 
 def _in_the_way(context: DriveContext) -> Flags:
-    """Flags of who takes up some of ego's way, and whose middle is in ego's lane, or half of it.
+    """Flags of who takes up ego's way by a quarter of its width, half with its middle elsewhere.
 
-    Who leaves the lane or comes into it, or rides at its edge, is not driving in front of ego yet,
-    or any more.
+    The width is the narrower one's. Who leaves ego's lane or comes into it, or rides at its edge,
+    is not driving in front of ego yet, or any more.
     """
     own, others = context.ego_extents, context.extents
     narrower = np.minimum(own.d_max - own.d_min, others.d_max - others.d_min)
     both = np.minimum(-np.maximum(*_aside(context)), narrower)
-    least = np.where(others.lane == own.lane, context.tolerances.place_m, narrower / 2)
-    takes: Flags = both > least
+    part = narrower * np.where(others.lane == own.lane, 0.25, 0.5)
+    takes: Flags = both > np.maximum(part, context.tolerances.place_m)
     return takes
 
 

@@ -18,8 +18,8 @@ _HAIR = 1e-6
 def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float) -> SignalColumns:
     """The signals without values that are shorter than their word's least duration (s).
 
-    Such a value between two equal ones becomes theirs, and no better known than they; at the ends
-    of a recording it stays.
+    Such a value between two equal ones becomes theirs, and no better known than they. At the ends
+    of a recording nobody knows it: it may be noise or last.
     """
     own = {name: ceil(seconds / step_s - _HAIR) for name, seconds in least_s.items()}
     world, about = (
@@ -31,6 +31,11 @@ def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float)
         before = signals.world[name] if name in signals.world else signals.about[name]
         after = world[name] if name in world else about[name]
         unknown[name] = flags | _next_to((before != after) & ~flags, flags)
+    for columns in (world, about):
+        for name in own.keys() & columns.keys():
+            brief = _brief_at_ends(columns[name], own[name])
+            if brief.any():
+                unknown[name] = unknown.get(name, False) | brief
     return replace(signals, world=world, about=about, unknown=unknown)
 
 
@@ -46,6 +51,16 @@ def _next_to(changed: Flags, flags: Flags) -> Flags:
     either = [np.take_along_axis(flags, where, axis=-1) for where in (earlier, later)]
     found: Flags = changed & (either[0] | either[1])
     return found
+
+
+def _brief_at_ends(column: SignalColumn, least: int) -> Flags:
+    """Flags of the values that a column, or rows, begins or ends with for fewer states."""
+    states = column.shape[-1]
+    brief = np.zeros(column.shape, dtype=bool)
+    for length in range(1, min(least, states)):
+        brief[..., :length] |= (column[..., length - 1] != column[..., length])[..., None]
+        brief[..., -length:] |= (column[..., -length] != column[..., -length - 1])[..., None]
+    return brief
 
 
 def without_blips(column: SignalColumn, least: int) -> SignalColumn:
