@@ -152,12 +152,18 @@ def test_a_map_that_lies_off_the_tracks_does_not_tell_lanes():
         context = context_of(found)
         signals = participant_signals(context)
         row = [body.id for body in context.tracks.participants].index("8")
-        return context.map_offset_m, bool(signals.unknown["lateral"][row, 0])
+        return context.map_offset_m[0], bool(signals.unknown["lateral"][row, 0])
 
     offset, unknown = told(*cars, steady(40, 80, 4.8))
     assert offset == pytest.approx(0.8)
     assert unknown
     assert told() == (0.0, False)
+    # Three in ego's lane tell more than those in others
+    beside = [steady(60 + k, 20 * k - 60, 4.0, steps=3) for k in range(12)]
+    assert told(*beside, *cars[:3])[0] == pytest.approx(0.8)
+    # Nobody is 15 cm off by intention
+    few = [steady(20 + k, 20 * k - 60, 0.14, steps=3) for k in range(3)]
+    assert told(*few)[0] == 0.0
 
 
 def test_one_that_stands_and_leaves_room_is_not_followed_too_closely():

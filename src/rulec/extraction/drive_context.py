@@ -24,6 +24,8 @@ _ACROSS = np.pi / 4
 """The angle to the road from which on who comes from another one drives across."""
 
 _ENOUGH_TRACKS = 10
+_ENOUGH_IN_LANE = 3
+_LEAST_OFFSET_M = 0.15
 
 _ONCOMING_COSINE = -0.7
 """The cosine of the angle to the road from which on a vehicle counts as coming towards ego."""
@@ -115,25 +117,38 @@ class DriveContext:
         return self.in_sight & drives & (turned < 1.0) & self.touched.any(axis=-1)
 
     @cached_property
-    def map_offset_m(self) -> float:
-        """How far (m) left of their lanes' middles those around ego drive, if that is telling.
+    def map_offset_m(self) -> Floats:
+        """How far (m) left of their lanes' middles others drive, by state, if that is telling.
 
-        The median of ``_ENOUGH_TRACKS`` vehicles or more, 0 up to ``touching_m``. Drivers keep to
-        the middle on the whole: by so much the map may be off the tracks.
+        The median of ``_ENOUGH_IN_LANE`` vehicles or more in ego's lane there, or else of
+        ``_ENOUGH_TRACKS`` in all lanes, 0 up to ``_LEAST_OFFSET_M``. Drivers keep to the middle on
+        the whole: by so much the map may be off the tracks.
         """
         rows = self.driving_along.any(axis=1).nonzero()[0]
-        if len(rows) < _ENOUGH_TRACKS:
-            return 0.0
         extents = self.extents.part(rows, slice(None))
         lane = extents.lane
         away = (extents.middle_from(lane) + extents.middle_from(lane + 1)) / 2
         away = np.where(self.driving_along[rows], away, np.nan)
-        offset = float(np.median(np.nanmedian(away, axis=1)))
-        return offset if abs(offset) > self.thresholds.touching_m else 0.0
+        offsets = np.full(self.road.lanes.there.shape[1], _telling(away, _ENOUGH_TRACKS))
+        for number in range(len(offsets)):
+            inside = np.where(lane == number, away, np.nan)
+            inside = inside[~np.isnan(inside).all(axis=1)]
+            if len(inside) >= _ENOUGH_IN_LANE:
+                offsets[number] = _telling(inside, _ENOUGH_IN_LANE)
+        by_state: Floats = offsets[self.ego_lane]
+        return by_state
 
     def zero_if_standing(self, speed_kmh: Floats) -> Floats:
         """Speeds (km/h), exactly 0 below the threshold of standing."""
         return speed_kmh * (abs(speed_kmh) >= self.thresholds.standing_kmh)
+
+
+def _telling(away: Floats, enough: int) -> float:
+    """The median of rows' medians, 0 if there are too few or it is next to nothing."""
+    if len(away) < enough:
+        return 0.0
+    offset = float(np.median(np.nanmedian(away, axis=1)))
+    return offset if abs(offset) > _LEAST_OFFSET_M else 0.0
 
 
 def drive_context(

@@ -191,6 +191,14 @@ def test_a_drive_of_one_state():
     assert found["obstructed"] == ["False"]
 
 
+@pytest.mark.parametrize(("x", "unknown"), [(120.0, "?"), (170.0, "True")])
+def test_one_whose_track_ends_may_still_be_on_the_near_lane(x, unknown):
+    """It drives 20 or 70 m ahead of ego at its speed, and is recorded for two states."""
+    lanes = [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
+    other = steady(8, x, 0, 10.0, steps=2)
+    assert signals(lanes, ego(100, y=4), other)["near_lane_is_free"][2] == unknown
+
+
 @pytest.mark.parametrize(
     ("ahead", "behind", "free"),
     [

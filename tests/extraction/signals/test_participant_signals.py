@@ -84,6 +84,16 @@ def test_a_safe_gap_is_asked_for_in_egos_lane_only():
     assert about(steady(8, -10, 0, speed=5))["safe_gap"]
 
 
+@pytest.mark.parametrize(("leaves_at", "unknown"), [(4, True), (5, False)])
+def test_the_gap_to_one_that_ego_parts_from_soon_is_moot(leaves_at, unknown):
+    """Steps are of 0.5 s, and in the state 2 s later it is in the other lane, or not yet."""
+    places = {k: (10 + 2.5 * k, 4.0 if k >= leaves_at else 0.0) for k in range(8)}
+    bodies = [steady(7, 0, 0, speed=10.0, steps=8), vehicle(8, places, speed=5.0)]
+    signals = participant_signals(context_of(recording(lanes(2), bodies)))
+    assert not signals.about["safe_gap"][0, 0]
+    assert signals.unknown["safe_gap"][0, 0] == unknown
+
+
 def test_only_the_next_one_ahead_precedes():
     others = [steady(8, 40, 0), steady(9, 20, 0), steady(10, 12, 4), steady(11, -20, 0)]
     signals = participant_signals(context(*others))

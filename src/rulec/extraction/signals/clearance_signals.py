@@ -15,6 +15,9 @@ _BESIDE_M = 0.5
 
 _OBSTACLE_M = 30.0
 
+_UNSEEN_S = 5.0
+"""For so long one whose track has ended is thought to drive on as before."""
+
 
 def clearance_signals(context: DriveContext) -> SignalColumns:
     """The signals of what leaves ego room to go on, to overtake, and to pass."""
@@ -30,7 +33,11 @@ def clearance_signals(context: DriveContext) -> SignalColumns:
     return SignalColumns(
         world,
         {"room_on_near_side": _room_on_near_side(context)},
-        {"oncoming_clear": unknown, "needs_access": open_end},
+        {
+            "oncoming_clear": unknown,
+            "needs_access": open_end,
+            "near_lane_is_free": _perhaps_on_near_lane(context),
+        },
         {"room_on_near_side": context.tracks.of_type("road_user")},
     )
 
@@ -169,6 +176,33 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     taken = inside & ((station == relations.BESIDE) | (gap < safe))
     free: Flags = ~there | ~taken.any(axis=0)
     return free
+
+
+def _perhaps_on_near_lane(context: DriveContext) -> Flags:
+    """Flags of states in which one may be near ego on the next lane to the kerb, but is not seen.
+
+    Its track ended less than ``_UNSEEN_S`` ago, or begins so soon, in sight of ego; it drives on as
+    it did. Where all traffic is recorded, nobody drives unseen.
+    """
+    perhaps = np.zeros(context.states, dtype=bool)
+    if "arrivals" in context.recording.complete:
+        return perhaps
+    lane, there = _next_lane(context, context.side)
+    others, states, step_s = context.extents, np.arange(context.states), context.recording.step_s
+    for row, seen in enumerate(context.driving_along):
+        if not seen.any():
+            continue
+        seen_at = np.flatnonzero(seen)
+        for edge, unseen in (
+            (seen_at[-1], states > seen_at[-1]),
+            (seen_at[0], states < seen_at[0]),
+        ):
+            away_s = (states - edge) * step_s
+            place = others.s[row, edge] + others.along[row, edge] * away_s
+            near = np.abs(place - context.ego_extents.s[0]) < context.thresholds.approach_m
+            near &= others.lane[row, edge] == lane
+            perhaps |= unseen & there & near & (np.abs(away_s) < _UNSEEN_S)
+    return perhaps
 
 
 def _on_next_lane(context: DriveContext, side: Side) -> tuple[Flags, Flags]:

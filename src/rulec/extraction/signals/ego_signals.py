@@ -73,7 +73,8 @@ def _straddling(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of ego in two lanes, and of states in which that cannot be told."""
     place = context.tolerances.place_m
     both = []
-    for less, shift in ((0.0, 0.0), *product((place, -place), (0.0, context.map_offset_m))):
+    unmoved = np.zeros(context.states)
+    for less, shift in ((0.0, unmoved), *product((place, -place), (unmoved, context.map_offset_m))):
         inside = context.ego_extents.moved(-shift).inside[0]
         least = context.thresholds.touching_m + less
         both.append(((inside > least) & context.existing_lanes).sum(axis=1) > 1)

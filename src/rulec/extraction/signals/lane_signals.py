@@ -81,9 +81,8 @@ def lane_mark_signals(context: DriveContext) -> SignalColumns:
     names = ("marked_lanes", "on_solid_line", "broken_on_own_side", "single_line")
     columns = np.zeros((len(names), context.states), dtype=bool)
     unknown, not_told = np.zeros((2, context.states), dtype=bool)
-    place, offset = context.tolerances.place_m, context.map_offset_m
-    others = list(product((place, -place), {0.0, offset}))
-    near = _near_a_line(context, place + abs(offset))
+    place, offsets = context.tolerances.place_m, context.map_offset_m
+    near = _near_a_line(context, place + np.abs(offsets))
     bodies = _bodies(context)
     for state, piece in enumerate(pieces):
         lanelets = zip(context.road.rows[piece], context.existing_lanes[state], strict=True)
@@ -95,9 +94,12 @@ def lane_mark_signals(context: DriveContext) -> SignalColumns:
         crossed = _marks_under_ego(context, state, row, body)
         found = columns[1:, state] = _solid_lines(crossed)
         not_told[state] = not found[0] and any(not any(marks) for marks in crossed)
-        tried = [(body, *other) for other in others] if near[state] else []
+        tried: list[tuple[_Body, float, float]] = []
         # Where places are known so badly, a body's direction is that of its slow or slipping track
-        tried += [(parallel, 0.0, 0.0)] if place >= context.thresholds.touching_m else []
+        ways = [body, parallel] if place >= context.thresholds.touching_m else [body]
+        tried += [(way, 0.0, 0.0) for way in ways[1:]]
+        if near[state]:
+            tried += product(ways, (place, -place), {0.0, float(offsets[state])})
         not_told[state] |= any(
             _solid_lines(_marks_under_ego(context, state, row, *each)) != found for each in tried
         )
@@ -118,11 +120,11 @@ def _solid_lines(crossed: list[_Marks]) -> tuple[bool, bool, bool]:
     return bool(solid), broken, len(solid) == 1 and solid[0] in _SINGLE
 
 
-def _near_a_line(context: DriveContext, margin_m: float) -> Flags:
+def _near_a_line(context: DriveContext, margin_m: Floats) -> Flags:
     """Flags of states in which so much decides whether ego's body lies across a line."""
     own = context.ego_extents
     across = np.minimum(-own.left_of_min[0], own.left_of_max[0])
-    near: Flags = (np.abs(across - context.thresholds.touching_m) <= margin_m).any(axis=1)
+    near: Flags = (np.abs(across - context.thresholds.touching_m) <= margin_m[:, None]).any(axis=1)
     return near
 
 

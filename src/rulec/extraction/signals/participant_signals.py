@@ -57,10 +57,21 @@ def participant_signals(context: DriveContext) -> SignalColumns:
         only={"in_the_road": context.tracks.of_type("vulnerable_user")},
         unknown={
             "lateral": np.any([lateral != codes for codes in others], axis=0),
-            "safe_gap": may_follow & (np.abs(short) < wrong) | may_pass_by & (short > -wrong),
+            "safe_gap": may_follow & (np.abs(short) < wrong)
+            | (may_pass_by | may_follow & _parts_soon(context)) & (short > -wrong),
         },
         bounds=bounds_to_others(context),
     )
+
+
+def _parts_soon(context: DriveContext) -> Flags:
+    """Flags of those whose lane is not ego's at some state within ``parting_s``."""
+    horizon = round(context.thresholds.parting_s / context.recording.step_s)
+    states = np.arange(context.states)
+    apart = (context.extents.lane != context.ego_extents.lane) & context.relevant
+    when = np.where(apart, states, context.states + horizon)[:, ::-1]
+    parts: Flags = np.minimum.accumulate(when, axis=1)[:, ::-1] <= states + horizon
+    return parts
 
 
 def gap_beside_safe_distance(context: DriveContext) -> tuple[Floats, Floats]:

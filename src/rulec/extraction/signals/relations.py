@@ -42,7 +42,7 @@ def lateral(context: DriveContext) -> Codes:
     Who is on a mark of ego's lane, reaching beyond it, and clear of ego sideways is at its side;
     who is no farther in but in the way of ego's body is in the lane.
     """
-    return _lateral(context, 0.0, 0.0)
+    return _lateral(context, 0.0, np.zeros(context.states))
 
 
 def possible_laterals(context: DriveContext) -> tuple[Codes, ...]:
@@ -52,7 +52,9 @@ def possible_laterals(context: DriveContext) -> tuple[Codes, ...]:
     well be at its side.
     """
     place = context.tolerances.place_m
-    shifts = {0.0, context.map_offset_m}
+    shifts = [np.zeros(context.states)]
+    if context.map_offset_m.any():
+        shifts.append(context.map_offset_m)
     shifted = (_lateral(context, way * place, shift) for shift in shifts for way in (-1, 1))
     at_side = (station(context) == BEHIND) & ~_in_the_way(context)
     return *shifted, np.where(at_side, _ego_at(context), lateral(context))
@@ -96,12 +98,12 @@ def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     return measured, measured & np.logical_and.reduce(same), measured | np.logical_or.reduce(same)
 
 
-def _lateral(context: DriveContext, inward: float, shift: float) -> Codes:
+def _lateral(context: DriveContext, inward: float, shift: Floats) -> Codes:
     """Sides, with others so much (m) further in ego's lane and all so much right of the map."""
     own, others = context.ego_extents.moved(-shift), context.extents.moved(-shift)
     reach = context.thresholds.touching_m
     touched = context.touched
-    if inward or shift:
+    if inward or shift.any():
         touched = lanes_touched(others, context.road, reach - inward)
     lane, clear = own.lane, np.maximum(*_aside(context))
     # How far left of the two bounds of ego's lane they begin and end

@@ -95,10 +95,12 @@ class RoadExtents:
         middle: Floats = np.take_along_axis(self.left_of, number, axis=-1)[..., 0]
         return middle
 
-    def moved(self, across: float) -> RoadExtents:
-        """The same so much (m) farther left in the lanes."""
-        moved = {name: getattr(self, name) + across for name in ("left_of_min", "left_of_max")}
-        return replace(self, **moved) if across else self
+    def moved(self, across: Floats) -> RoadExtents:
+        """The same so much (m), by column, farther left in the lanes."""
+        if not across.any():
+            return self
+        by = across[:, None]
+        return replace(self, left_of_min=self.left_of_min + by, left_of_max=self.left_of_max + by)
 
     def of(self, row: int) -> RoadExtents:
         """One participant's extents, with an axis of length 1 for it."""
