@@ -46,7 +46,7 @@ class Thresholds:
     """Who has to brake harder for one who changes lanes is in its way."""
     cutting_in_mps2: float = 2.0
     """Who comes into ego's lane slows down sideways by no more than this."""
-    parting_s: float = 2.0
+    parting_s: float = 4.0
     """Who is in another lane than ego so soon is being overtaken, or leaves: the gap is moot."""
     catching_up_s: float = 10.0
     """Ego is overtaking when it will be beside a slower vehicle so soon."""

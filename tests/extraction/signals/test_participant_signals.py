@@ -84,11 +84,11 @@ def test_a_safe_gap_is_asked_for_in_egos_lane_only():
     assert about(steady(8, -10, 0, speed=5))["safe_gap"]
 
 
-@pytest.mark.parametrize(("leaves_at", "unknown"), [(4, True), (5, False)])
+@pytest.mark.parametrize(("leaves_at", "unknown"), [(8, True), (9, False)])
 def test_the_gap_to_one_that_ego_parts_from_soon_is_moot(leaves_at, unknown):
-    """Steps are of 0.5 s, and in the state 2 s later it is in the other lane, or not yet."""
-    places = {k: (10 + 2.5 * k, 4.0 if k >= leaves_at else 0.0) for k in range(8)}
-    bodies = [steady(7, 0, 0, speed=10.0, steps=8), vehicle(8, places, speed=5.0)]
+    """Steps are of 0.5 s, and in the state 4 s later it is in the other lane, or not yet."""
+    places = {k: (10 + 2.5 * k, 4.0 if k >= leaves_at else 0.0) for k in range(10)}
+    bodies = [steady(7, 0, 0, speed=10.0, steps=10), vehicle(8, places, speed=5.0)]
     signals = participant_signals(context_of(recording(lanes(2), bodies)))
     assert not signals.about["safe_gap"][0, 0]
     assert signals.unknown["safe_gap"][0, 0] == unknown
