@@ -94,12 +94,11 @@ def lane_mark_signals(context: DriveContext) -> SignalColumns:
         crossed = _marks_under_ego(context, state, row, body)
         found = columns[1:, state] = _solid_lines(crossed)
         not_told[state] = not found[0] and any(not any(marks) for marks in crossed)
-        tried: list[tuple[_Body, float, float]] = []
+        others = list(product((place, -place), {0.0, float(offsets[state])}))
+        tried = [(body, *other) for other in others] if near[state] else []
         # Where places are known so badly, a body's direction is that of its slow or slipping track
-        ways = [body, parallel] if place >= context.thresholds.touching_m else [body]
-        tried += [(way, 0.0, 0.0) for way in ways[1:]]
-        if near[state]:
-            tried += product(ways, (place, -place), {0.0, float(offsets[state])})
+        if place >= context.thresholds.touching_m and (near[state] or found[0]):
+            tried += [(parallel, *other) for other in [(0.0, 0.0), *others]]
         not_told[state] |= any(
             _solid_lines(_marks_under_ego(context, state, row, *each)) != found for each in tried
         )
