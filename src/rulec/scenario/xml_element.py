@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from xml.parsers.expat import XMLParserType
@@ -27,15 +26,15 @@ class XmlFormat:
         self,
         path: Path,
         why: str,
-        line: int | None = None,
+        place: int | None = None,
         *,
         expected: str = "",
         help_text: str = "",
     ) -> RulecError:
         """The error (R0610) for a file of another format, with the line if that is known."""
-        place = SourceLocation(str(path)) if line is None else SourceLocation(str(path), line)
         message = f"the file cannot be read as {self.words}: {why}"
-        return NOT_A_RECORDING.error(place, message, expected=expected, help=help_text or self.help)
+        where = SourceLocation(str(path), place)
+        return NOT_A_RECORDING.error(where, message, expected=expected, help=help_text or self.help)
 
 
 @dataclass(slots=True)
@@ -44,7 +43,7 @@ class XmlElement:
 
     # Not frozen: a recording has millions, and a frozen one takes five times as long to make
     name: str
-    attributes: Mapping[str, str]
+    attributes: dict[str, str]
     parser: XMLParserType
     path: Path
     form: XmlFormat

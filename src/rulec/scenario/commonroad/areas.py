@@ -15,7 +15,7 @@ import shapely
 from shapely import affinity
 
 from rulec.scenario.recorded.recording import Points
-from rulec.scenario.xml_tree import XmlTree
+from rulec.scenario.tree import Tree
 
 _FEWEST_CORNERS = 3
 _SMALLEST_M = 1e-6
@@ -61,7 +61,7 @@ _GROUPS = frozenset({"shapeGroup", "absoluteShapeGroup", "shape"})
 _SHAPES = ("rectangle", "circle", "polygon", "truckShape")
 
 
-def read_area(tree: XmlTree, *, body: bool = False) -> Area:
+def read_area(tree: Tree, *, body: bool = False) -> Area:
     """The area of all shapes in an element, of which there must be one.
 
     Those of a ``body`` are larger than nothing.
@@ -79,12 +79,12 @@ def read_area(tree: XmlTree, *, body: bool = False) -> Area:
     return tuple(parts)
 
 
-def is_area(tree: XmlTree) -> bool:
+def is_area(tree: Tree) -> bool:
     """True if an element has a shape in it."""
     return any(child.name in _GROUPS or child.name in _SHAPES for child in tree.children)
 
 
-def _part(tree: XmlTree, body: bool) -> Part:
+def _part(tree: Tree, body: bool) -> Part:
     if tree.name == "polygon":
         return _polygon(tree, body)
     if tree.name not in _SHAPES:
@@ -107,14 +107,14 @@ def _part(tree: XmlTree, body: bool) -> Part:
     return Rectangle(length, width, x, y, heading=turned_once(heading), shift=shift)
 
 
-def _size(tree: XmlTree, least: float) -> float:
+def _size(tree: Tree, least: float) -> float:
     size = tree.number()
     if size < least:
         raise tree.wrong(f"`{tree.name}` is {size:g}", f"a number not below {least:g}")
     return size
 
 
-def _polygon(tree: XmlTree, body: bool) -> Polygon:
+def _polygon(tree: Tree, body: bool) -> Polygon:
     points = read_points(tree)
     if len(points) < _FEWEST_CORNERS:
         raise tree.wrong(f"a polygon has fewer than {_FEWEST_CORNERS} points")
@@ -124,12 +124,12 @@ def _polygon(tree: XmlTree, body: bool) -> Polygon:
     return Polygon(shapely.geometry.polygon.orient(polygon, sign=-1.0))
 
 
-def read_point(tree: XmlTree) -> tuple[float, float]:
+def read_point(tree: Tree) -> tuple[float, float]:
     """The place that a point names; heights are left out."""
     return tree.child("x").number(), tree.child("y").number()
 
 
-def read_points(tree: XmlTree) -> Points:
+def read_points(tree: Tree) -> Points:
     """The places of all points in an element."""
     return np.array(list(map(read_point, tree.all("point"))), dtype=float).reshape(-1, 2)
 

@@ -2,32 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeVar
 
-from rulec.scenario.commonroad.commonroad_lanelets import LaneletEntry, complete, read_lanelet
-from rulec.scenario.commonroad.commonroad_participants import read_body, read_phantom, read_thing
-from rulec.scenario.commonroad.commonroad_surroundings import (
-    Intersection,
-    junctions,
-    read_intersection,
-    read_light,
-    read_weather,
-)
-from rulec.scenario.commonroad.countries import country_in, side_in
-from rulec.scenario.commonroad.planning_problems import (
-    ProblemEntry,
-    planning_problem,
-    read_problem,
-)
-from rulec.scenario.commonroad.time_extent import TimeExtent
-from rulec.scenario.commonroad.traffic_signs import SignElement, read_sign
-from rulec.scenario.recorded import recording
-from rulec.scenario.recorded.adjacency import with_neighbours
+from rulec.scenario.commonroad.countries import country_in
+from rulec.scenario.commonroad.scenario_content import Content, add, add_step, to_recording
+from rulec.scenario.recorded.recording import Recording
+from rulec.scenario.tree import Tree
 from rulec.scenario.xml_element import XmlFormat, short
-from rulec.scenario.xml_tree import XmlTree, scan_trees
+from rulec.scenario.xml_tree import scan_trees
 
 COMMONROAD = XmlFormat(
     "a CommonRoad scenario",
@@ -35,117 +17,25 @@ COMMONROAD = XmlFormat(
     "CommonRoad's format is described at https://commonroad.in.tum.de",
 )
 VERSIONS = ("2018b", "2020a")
-SHORTEST_STEP_S = 1e-6
-
-_T = TypeVar("_T")
 
 
-@dataclass(slots=True)
-class _Content:
-    """What has been read of a file so far, by id; participants first by kind."""
-
-    step_s: float = 0.0
-    sign_country: str = ""
-    lanelets: dict[str, LaneletEntry] = field(default_factory=dict)
-    signs: dict[str, tuple[SignElement, ...]] = field(default_factory=dict)
-    lights: dict[str, recording.Light | None] = field(default_factory=dict)
-    intersections: dict[str, Intersection] = field(default_factory=dict)
-    bodies: dict[str, dict[str, recording.Participant]] = field(default_factory=dict)
-    problems: dict[str, ProblemEntry] = field(default_factory=dict)
-    weather: recording.Weather = field(default_factory=recording.Weather)
-    extent: TimeExtent = field(default_factory=TimeExtent)
-
-
-def read_commonroad(path: Path) -> recording.Recording:
+def read_commonroad(path: Path) -> Recording:
     """Read the recording in a CommonRoad file.
 
     Raises RulecError R0610 for a file that cannot be read as CommonRoad, R0701 if it cannot be
     opened.
     """
-    content = _Content()
-    scan_trees(
-        path, COMMONROAD, lambda tree: _begin(content, tree), lambda tree: _add(content, tree)
-    )
-    participants = tuple(body for kind in _KINDS for body in content.bodies.get(kind, {}).values())
-    content.extent.check(path, COMMONROAD, len(participants))
-    lanelets = _lanelets(content)
-    name = Path(path.name.removesuffix(".gz")).stem
-    problems = sorted(content.problems.values(), key=lambda problem: int(problem.id))
-    return with_neighbours(
-        recording.Recording(
-            name,
-            content.step_s,
-            lanelets,
-            participants,
-            tuple(planning_problem(problem, lanelets) for problem in problems),
-            side=side_in(name),
-            country=country_in(name),
-            weather=content.weather,
-        )
-    )
+    content = Content()
+    scan_trees(path, COMMONROAD, lambda tree: begin(content, tree), lambda tree: add(content, tree))
+    return to_recording(content, path, COMMONROAD)
 
 
-def _begin(content: _Content, root: XmlTree) -> None:
+def begin(content: Content, root: Tree) -> None:
+    """Read the root, which says version, country and time step."""
     version = root.attributes.get("commonRoadVersion", "")
     if version not in VERSIONS:
         why = f"its `commonRoadVersion` is `{short(version)}`"
         raise root.wrong(why, " or ".join(VERSIONS))
     # Signs have the ids of the country that the benchmark is in, whatever the file is called
     content.sign_country = country_in(root.attribute("benchmarkID"))
-    content.step_s = root.number("timeStepSize")
-    if content.step_s < SHORTEST_STEP_S:
-        raise root.wrong(f"a time step of {content.step_s:g} s is none")
-
-
-def _add(content: _Content, tree: XmlTree) -> None:
-    match tree.name:
-        case "lanelet":
-            _enter(content.lanelets, tree, read_lanelet)
-        case "trafficSign":
-            _enter(content.signs, tree, lambda sign: read_sign(sign, content.sign_country))
-        case "trafficLight":
-            _enter(content.lights, tree, read_light)
-        case "intersection":
-            _enter(content.intersections, tree, read_intersection)
-        case "planningProblem":
-            _enter(content.problems, tree, read_problem)
-        case "location":
-            content.weather = read_weather(tree)
-        case "obstacle":
-            # Version 2018b
-            role = tree.child("role").one_of(("static", "dynamic"))
-            _add_participant(content, tree, f"{role}Obstacle")
-        case kind if kind in _KINDS:
-            _add_participant(content, tree, kind)
-
-
-_KINDS: Mapping[str, Callable[[XmlTree, TimeExtent], recording.Participant]] = {
-    "staticObstacle": lambda tree, extent: read_body(tree, extent, standing=True),
-    "dynamicObstacle": lambda tree, extent: read_body(tree, extent, standing=False),
-    "environmentObstacle": lambda tree, _: read_thing(tree),
-    "phantomObstacle": read_phantom,
-}
-
-
-def _add_participant(content: _Content, tree: XmlTree, kind: str) -> None:
-    number = tree.id()
-    if any(number in bodies for bodies in content.bodies.values()):
-        raise tree.wrong(f"there are two obstacles `{number}`")
-    content.bodies.setdefault(kind, {})[number] = _KINDS[kind](tree, content.extent)
-
-
-def _enter(known: dict[str, _T], tree: XmlTree, read: Callable[[XmlTree], _T]) -> None:
-    number = tree.id()
-    if number in known:
-        raise tree.wrong(f"there are two elements `{tree.name}` with the id `{number}`")
-    known[number] = read(tree)
-
-
-def _lanelets(content: _Content) -> dict[str, recording.Lanelet]:
-    plain = {number: entry.lanelet for number, entry in content.lanelets.items()}
-    inside = junctions(content.intersections.values(), plain)
-    lights = {number: light for number, light in content.lights.items() if light is not None}
-    return {
-        number: complete(entry, content.signs, lights, inside.get(number, ""))
-        for number, entry in content.lanelets.items()
-    }
+    add_step(content, root)

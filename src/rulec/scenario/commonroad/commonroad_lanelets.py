@@ -12,7 +12,7 @@ import numpy as np
 from rulec.scenario.commonroad.areas import read_points
 from rulec.scenario.commonroad.traffic_signs import MAX_SPEED, SignElement, speed_limit
 from rulec.scenario.recorded import recording
-from rulec.scenario.xml_tree import XmlTree
+from rulec.scenario.tree import Tree
 
 _MARKS: Mapping[str, recording.LaneMark | None] = MappingProxyType(
     {
@@ -44,7 +44,7 @@ class LaneletEntry(NamedTuple):
     lights: tuple[str, ...]
 
 
-def read_lanelet(tree: XmlTree) -> LaneletEntry:
+def read_lanelet(tree: Tree) -> LaneletEntry:
     """The lanelet in an element."""
     left, right = (_bound(tree.child(name)) for name in ("leftBound", "rightBound"))
     if len(left) != len(right):
@@ -71,7 +71,7 @@ def read_lanelet(tree: XmlTree) -> LaneletEntry:
     return LaneletEntry(lanelet, tree.ids("trafficSignRef"), tree.ids("trafficLightRef"))
 
 
-def _bound(tree: XmlTree) -> recording.Points:
+def _bound(tree: Tree) -> recording.Points:
     points = read_points(tree)
     if len(points) < _FEWEST_POINTS:
         raise tree.wrong(f"the element `{tree.name}` has fewer than {_FEWEST_POINTS} points")
@@ -80,19 +80,19 @@ def _bound(tree: XmlTree) -> recording.Points:
     return points
 
 
-def _neighbour(tree: XmlTree | None) -> str | None:
+def _neighbour(tree: Tree | None) -> str | None:
     """The lanelet beside another one, if it leads the same way."""
     if tree is None or tree.attributes.get("drivingDir") != "same":
         return None
     return tree.id("ref")
 
 
-def _mark(bound: XmlTree) -> recording.LaneMark | None:
+def _mark(bound: Tree) -> recording.LaneMark | None:
     mark = bound.first("lineMarking")
     return None if mark is None else _MARKS[mark.one_of(_MARKS)]
 
 
-def _stop_line(tree: XmlTree | None) -> recording.Points | None:
+def _stop_line(tree: Tree | None) -> recording.Points | None:
     """The ends of a stop line that has a place."""
     if tree is None:
         return None

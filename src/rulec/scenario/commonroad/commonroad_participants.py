@@ -24,12 +24,12 @@ from rulec.scenario.commonroad.states import State, read_state
 from rulec.scenario.commonroad.time_extent import TimeExtent, read_steps
 from rulec.scenario.recorded import recording as recorded
 from rulec.scenario.recorded.track import Track, TrackOutlines, TrackStates
-from rulec.scenario.xml_tree import XmlTree
+from rulec.scenario.tree import Tree
 
 Outlines = dict[int, recorded.Points]
 
 
-def read_body(tree: XmlTree, extent: TimeExtent, *, standing: bool) -> recorded.Participant:
+def read_body(tree: Tree, extent: TimeExtent, *, standing: bool) -> recorded.Participant:
     """An obstacle with a shape, whether it stands or moves."""
     kind = read_type(tree)
     body = read_area(tree.child("shape"), body=True)
@@ -48,18 +48,18 @@ def read_body(tree: XmlTree, extent: TimeExtent, *, standing: bool) -> recorded.
     )
 
 
-def read_thing(tree: XmlTree) -> recorded.Participant:
+def read_thing(tree: Tree) -> recorded.Participant:
     """Something that covers an area for ever: an ``environmentObstacle``."""
     outlines = {0: corners(geometry(read_area(tree.child("shape"))))}
     return recorded.Participant(tree.id(), read_type(tree), True, {}, outlines)
 
 
-def read_phantom(tree: XmlTree, extent: TimeExtent) -> recorded.Participant:
+def read_phantom(tree: Tree, extent: TimeExtent) -> recorded.Participant:
     """Something that may be there, of which nothing is known but where."""
     return recorded.Participant(tree.id(), "unknown", False, {}, _predicted(tree, extent))
 
 
-def read_type(tree: XmlTree) -> str:
+def read_type(tree: Tree) -> str:
     """The type of an obstacle."""
     return tree.child("type").one_of(recorded.OBSTACLE_TYPES)
 
@@ -103,7 +103,7 @@ def track_state(state: State, outline: recorded.Points) -> recorded.TrackState:
     return recorded.TrackState(x, y, state.heading.middle, state.speed, state.acceleration)
 
 
-def _predicted(tree: XmlTree, extent: TimeExtent) -> Outlines:
+def _predicted(tree: Tree, extent: TimeExtent) -> Outlines:
     """What an obstacle occupies by time step; an interval of time has the same throughout."""
     outlines: Outlines = {}
     occupied = tree.first("occupancySet")
@@ -128,7 +128,7 @@ _LIT: Mapping[str, bool] = {"true": True, "1": True, "false": False, "0": False}
 
 
 def _lamps(
-    tree: XmlTree, extent: TimeExtent
+    tree: Tree, extent: TimeExtent
 ) -> tuple[dict[int, frozenset[recorded.Lamp]], frozenset[recorded.Lamp]]:
     """The lamps that are lit by time step, and all that the signal states speak of."""
     states = tree.all("initialSignalState")[:1]

@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from rulec.scenario.recorded import recording
-from rulec.scenario.xml_tree import XmlTree
+from rulec.scenario.tree import Tree
 
 _COLOURS = frozenset({"red", "yellow", "redYellow", "green", "inactive"})
 _WET = frozenset({"light_rain", "mid_rain", "heavy_rain", "hail"})
@@ -30,7 +30,7 @@ class Intersection(NamedTuple):
     starts: tuple[str, ...]
 
 
-def read_light(tree: XmlTree) -> recording.Light | None:
+def read_light(tree: Tree) -> recording.Light | None:
     """The programme of a traffic light; None if it has none, or is out of order."""
     active, cycle = tree.first("active"), tree.first("cycle")
     if cycle is None or (active is not None and active.word in ("false", "0")):
@@ -46,7 +46,7 @@ def read_light(tree: XmlTree) -> recording.Light | None:
     return recording.Light(begin, tuple(phases)) if phases else None
 
 
-def read_intersection(tree: XmlTree) -> Intersection:
+def read_intersection(tree: Tree) -> Intersection:
     """The intersection in an element."""
     starts = [
         number for incoming in tree.all("incoming") for way in _WAYS for number in incoming.ids(way)
@@ -107,7 +107,7 @@ def _direction(line: shapely.LineString, place: shapely.Point) -> float:
     return float(np.arctan2(after.y - before.y, after.x - before.x))
 
 
-def read_weather(location: XmlTree) -> recording.Weather:
+def read_weather(location: Tree) -> recording.Weather:
     """The weather at a location; dry weather leaves only what lies on the road."""
     environment = location.first("environment")
     if environment is None:

@@ -12,7 +12,7 @@ from rulec.scenario.commonroad.areas import corners, geometry, is_area, read_are
 from rulec.scenario.commonroad.commonroad_participants import track_state
 from rulec.scenario.commonroad.states import State, read_state
 from rulec.scenario.recorded import recording
-from rulec.scenario.xml_tree import XmlTree
+from rulec.scenario.tree import Tree
 
 
 class ProblemEntry(NamedTuple):
@@ -20,10 +20,10 @@ class ProblemEntry(NamedTuple):
 
     id: str
     start: State
-    goals: tuple[XmlTree, ...]
+    goals: tuple[Tree, ...]
 
 
-def read_problem(tree: XmlTree) -> ProblemEntry:
+def read_problem(tree: Tree) -> ProblemEntry:
     """The planning problem in an element."""
     goals = [goal.first("position") for goal in tree.all("goalState")]
     start = read_state(tree.child("initialState"), initial=True)
@@ -49,9 +49,7 @@ def planning_problem(
     )
 
 
-def _middle(
-    goal: XmlTree, lanelets: Mapping[str, recording.Lanelet]
-) -> Iterator[tuple[float, float]]:
+def _middle(goal: Tree, lanelets: Mapping[str, recording.Lanelet]) -> Iterator[tuple[float, float]]:
     if (point := goal.first("point")) is not None:
         yield read_point(point)
         return
@@ -69,9 +67,7 @@ def _middle(
         yield centre.x, centre.y
 
 
-def _outline(
-    goal: XmlTree, number: str, lanelets: Mapping[str, recording.Lanelet]
-) -> shapely.Polygon:
+def _outline(goal: Tree, number: str, lanelets: Mapping[str, recording.Lanelet]) -> shapely.Polygon:
     lanelet = lanelets.get(number)
     if lanelet is None:
         raise goal.wrong(f"the goal is lanelet {number}, which the file has not")

@@ -9,7 +9,7 @@ from math import pi
 from typing import NamedTuple
 
 from rulec.scenario.commonroad.areas import Area, is_area, read_area, read_point, turned_once
-from rulec.scenario.xml_tree import XmlTree
+from rulec.scenario.tree import Tree
 
 
 class Bounds(NamedTuple):
@@ -41,7 +41,7 @@ class State(NamedTuple):
         return not self.area and self.heading.low == self.heading.high
 
 
-def read_state(tree: XmlTree, *, initial: bool = False) -> State:
+def read_state(tree: Tree, *, initial: bool = False) -> State:
     """The state in an element.
 
     An ``initial`` one that does not say where it is, and when, is at 0; speed and acceleration are
@@ -63,16 +63,16 @@ def read_state(tree: XmlTree, *, initial: bool = False) -> State:
     )
 
 
-def read_step(tree: XmlTree) -> int:
+def read_step(tree: Tree) -> int:
     """The time step that an element says exactly."""
     return tree.child("exact").whole()
 
 
-def _middle(tree: XmlTree | None) -> float:
+def _middle(tree: Tree | None) -> float:
     return 0.0 if tree is None else _bounds(tree).middle
 
 
-def _bounds(tree: XmlTree) -> Bounds:
+def _bounds(tree: Tree) -> Bounds:
     exact = tree.first("exact")
     if exact is not None:
         value = exact.number()
@@ -85,7 +85,7 @@ def _bounds(tree: XmlTree) -> Bounds:
     return Bounds(low, high)
 
 
-def _heading(tree: XmlTree) -> Bounds:
+def _heading(tree: Tree) -> Bounds:
     low, high = _bounds(tree)
     if high - low >= 2 * pi:
         raise tree.wrong("an interval of angles is a full turn or more")
@@ -93,7 +93,7 @@ def _heading(tree: XmlTree) -> Bounds:
     return Bounds(begin, high + (begin - low))
 
 
-def _place(tree: XmlTree) -> tuple[float, float, Area]:
+def _place(tree: Tree) -> tuple[float, float, Area]:
     point = tree.first("point")
     if point is not None:
         return (*read_point(point), ())

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rulec.scenario.recorded.recording import MOST_STEPS, SPARSEST
-from rulec.scenario.xml_element import XmlFormat
-from rulec.scenario.xml_tree import XmlTree
+from rulec.scenario.tree import FileFormat, Tree
 
 SPARSEST_STATES = 200
 """One in so many pairs of an obstacle and a time step has a state in the file, at least."""
@@ -34,7 +33,7 @@ class TimeExtent:
         self.moments.update(known)
         self.states += len(known)
 
-    def check(self, path: Path, form: XmlFormat, obstacles: int) -> None:
+    def check(self, path: Path, form: FileFormat, obstacles: int) -> None:
         """Raises RulecError R0610 for steps that are too far apart for so few states."""
         first, last = min(self.moments, default=0), max(self.moments, default=0)
         spread = last - first
@@ -48,7 +47,7 @@ class TimeExtent:
             raise form.refused(path, why, help_text=_WAY_OUT)
 
 
-def read_steps(tree: XmlTree, extent: TimeExtent) -> range:
+def read_steps(tree: Tree, extent: TimeExtent) -> range:
     """The time steps that an element says: one, or those from one to another.
 
     Raises RulecError R0610 for intervals that are longer than any recording.
@@ -63,5 +62,5 @@ def read_steps(tree: XmlTree, extent: TimeExtent) -> range:
     extent.repeated += last - first
     if extent.repeated > MOST_STEPS:
         why = f"its intervals of time have more than {MOST_STEPS:,} steps together"
-        raise tree.form.refused(tree.path, why, tree.line, help_text=_WAY_OUT)
+        raise tree.form.refused(tree.path, why, tree.place, help_text=_WAY_OUT)
     return range(first, last + 1)

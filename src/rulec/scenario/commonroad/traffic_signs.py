@@ -11,7 +11,7 @@ from math import inf
 from types import MappingProxyType
 from typing import NamedTuple
 
-from rulec.scenario.xml_tree import XmlTree
+from rulec.scenario.tree import Tree
 
 MAX_SPEED = "MAX_SPEED"
 _UNKNOWN = "UNKNOWN"
@@ -95,12 +95,12 @@ class SignElement(NamedTuple):
     limit_mps: float | None
 
 
-def read_sign(tree: XmlTree, country: str) -> tuple[SignElement, ...]:
+def read_sign(tree: Tree, country: str) -> tuple[SignElement, ...]:
     """The signs on a post, by the ids of a country (ISO 3166)."""
     return tuple([_element(child, country) for child in tree.all("trafficSignElement")])
 
 
-def _element(tree: XmlTree, country: str) -> SignElement:
+def _element(tree: Tree, country: str) -> SignElement:
     number = tree.child("trafficSignID").word
     names = _COUNTRIES.get(country, _GERMANY)
     name = MAX_SPEED if number == _GERMAN_MAX_SPEED else names.get(number, _UNKNOWN)
@@ -109,7 +109,7 @@ def _element(tree: XmlTree, country: str) -> SignElement:
     return SignElement(name, limit)
 
 
-def speed_limit(tree: XmlTree) -> float:
+def speed_limit(tree: Tree) -> float:
     """A speed limit (m/s); infinity means that there is none."""
     if tree.word.lower() in ("inf", "infinity"):
         return inf
