@@ -35,12 +35,14 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
     opened.
     """
     if is_protobuf(path):
-        why = "it is Protocol Buffers, which are not read yet"
-        way_out = "give CommonRoad's XML of it, as `commonroad-io` writes it"
-        raise RECORDING.refused(path, why, help_text=way_out)
+        _refuse(net, path)
+        # NumPy and Shapely take a while, and few commands read recordings.
+        from rulec.scenario.commonroad.commonroad_protobuf import read_protobuf
+
+        return read_protobuf(path)
     root = root_of(path, RECORDING)
     if root == "fcd-export":
-        # NumPy and Shapely take a while, and few commands read recordings.
+        # As above.
         from rulec.scenario.sumo.sumo_recording import read_sumo
 
         return read_sumo(path, net)
@@ -51,16 +53,20 @@ def read_recording(path: Path, net: Path | None = None) -> Recording:
         why = f"it is XML of `{short(root)}`"
         expected = "expected `commonRoad` or `fcd-export`"
         raise RECORDING.refused(path, why, expected=expected)
+    _refuse(net, path)
+    # As above.
+    from rulec.scenario.commonroad.commonroad_file import read_commonroad
+
+    return read_commonroad(path)
+
+
+def _refuse(net: Path | None, path: Path) -> None:
     if net is not None:
         raise OTHER_CHOICE.error(
             SourceLocation(str(path)),
             f"`{path.name}` has its own roads, and takes no net",
             help="leave out --net, which is for SUMO's floating-car data",
         )
-    # As above.
-    from rulec.scenario.commonroad.commonroad_file import read_commonroad
-
-    return read_commonroad(path)
 
 
 def is_recording(file: str) -> bool:

@@ -87,6 +87,9 @@ def add(content: Content, tree: Tree) -> None:
             _enter(content.lanelets, tree, read_lanelet)
         case "trafficSign":
             _enter(content.signs, tree, lambda sign: read_sign(sign, content.sign_country))
+        case "trafficSignValue":
+            # The part with the traffic says what a sign shows then
+            content.signs[tree.id()] = read_sign(tree, content.sign_country)
         case "trafficLight":
             _enter(content.lights, tree, read_light)
         case "intersection":

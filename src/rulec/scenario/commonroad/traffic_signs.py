@@ -14,7 +14,7 @@ from typing import NamedTuple
 from rulec.scenario.tree import Tree
 
 MAX_SPEED = "MAX_SPEED"
-_UNKNOWN = "UNKNOWN"
+UNKNOWN = "UNKNOWN"
 _GERMAN_MAX_SPEED = "274"
 """Files of all countries have it."""
 
@@ -88,6 +88,20 @@ s13 PEDESTRIANS_CROSSING
 )
 
 
+_LATER_IN_USA = ("STOP", "STOP_4_WAY", "NO_TURN_ON_RED", "ONEWAY")
+
+
+def signs_by_number(country: str) -> dict[int, str]:
+    """The names of a country's signs by their numbers in Protocol Buffers."""
+    if country in _COUNTRIES:
+        later = _LATER_IN_USA if country == "USA" else ()
+        names = [name for name in _COUNTRIES[country].values() if name not in later]
+        return dict(enumerate(names or [MAX_SPEED]))
+    # Signs that are not about driving are left out between the last ones
+    *first, crossing, arrow = _GERMANY.values()
+    return {**dict(enumerate(first)), 92: crossing, 170: arrow}
+
+
 class SignElement(NamedTuple):
     """A sign, of perhaps several on a post; the speed limit (m/s) that it says, if any."""
 
@@ -101,12 +115,16 @@ def read_sign(tree: Tree, country: str) -> tuple[SignElement, ...]:
 
 
 def _element(tree: Tree, country: str) -> SignElement:
-    number = tree.child("trafficSignID").word
-    names = _COUNTRIES.get(country, _GERMANY)
-    name = MAX_SPEED if number == _GERMAN_MAX_SPEED else names.get(number, _UNKNOWN)
+    named = tree.first("signName")
+    name = _name(tree.child("trafficSignID").word, country) if named is None else named.word
     value = tree.first("additionalValue")
     limit = speed_limit(value) if name == MAX_SPEED and value is not None else None
     return SignElement(name, limit)
+
+
+def _name(number: str, country: str) -> str:
+    names = _COUNTRIES.get(country, _GERMANY)
+    return MAX_SPEED if number == _GERMAN_MAX_SPEED else names.get(number, UNKNOWN)
 
 
 def speed_limit(tree: Tree) -> float:
