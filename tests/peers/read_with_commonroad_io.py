@@ -5,6 +5,7 @@ Arguments: files. Standard output: for each a JSON line, in the library's own wo
 
 import io
 import json
+import re
 import sys
 import warnings
 from contextlib import redirect_stderr, redirect_stdout
@@ -28,12 +29,16 @@ LAMPS = (
 
 def read(path):
     """What the library has read of a file, as lists and dictionaries."""
-    scenario, problems = CommonRoadFileReader(path).open()
+    if path.endswith(".pb"):
+        scenario, problems, environment = read_parts(path)
+        drawn = {str(one.lanelet_id) for one in scenario.lanelet_network.lanelets}
+    else:
+        scenario, problems = CommonRoadFileReader(path).open()
+        environment = scenario.environment
+        # The library puts a stop line without a place at the end of its lanelet
+        nodes = ElementTree.parse(path).getroot().findall("lanelet")
+        drawn = {node.get("id") for node in nodes if node.find("stopLine/point") is not None}
     network = scenario.lanelet_network
-    # The library puts a stop line without a place at the end of its lanelet
-    nodes = ElementTree.parse(path).getroot().findall("lanelet")
-    drawn = {node.get("id") for node in nodes if node.find("stopLine/point") is not None}
-    environment = scenario.environment
     return {
         "step_s": scenario.dt,
         "lanelets": [lanelet(one, str(one.lanelet_id) in drawn) for one in network.lanelets],
@@ -46,11 +51,22 @@ def read(path):
         },
         "lights": {light.traffic_light_id: programme(light) for light in network.traffic_lights},
         "intersections": {one.intersection_id: starts(one) for one in network.intersections},
-        "weather": environment and environment.weather.value,
-        "underground": environment and environment.underground.value,
+        "weather": getattr(environment and environment.weather, "value", None),
+        "underground": getattr(environment and environment.underground, "value", None),
         "participants": list(participants(scenario)),
         "problems": [problem(one) for one in problems.planning_problem_dict.values()],
     }
+
+
+def read_parts(dynamic):
+    """A scenario in Protocol Buffers, of which the part with the traffic is given."""
+    stem = dynamic.removesuffix(".pb")
+    road = re.sub(r"_\d+_[A-Z]-\d+$", "", stem)
+    files = {"filename_map": f"{road}.pb", "filename_scenario": f"{stem}-SC.pb"}
+    reader = CommonRoadFileReader(filename_dynamic=dynamic, **files)
+    scenario, problems, _ = reader.open_all()
+    # It leaves the environment out of the scenario
+    return scenario, problems, reader.open_dynamic().environment
 
 
 def lanelet(one, has_drawn_stop_line):

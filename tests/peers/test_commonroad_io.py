@@ -21,7 +21,13 @@ pytestmark = pytest.mark.skipif(
 )
 PROGRAM = Path(__file__).with_name("read_with_commonroad_io.py")
 MORE = RECORDINGS.parent / "commonroad_more"
-FILES = sorted([*RECORDINGS.glob("*.xml"), *MORE.glob("*.xml")])
+_, *SMALL = SAMPLES
+PARTS = [
+    file.with_name(file.name.replace("-SC", ""))
+    for folder in (SMALL[0].parent, MORE)
+    for file in folder.glob("*-SC.pb")
+]
+FILES = sorted([*RECORDINGS.glob("*.xml"), *MORE.glob("*.xml"), *PARTS])
 
 
 def read_by_library(files):

@@ -105,7 +105,7 @@ def available_scenarios() -> tuple[str, ...]:
 
 
 def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = None) -> Scenario:
-    """A scenario by its built-in name, or from a file: TOML, or recorded traffic in XML.
+    """A scenario by its built-in name, or from a file: TOML, or recorded traffic.
 
     A built-in name comes first; ``./s1`` is a file in any case. Whose maneuvers are sought in a
     recorded scene, and along which road, is the ``choice``. See ``docs/scenarios.md``. Raises

@@ -92,7 +92,8 @@ NOT_A_RECORDING = Code(
     "R0610",
     title="a file cannot be read as recorded traffic",
     why="Recorded traffic is XML: a CommonRoad scenario, version 2018b or 2020a, or SUMO's "
-    "floating-car data with their net; the root element tells which. A file has to be "
+    "floating-car data with their net; the root element tells which. CommonRoad's scenarios may "
+    "be in Protocol Buffers, too (`.pb`); their parts lie beside each other. A file has to be "
     "well-formed and complete, and to do without a `DOCTYPE`: what that defines may fill the "
     "memory or fetch other files.",
     bad=_COMMONROAD.replace("2018b", "2017a") + "rulec maneuvers road.xml -r esterle2019",

@@ -93,8 +93,8 @@ def command(
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
     cannot be judged is reported and does not stop the others.
 
-    FILE may also be recorded traffic: CommonRoad's (.xml), or SUMO's floating-car data. Then every
-    vehicle is judged by what it did, and a table says who violated what.
+    FILE may also be recorded traffic: CommonRoad's (.xml, .pb), or SUMO's floating-car data. Then
+    every vehicle is judged by what it did, and a table says who violated what.
 
     Exit status: 0 no hard rule is violated, 1 one is, 2 a trace could not be judged, or no rule.
     """

@@ -136,7 +136,8 @@ def _lamps(
         states += series.all("signalState")
     lamps: dict[int, frozenset[recorded.Lamp]] = {}
     shows: frozenset[recorded.Lamp] | None = None
-    for state in states:
+    # One that is empty stands for none
+    for state in filter(lambda state: state.children, states):
         said = {_SIGNALS[child.name]: child for child in state.children if child.name in _SIGNALS}
         lit = frozenset(lamp for lamp, child in said.items() if _LIT[child.one_of(_LIT)])
         lamps.update(dict.fromkeys(read_steps(state.child("time"), extent), lit))

@@ -99,9 +99,7 @@ def _part(path: Path, stem: str, kind: Table) -> WireFile:
         raise PROTOBUF.refused(path, why, help_text="put the parts into one folder")
     file = wire_file(beside, PROTOBUF)
     if _kind(file) is not kind:
-        raise PROTOBUF.refused(
-            beside, f"it is not the part that `{short(path.name)}` refers to it as"
-        )
+        raise PROTOBUF.refused(beside, f"it is not the part that `{short(path.name)}` looks for")
     return file
 
 
@@ -124,7 +122,7 @@ def _add_map(content: Content, file: WireFile) -> None:
     bounds: dict[tuple[str, str], Tree] = {}
 
     def note(tree: Tree) -> None:
-        bounds[tree.name, tree.id()] = tree
+        bounds[tree.name, tree.attribute("id")] = tree
 
     _scan(file, tables.BOUNDS, note)
     points = sum(len(bound.children) for bound in bounds.values())

@@ -53,7 +53,8 @@ def _middle(goal: Tree, lanelets: Mapping[str, recording.Lanelet]) -> Iterator[t
     if (point := goal.first("point")) is not None:
         yield read_point(point)
         return
-    if is_area(goal):
+    # Protocol Buffers have the outlines of goal lanelets, too
+    if is_area(goal) and not goal.first("lanelet"):
         centre = geometry(read_area(goal)).centroid
     else:
         centre = (

@@ -42,7 +42,7 @@ _MARKS_2020 = _words(
     "dashed solid unknown unknown unknown unknown curb lowered_curb "
     "broad_dashed broad_solid unknown no_marking"
 )
-"""2 to 5 are other marks to `commonroad-io` until 2023.3 than after, and no file says whose it is."""
+"""2 to 5 are other marks to `commonroad-io` until 2023.3, and no file says whose it is."""
 
 _LANELETS = (
     "urban country highway driveWay mainCarriageWay accessRamp exitRamp shoulder busLane busStop "
