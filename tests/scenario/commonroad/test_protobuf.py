@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.scenario import load_scenario
+from rulec.scenario.commonroad import commonroad_protobuf
 from rulec.scenario.scenario_files import read_recording
 from support.builders.recordings import RECORDINGS, SAMPLES
 from support.builders.wire_bytes import counted, double, field, whole
@@ -248,7 +249,7 @@ def test_a_bound_that_the_map_has_not(tmp_path):
     assert f"at byte {len(data) + 5:,}, `leftBound` is 4711, which the map has not" in found.message
 
 
-def test_bounds_of_too_many_lanelets(tmp_path):
+def test_bounds_of_too_many_lanelets(tmp_path, monkeypatch):
     """A large bound and many lanelets that refer to it would take all memory."""
     file = copied(tmp_path, TRAFFIC)
     points = b"".join(point(2, 0.1 * number, 3) for number in range(100))
@@ -256,6 +257,8 @@ def test_bounds_of_too_many_lanelets(tmp_path):
     head = counted(1, counted(1, counted(1, b"DEU")))
     data = head + counted(5, whole(1, 1), points) + b"".join(lanelets)
     (tmp_path / MAP.name).write_bytes(data)
+    assert len(read_recording(file).lanelets) == 49
+    monkeypatch.setattr(commonroad_protobuf, "FEW_POINTS", 400)
     found = refused(file, beside=tmp_path / MAP.name)
     assert "bounds belong to more than 4 lanelets each" in found.message
 

@@ -30,7 +30,8 @@ PROTOBUF = WireFormat(
 )
 _PROBLEMS = "-SC.pb"
 _MOST_LANELETS = 4
-"""To which a bound belongs on average."""
+"""To which a bound belongs on average, from ``FEW_POINTS`` of all lanelets' on."""
+FEW_POINTS = 1_000_000
 
 
 def read_protobuf(path: Path) -> Recording:
@@ -126,7 +127,7 @@ def _add_map(content: Content, file: WireFile) -> None:
 
     _scan(file, tables.BOUNDS, note)
     points = sum(len(bound.children) for bound in bounds.values())
-    left = _MOST_LANELETS * points
+    left = max(_MOST_LANELETS * points, FEW_POINTS)
 
     def join(tree: Tree) -> None:
         nonlocal left
