@@ -37,9 +37,10 @@ def flow_signals(context: DriveContext) -> SignalColumns:
     overtakes, unsure = _overtaking(context)
     overtaken, open_end = _overtaken(context)
     dense, surely, not_told = _dense_lines(context, queues)
-    queue, fewer, more = (
-        _beside(context, lanes & (queue_speeds < limits.slow_queue_kmh)) for lanes in queues
-    )
+    slow = [lanes & (queue_speeds < limits.slow_queue_kmh) for lanes in queues]
+    queue, fewer, _ = (_beside(context, lanes) for lanes in slow)
+    # Whether one farther out is the queue beside ego's lane depends on who is passed
+    more = _at_far_side(context, slow[LOOSE])
     # Lanes that move off beside each other do not overtake
     moot = _sets_off(context) | not_told
     return SignalColumns(
@@ -111,6 +112,14 @@ def _around(context: DriveContext) -> tuple[Floats, Floats]:
     speeds = np.where(close, np.maximum(context.extents.along, 0.0), np.nan)
     with_own = np.concatenate((np.maximum(context.ego_extents.along, 0.0), speeds))
     return np.nanmedian(with_own, axis=0) * KMH, close.sum(axis=0) + 1
+
+
+def _at_far_side(context: DriveContext, lanes: Flags) -> Flags:
+    """Whether a lane of those flagged lies at ego's far side, by state."""
+    number, own = np.arange(lanes.shape[1]), context.ego_lane[:, None]
+    far = number > own if context.side == "right" else number < own
+    there: Flags = np.any(lanes & far, axis=1)
+    return there
 
 
 def _beside(context: DriveContext, lanes: Flags) -> Flags:
