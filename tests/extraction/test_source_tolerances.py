@@ -15,6 +15,7 @@ from rulec.extraction.source_tolerances import (
     rounded_to,
     tolerances_of,
 )
+from rulec.scenario.recorded.recording import StatedError
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes
@@ -35,6 +36,17 @@ def of_source(name, *bodies, form="CommonRoad scenario", count=2):
 )
 def test_a_source_is_known_by_its_form_and_where_it_was_made(name, form, tolerances):
     assert tolerances_of(of_source(name, form=form)) == tolerances
+
+
+def test_what_a_file_says_of_its_errors_counts_if_it_is_more():
+    errors = (None, StatedError(0.25, 0.0), StatedError(0.5, 0.25), StatedError(0.75, 0.5))
+    bodies = [replace(steady(20 + k, 0, 0), stated_error=one) for k, one in enumerate(errors)]
+    # Two places may be wrong by half a metre each
+    assert tolerances_of(of_source("DEU_Test", *bodies)) == replace(
+        OTHERS, place_m=1.0, speed_mps=0.25
+    )
+    (good,) = [replace(steady(7, 0, 0), stated_error=StatedError(0.01, 0.0))]
+    assert tolerances_of(of_source("DEU_Test", good)) == OTHERS
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,8 @@ nothing to do with each other add up as squares (JCGM 100:2008, 5.1.2).
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from statistics import median
 
 from rulec.scenario.recorded.recording import Recording, Rounding
 
@@ -45,10 +46,20 @@ _NGSIM = re.compile(r"USA_(US101|I80|Lanker|Peach)")
 
 
 def tolerances_of(recording: Recording) -> Tolerances:
-    """The tolerances of a recording, by its form and by where it was made."""
+    """The tolerances of a recording, by its form, by where it was made, and by what it says."""
     if recording.form == "SUMO data":
         return rounded_to(recording.rounding or USUAL_ROUNDING)
-    return NGSIM if _NGSIM.match(recording.name) else OTHERS
+    known = NGSIM if _NGSIM.match(recording.name) else OTHERS
+    stated = [body.stated_error for body in recording.participants if body.stated_error]
+    if not stated:
+        return known
+    place_m, speed_mps = (median(values) for values in zip(*stated, strict=True))
+    # Both of two places may be anywhere in their areas, all of which outlines cover
+    return replace(
+        known,
+        place_m=max(known.place_m, 2 * place_m),
+        speed_mps=max(known.speed_mps, speed_mps),
+    )
 
 
 def rounded_to(rounding: Rounding) -> Tolerances:

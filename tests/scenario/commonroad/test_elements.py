@@ -1,6 +1,7 @@
 """What single elements of CommonRoad's files mean, and what is said of those that mean nothing."""
 
 from math import inf, pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -44,6 +45,20 @@ def test_a_truck_shape_lies_around_its_rear_axle(read):
     (found,) = read((BOX, truck)).participants
     assert bounds(found.outlines[0]) == [39, -1.25, 45, 1.25]
     assert (found.states[0].x, found.states[0].y) == (40, 0)
+
+
+def test_how_far_states_may_be_wrong_is_half_of_what_they_leave_open(read):
+    area = f"<rectangle><length>0.6</length><width>0.8</width>{AT.format(40, 0)}</rectangle>"
+    (found,) = read((PLACE, f"<position>{area}</position>")).participants
+    assert found.stated_error == pytest.approx((0.5, 0.0))
+    assert read().participants[0].stated_error is None
+
+
+def test_of_several_states_the_median_counts():
+    """Of a cycle's five places one is exact, and two circles around them are wider than 1 m."""
+    sample = Path(__file__).with_name("samples") / "DEU_EveryElement-1_1_T-1.xml"
+    (cycle,) = [body for body in read_recording(sample).participants if body.id == "82"]
+    assert cycle.stated_error == pytest.approx((1.0, 0.0))
 
 
 def test_shapes_together_turn_around_the_obstacles_place(read):

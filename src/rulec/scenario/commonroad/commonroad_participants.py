@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from operator import itemgetter
 
 import numpy as np
+import shapely
 
 from rulec.scenario.commonroad.areas import (
     Area,
@@ -44,8 +45,22 @@ def read_body(tree: Tree, extent: TimeExtent, *, standing: bool) -> recorded.Par
         predicted = _predicted(tree, extent)
         outlines = {**outlines, **predicted} if predicted else outlines
     return recorded.Participant(
-        tree.id(), kind, standing, known, outlines, lamps=lamps, shows=shows
+        tree.id(),
+        kind,
+        standing,
+        known,
+        outlines,
+        lamps=lamps,
+        shows=shows,
+        stated_error=_stated_error(states),
     )
+
+
+def _stated_error(states: Sequence[State]) -> recorded.StatedError | None:
+    """The median of what states say themselves; None if most of them are exact."""
+    places = [shapely.minimum_bounding_radius(geometry(x.area)) if x.area else 0 for x in states]
+    place, speed = np.median(places), np.median([state.speed_error for state in states])
+    return recorded.StatedError(float(place), float(speed)) if place or speed else None
 
 
 def read_thing(tree: Tree) -> recorded.Participant:
@@ -76,7 +91,7 @@ def _motion(
         and all(state.is_exact for state in by_step.values())
     ):
         ordered = sorted(by_step.values(), key=itemgetter(0))
-        rows = [(x, y, heading.low, *motion) for _, x, y, _, heading, *motion in ordered]
+        rows = [(x, y, heading.low, *motion) for _, x, y, _, heading, *motion, _ in ordered]
         track = Track(
             np.array([state.step for state in ordered], dtype=np.int64),
             np.array(rows, dtype=float),

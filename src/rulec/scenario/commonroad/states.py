@@ -34,6 +34,7 @@ class State(NamedTuple):
     heading: Bounds
     speed: float
     acceleration: float
+    speed_error: float
 
     @property
     def is_exact(self) -> bool:
@@ -53,13 +54,16 @@ def read_state(tree: Tree, *, initial: bool = False) -> State:
             tree.child(name)
     time, heading, position = map(fields.get, ("time", "orientation", "position"))
     x, y, area = (0.0, 0.0, ()) if position is None else _place(position)
+    speed = _interval(fields.get("velocity"))
     return State(
-        0 if time is None else read_step(time),
-        x,
-        y,
-        area,
-        Bounds(0.0, 0.0) if heading is None else _heading(heading),
-        *(_middle(fields.get(name)) for name in ("velocity", "acceleration")),
+        step=0 if time is None else read_step(time),
+        x=x,
+        y=y,
+        area=area,
+        heading=Bounds(0.0, 0.0) if heading is None else _heading(heading),
+        speed=speed.middle,
+        acceleration=_interval(fields.get("acceleration")).middle,
+        speed_error=(speed.high - speed.low) / 2,
     )
 
 
@@ -68,8 +72,8 @@ def read_step(tree: Tree) -> int:
     return tree.child("exact").whole()
 
 
-def _middle(tree: Tree | None) -> float:
-    return 0.0 if tree is None else _bounds(tree).middle
+def _interval(tree: Tree | None) -> Bounds:
+    return Bounds(0.0, 0.0) if tree is None else _bounds(tree)
 
 
 def _bounds(tree: Tree) -> Bounds:

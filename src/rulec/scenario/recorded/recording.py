@@ -141,7 +141,7 @@ class Participant:
 
     ``standing``: it is there all the time, in its only state. ``lamps``: by time step those that
     are lit; steps that the file says nothing about are missing. ``shows`` are those that the file
-    speaks of.
+    speaks of. ``stated_error`` is how far the file itself says that states may be wrong.
     """
 
     __repr__ = short_repr
@@ -153,6 +153,7 @@ class Participant:
     outlines: Mapping[int, Points]
     lamps: Mapping[int, frozenset[Lamp]] = field(default_factory=dict)
     shows: frozenset[Lamp] = frozenset({"left_indicator", "right_indicator", "brake_light"})
+    stated_error: StatedError | None = None
 
     @property
     def object_types(self) -> tuple[str, ...]:
@@ -177,6 +178,13 @@ class Weather:
     wet: bool | None = None
     icy: bool | None = None
     visibility_m: float | None = None
+
+
+class StatedError(NamedTuple):
+    """The radius of the areas (m), and half the intervals of speeds (m/s), that a file says."""
+
+    place_m: float
+    speed_mps: float
 
 
 class Rounding(NamedTuple):
