@@ -117,6 +117,17 @@ def stopped(x, speed=0.0, walks=True):
     return bool(signals.about["stopped_for_pedestrian"][0, 0])
 
 
+def test_who_stands_behind_another_one_may_have_stopped_for_that_one():
+    walker = vehicle(8, {0: (60, 0), 1: (60, 0)}, "pedestrian", length=0.4, width=0.4)
+    first, second = steady(9, 55, 0, speed=0, steps=2), steady(10, 50, 0, speed=0, steps=2)
+    beside = steady(11, 50, 4, speed=0, steps=2)
+    bodies = [steady(7, 20, 0, steps=2), first, second, beside, walker]
+    signals = crossing_signals(context_of(recording([*lanes(2), ZEBRA], bodies)))
+    assert signals.about["stopped_for_pedestrian"][:, 0].tolist() == [True, True, True, False]
+    unknown = signals.unknown["stopped_for_pedestrian"][:, 0].tolist()
+    assert unknown == [False, True, False, False]
+
+
 def test_vehicles_that_stand_before_the_crossing_have_stopped_for_a_pedestrian():
     # The front is 2 m ahead of the middle; the crossing begins at 58 m, 10 m before it at 48
     assert stopped(55)

@@ -34,8 +34,29 @@ def lane_change_signals(context: DriveContext) -> SignalColumns:
     lane = context.steady_lane
     changes = np.append(False, lane[1:] != lane[:-1])
     clear = ~changes | ~_disturbs(context)
-    changing = SignalColumns({"lane_change": changes, "lane_is_clear": clear})
+    changing = SignalColumns(
+        {"lane_change": changes, "lane_is_clear": clear},
+        unknown={"lane_change": _within_tolerance(context, changes)},
+    )
     return changing | _indicator(context)
+
+
+def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
+    """Flags of those changes of which the marks may be so far off that there is none.
+
+    Before or after it, until the next one, ego's middle is never farther from the mark.
+    """
+    lane, left_of = context.steady_lane, context.ego_extents.left_of[0]
+    error = context.tolerances.place_m + np.abs(context.map_offset_m)
+    least = np.maximum(context.thresholds.changed_m, error)
+    unsure = np.zeros_like(changes)
+    borders = [0, *np.flatnonzero(changes).tolist(), len(changes)]
+    for begin, at, end in zip(borders[:-2], borders[1:-1], borders[2:], strict=True):
+        mark = left_of[begin:end, max(lane[at - 1], lane[at])]
+        if lane[at] < lane[at - 1]:
+            mark = -mark
+        unsure[at] = min(-mark[: at - begin].min(), mark[at - begin :].max()) < least[at]
+    return unsure
 
 
 def _indicator(context: DriveContext) -> SignalColumns:

@@ -28,10 +28,11 @@ def crossing_signals(context: DriveContext) -> SignalColumns:
     used = ((uses > 0) & context.relevant & walkers).any(axis=0)
     too_late, unsure = _too_late(context, uses)
     own = np.where(_past_ego(context) | too_late, 0, uses)
+    stopped = _stopped(context) & used
     return SignalColumns(
         about={
             "crossing_use": named_values(own, _USES),
-            "stopped_for_pedestrian": _stopped(context) & used,
+            "stopped_for_pedestrian": stopped,
             "crosses_side_road": aside > 0,
         },
         only={
@@ -39,7 +40,10 @@ def crossing_signals(context: DriveContext) -> SignalColumns:
             "stopped_for_pedestrian": context.tracks.of_type("vehicle"),
             "crosses_side_road": context.tracks.of_type("pedestrian"),
         },
-        unknown={"crossing_use": unsure & (own > 0)},
+        unknown={
+            "crossing_use": unsure & (own > 0),
+            "stopped_for_pedestrian": _behind_another(context, stopped),
+        },
     )
 
 
@@ -127,6 +131,21 @@ def _past_ego(context: DriveContext) -> Flags:
     longest = round(context.thresholds.away_s / context.recording.step_s)
     past: Flags = (away > back) & (np.arange(context.states) - away <= longest)
     return past
+
+
+def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
+    """Flags of those with another vehicle in their lane between them and the crossing.
+
+    They may stop for that one.
+    """
+    start, _ = next_crossing(context)
+    others, vehicles = context.extents, context.tracks.of_type("vehicle")[:, None]
+    waits = np.zeros_like(stopped)
+    for row in np.flatnonzero(stopped.any(axis=1)):
+        ahead = vehicles & (others.s_min >= others.s_max[row]) & (others.s_min < start)
+        same = (context.touched & context.touched[row]).any(axis=-1)
+        waits[row] = stopped[row] & (ahead & same).any(axis=0)
+    return waits
 
 
 def _stopped(context: DriveContext) -> Flags:
