@@ -126,8 +126,7 @@ class DriveContext:
         """
         rows = self.driving_along.any(axis=1).nonzero()[0]
         extents = self.extents.part(rows, slice(None))
-        lane = extents.lane
-        away = (extents.middle_from(lane) + extents.middle_from(lane + 1)) / 2
+        away = np.add(*extents.from_middle(extents.lane)) / 2
         away = np.where(self.driving_along[rows], away, np.nan)
         offsets = np.full(self.road.lanes.there.shape[1], _telling(away, _ENOUGH_TRACKS))
         for number in range(len(offsets)):

@@ -75,13 +75,11 @@ def _in_the_way(context: DriveContext) -> Flags:
 
 
 def _aside(context: DriveContext) -> tuple[Floats, Floats]:
-    """How far (m) others are clear of ego on its left and on its right, in their lanes.
-
-    That is by the left and by the right bound of ego's lane, beside either.
-    """
-    own, others = context.ego_extents, context.extents
-    (right, _), (_, left) = own.from_bound(own.lane), own.from_bound(own.lane + 1)
-    return others.from_bound(own.lane + 1)[0] - left, right - others.from_bound(own.lane)[1]
+    """How far (m) others are clear of ego on its left and right, from the middle of ego's lane."""
+    lane = context.ego_extents.lane
+    own_low, own_high = context.ego_extents.from_middle(lane)
+    low, high = context.extents.from_middle(lane)
+    return low - own_high, own_low - high
 
 
 def _ego_at(context: DriveContext) -> Codes:
@@ -108,7 +106,7 @@ def _lateral(context: DriveContext, inward: float, shift: Floats) -> Codes:
     lane, clear = own.lane, np.maximum(*_aside(context))
     # How far left of the two bounds of ego's lane they begin and end
     (low_r, high_r), (low_l, high_l) = others.from_bound(lane), others.from_bound(lane + 1)
-    sides = _across(own, touched, low_l, high_r)
+    sides = _across(own, touched, (low_r + low_l) / 2, (high_r + high_l) / 2)
     beside_way = (np.maximum(high_l, -low_r) > reach + inward) & (clear > reach + inward)
     in_the_way = (np.minimum(high_r, -low_l) > -inward) & (clear < inward - reach)
     sides = np.where((sides == SAME_LANE) & beside_way, _ego_at(context), sides)
@@ -118,14 +116,13 @@ def _lateral(context: DriveContext, inward: float, shift: Floats) -> Codes:
 def _across(own: RoadExtents, lanes: Flags, low: Floats, high: Floats) -> Codes:
     """Ego's middle right of others' lanes (third axis), in or left of them; without any, of them.
 
-    ``low``: how far (m) left of the left bound of ego's lane others begin; ``high``: how far left
-    of its right bound they end.
+    ``low`` and ``high`` say how far (m) left of the middle of ego's lane others begin and end.
     """
     first = lanes.argmax(axis=-1)
     last = lanes.shape[-1] - lanes[..., ::-1].argmax(axis=-1)
-    inside, lane = lanes.any(axis=-1), own.lane
-    right_of = own.middle_from(np.where(inside, first, lane + 1)) <= np.where(inside, 0.0, low)
-    left_of = own.middle_from(np.where(inside, last, lane)) >= np.where(inside, 0.0, high)
+    inside, middle = lanes.any(axis=-1), np.add(*own.from_middle(own.lane)) / 2
+    right_of = np.where(inside, own.middle_from(first) <= 0, middle <= low)
+    left_of = np.where(inside, own.middle_from(last) >= 0, middle >= high)
     return np.where(right_of, RIGHT_OF, np.where(left_of, LEFT_OF, SAME_LANE))
 
 
@@ -171,8 +168,7 @@ def position(context: DriveContext) -> NDArray[np.str_]:
             np.where(on, np.maximum(s_max, end), s_max),
         )
     column = _along(ego, s_min, s_max)
-    low, high = others.from_bound(ego.lane + 1)[0], others.from_bound(ego.lane)[1]
-    row = _across(ego, context.touched & ~across[..., None], low, high)
+    row = _across(ego, context.touched & ~across[..., None], *others.from_middle(ego.lane))
     inside = (row == SAME_LANE) & (column == BESIDE)
     column = np.where(inside, np.where(ego.s < others.s, BEHIND, IN_FRONT_OF), column)
     tables = np.array([list(PAPER_TABLES[name].decode()) for name in _FACING])

@@ -89,6 +89,11 @@ class RoadExtents:
         high = np.take_along_axis(self.left_of_max, number, axis=-1)
         return low[..., 0], high[..., 0]
 
+    def from_middle(self, lane: NDArray[intp]) -> tuple[Floats, Floats]:
+        """How far (m) left of the middle of one lane, by column, bodies begin and end."""
+        (low, high), (low_left, high_left) = self.from_bound(lane), self.from_bound(lane + 1)
+        return (low + low_left) / 2, (high + high_left) / 2
+
     def middle_from(self, bound: NDArray[intp]) -> Floats:
         """How far (m) left of one bound of the lanes the middle is."""
         number = np.atleast_2d(bound)[..., None]
