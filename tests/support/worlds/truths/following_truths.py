@@ -8,7 +8,9 @@ from support.worlds.world_state import LENGTH_M
 REACTION_S, BRAKING_MPS2 = 1.0, 8.0
 """The numbers of this reading of the law: as documented, not as programmed."""
 
-_SURELY_M, _LEAST_S = 0.7, 0.6
+_SURELY_M, _PERHAPS_M, _LEAST_S = 0.4, 0.7, 0.6
+"""In a bend bodies are a little nearer to each other than along the middles of lanes."""
+
 _NEAR_M = 150.0
 _FALLS_BACK_S = 3.0
 """Who is put onto the road has not chosen its distance, no more than one whom another cuts off."""
@@ -41,30 +43,52 @@ def _asked_for(world, track):
 
 
 def following_facts(world):
-    """Too short a gap; sure to a leader on the same lane of a road, nobody changing lanes."""
+    """Too short a gap; sure to a leader on ego's own way, nobody changing lanes."""
     for track in world.vehicles.values():
         speed, gap = track.column("speed"), track.column("gap")
         leading = track.column("leader_speed")
-        led = np.array([bool(name) for name in track.leader]) & (gap > -1)
+        perhaps_led, surely_led = _led(world, track)
+        led = perhaps_led & (gap > -1)
         short = np.where(led, needed(world.book, speed, leading) - gap, -np.inf)
-        steady = led & _same_road(world, track) & ~world.changing[track.id]
+        steady = led & surely_led & ~world.changing[track.id]
         steady &= ~_leader_changing(world, track)
         steady[: round(_FALLS_BACK_S / world.step_s)] = False
-        possible = (short > -_SURELY_M) | _beside_short(world, track)
+        possible = (short > -_PERHAPS_M) | _beside_short(world, track)
         possible |= _merging_short(world, track)
         surely, perhaps = _asked_for(world, track)
         masks = (surely & steady & (short > _SURELY_M), perhaps & possible, _LEAST_S)
         yield from graded(world, track, "following_distance", masks)
 
 
-def _same_road(world, track):
-    """Where the leader is on the same lane, outside junctions."""
-    same = []
+def _led(world, track):
+    """Where the leader may be ahead on ego's way, and where it is so for sure.
+
+    In a junction SUMO's leader may be one that crosses: it neither has come over ego's lane nor is
+    on one that ego drives later. One on the same lane of a road is surely ahead; so is one that has
+    been the leader for ``_FALLS_BACK_S``, over the lanes that ego is on and drives next.
+    """
+    perhaps, surely = np.zeros((2, len(track.lane)), dtype=bool)
+    longest = round(_FALLS_BACK_S / world.step_s)
     for row, (lane, name) in enumerate(zip(track.lane, track.leader, strict=True)):
         other = world.vehicles.get(name)
         k = None if other is None else other.at(track.step[row])
-        same.append(k is not None and not lane.startswith(":") and other.lane[k] == lane)
-    return np.array(same)
+        if k is None:
+            continue
+        driven, ahead = other.lane[: k + 1], track.lane[row:]
+        perhaps[row] = lane in driven or other.lane[k] in ahead
+        for_long = row >= longest and set(track.leader[row - longest : row]) == {name}
+        on_road = not lane.startswith(":") and other.lane[k] == lane
+        surely[row] = on_road or (for_long and _precedes(driven, ahead))
+    return perhaps, surely
+
+
+def _precedes(driven, ahead):
+    """True if one has driven the first of the lanes that lie ahead of another, and those after."""
+    if ahead[0] not in driven:
+        return False
+    since = len(driven) - 1 - driven[::-1].index(ahead[0])
+    way, ahead = list(dict.fromkeys(driven[since:])), list(dict.fromkeys(ahead))
+    return way == ahead[: len(way)]
 
 
 def _leader_changing(world, track):
@@ -97,20 +121,20 @@ def _beside_short(world, track):
         moves = own_change[rows] | world.changing[other.id][theirs]
         gap = other.column("pos")[theirs] - LENGTH_M - pos[rows]
         need = needed(world.book, speed[rows], other.column("speed")[theirs])
-        near = (gap > -LENGTH_M) & (gap < _NEAR_M) & (gap < need + _SURELY_M)
+        near = (gap > -LENGTH_M) & (gap < _NEAR_M) & (gap < need + _PERHAPS_M)
         mask[rows[beside & moves & near]] = True
     return mask
 
 
 def _merging_short(world, track):
-    """Rows where, at a junction, somebody who goes about ego's way would be too near."""
+    """Rows where, at a junction, somebody who comes onto ego's way would be too near."""
     mask = np.zeros(len(track.lane), dtype=bool)
     inside = track.inside
     for other in world.vehicles.values():
         rows = np.arange(len(track.lane))
         theirs = rows + track.step[0] - other.step[0]
         there = (theirs >= 0) & (theirs < len(other.lane))
-        if other is track or not there.any():
+        if other is track or not there.any() or not set(track.lane) & set(other.lane):
             continue
         rows, theirs = rows[there], theirs[there]
         their_inside = other.inside[theirs]
@@ -121,7 +145,7 @@ def _merging_short(world, track):
         ahead, aside = x * np.sin(own) + y * np.cos(own), x * np.cos(own) - y * np.sin(own)
         alike = np.cos(np.radians(angle)) > _ALIKE
         need = needed(world.book, track.column("speed")[rows], other.column("speed")[theirs])
-        near = (ahead > 0) & (ahead - LENGTH_M < need + _SURELY_M) & (np.abs(aside) < _ASIDE_M)
+        near = (ahead > 0) & (ahead - LENGTH_M < need + _PERHAPS_M) & (np.abs(aside) < _ASIDE_M)
         mask[rows[(inside[rows] | their_inside) & alike & near]] = True
     return mask
 

@@ -2,13 +2,15 @@
 
 from support.worlds.facts import Fact
 
-_AROUND = 2
+_AROUND = 1
+"""Every second state is recorded."""
+
 _RED, _OTHER = frozenset("r"), frozenset("us")
 """Red with amber, and red with an arrow to the right, are other matters."""
 
 
 def red_light_facts(world):
-    """Crossings at red; unsure within two steps of a change."""
+    """Crossings at red; unsure within a step of a change."""
     for crossing in world.crossings:
         link = crossing.link
         if not link.light:

@@ -6,7 +6,9 @@ from support.worlds.facts import Fact, runs
 from support.worlds.world_state import LENGTH_M
 
 _QUEUE_M, _QUEUE = 110.0, 3
-_SLOW_MPS = 18.0
+_SLOW_MPS = 17.0
+"""A queue beside which one may pass goes at 60 km/h at most, 16.7 m/s."""
+
 _NEARER_M, _BESIDE_M, _ALIKE = 0.9, 6.0, 0.7
 _ABOUT_M = 0.5
 """Where two are so nearly level nobody can say whether they are."""

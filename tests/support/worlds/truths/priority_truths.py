@@ -5,14 +5,21 @@ import numpy as np
 from support.worlds.facts import Fact
 from support.worlds.world_state import LENGTH_M, WIDTH_M
 
-_HINDERED_S, _FREE_S = 0.85, 3.5
-_INTO_S, _BEHIND_S = 0.55, 0.6
-"""Within the limits of the rules, 1 s and 0.3 s, as every second state tells times to 0.1 s, and
-half a width by which the area is too long at its ends takes another 0.1 s each."""
+_HINDERED_S, _UNHINDERED_S, _FREE_S = 0.85, 1.2, 3.5
+_INTO_S, _BEHIND_S = 0.55, 0.1
+"""Around the limits of the rules, 1 s and 0.3 s, as every second state tells times to 0.1 s, and
+half a width by which the area is too long at its ends takes another 0.1 s each. Who gets there once
+the other one has left has let it pass."""
+
+_SLOWED = 0.9
+"""Who keeps more of its speed has not been made to brake."""
+
+_ABOUT_S = 0.3
+"""Who gets there first by less gets there together with the other."""
 
 _MOVING_MPS, _STOPS_MPS = 3.0, 1.0
 _APART_M = WIDTH_M + 0.2
-_SIDEWAYS_DEG = (40.0, 140.0)
+_SIDEWAYS_DEG, _ABOUT_DEG = (40.0, 140.0), 10.0
 _TOWARDS_DEG = (40.0, 50.0)
 
 
@@ -20,29 +27,34 @@ def right_facts(world):
     """Where nothing but right before left holds."""
     for crossing, other, grade, at in _conflicts(world):
         kind = world.net.junctions[crossing.link.junction].get("type")
-        if kind == "right_before_left":
-            side = _comes_from(world, crossing.link, other.link)
-            sure = grade and _SIDEWAYS_DEG[0] < side < _SIDEWAYS_DEG[1]
+        side = _comes_from(world, crossing.link, other.link)
+        if kind == "right_before_left" and _sideways(side, _ABOUT_DEG):
+            sure = grade and _sideways(side)
             yield Fact(crossing.track.id, "junction_priority", *at, sure, other.track.id)
 
 
 def give_way_facts(world):
-    """Where a sign makes a road give way; at roundabouts those on the ring come from many sides."""
+    """Where a sign makes a road give way."""
     for crossing, other, grade, at in _conflicts(world):
         link = crossing.link
-        if _gives_way(world, link):
-            side = abs(_comes_from(world, link, other.link))
-            sure = grade and _SIDEWAYS_DEG[0] < side < _SIDEWAYS_DEG[1]
-            sure &= not _on_ring(world, link.end)
+        side = abs(_comes_from(world, link, other.link))
+        # Those who come from ahead have the same sign: that is another rule's
+        if _gives_way(world, link) and _sideways(side, _ABOUT_DEG):
+            sure = grade and _sideways(side)
             yield Fact(crossing.track.id, "give_way_sign", *at, sure, other.track.id)
+
+
+def _sideways(side_deg, more_deg=0.0):
+    """True if one comes from the right, at an angle of so much more or less than usual."""
+    return _SIDEWAYS_DEG[0] - more_deg < side_deg < _SIDEWAYS_DEG[1] + more_deg
 
 
 def roundabout_facts(world):
     """Who enters a roundabout before one that is on it."""
     for crossing, other, grade, at in _conflicts(world):
-        if _on_ring(world, crossing.link.end) and not _on_ring(world, crossing.link.start):
-            sure = grade and _on_ring(world, other.link.start)
-            yield Fact(crossing.track.id, "roundabout_priority", *at, sure, other.track.id)
+        enters = _on_ring(world, crossing.link.end) and not _on_ring(world, crossing.link.start)
+        if enters and _on_ring(world, other.link.start):
+            yield Fact(crossing.track.id, "roundabout_priority", *at, grade, other.track.id)
 
 
 def oncoming_facts(world):
@@ -105,13 +117,15 @@ def _grade(world, one, other):
         waited = speed[row : until + 1].min(initial=np.inf) if row <= until else np.inf
         # Who had to stop for it, or to wait for others, may have had its own reasons
         moved = speed[row] > _MOVING_MPS and waited > _MOVING_MPS
+        if spare > _UNHINDERED_S and moved and waited > _SLOWED * speed[row]:
+            return None
         return bool(spare < _HINDERED_S and moved)
     spare = own[0] - theirs[1]
     if spare >= _BEHIND_S:
         return None
     if one.link.end == other.link.end:
         # It joined behind it, as near as its speed let it
-        return False
+        return False if own[0] - theirs[0] < _ABOUT_S else None
     # It drove into the side of one that was in the junction already. Who stops for it, a little too
     # far ahead, has let it pass all the same
     during = own[0], theirs[1]

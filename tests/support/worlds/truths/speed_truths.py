@@ -4,14 +4,14 @@ import numpy as np
 
 from support.worlds.facts import graded
 
-_SURELY_MPS = 0.4
+_SURELY_MPS = 0.1
 _LEAST_S = 1.0
-_AROUND_S = 1.5
+_AROUND_S = 0.7
 """Where exactly one limit ends is a matter of where on the body one looks."""
 
 
 def speed_facts(world):
-    """Faster than the limit; sure by 0.4 m/s for a second, by all limits around."""
+    """Faster than the limit; sure by 0.1 m/s for a second, by all limits around."""
     reach = round(_AROUND_S / world.step_s)
     for track in world.vehicles.values():
         limits = np.array([world.net.legal_speed(lane) for lane in track.lane])
