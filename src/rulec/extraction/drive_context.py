@@ -126,7 +126,8 @@ class DriveContext:
         """
         rows = self.driving_along.any(axis=1).nonzero()[0]
         extents = self.extents.part(rows, slice(None))
-        away = np.add(*extents.from_middle(extents.lane)) / 2
+        lane = extents.lane
+        away = np.add(*extents.from_middle(lane)) / 2
         away = np.where(self.driving_along[rows], away, np.nan)
         offsets = np.full(self.road.lanes.there.shape[1], _telling(away, _ENOUGH_TRACKS))
         for number in range(len(offsets)):
