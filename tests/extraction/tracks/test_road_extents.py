@@ -114,4 +114,4 @@ def test_one_row_and_a_part():
     found = extents([straight(1, 0, 100)], *bodies)
     assert found.of(1).s.tolist() == [[20, 21]]
     assert found.part(np.array([2, 0]), slice(1, 2)).s.tolist() == [[31], [11]]
-    assert found.moved(0.5).left_of[2, 1] == pytest.approx([2.5, -1.5])
+    assert found.moved(np.array([0.0, 0.5])).left_of[2, 1] == pytest.approx([2.5, -1.5])
