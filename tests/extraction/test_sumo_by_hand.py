@@ -47,8 +47,8 @@ EXPECTED = {
         "de": {"speed_limit": 25.8, "crossing_overtaking": 51.3},
         "gb": {"speed_limit": 25.8, "crossing_overtaking": 51.3},
     },
-    # 28.4 m behind ew.7 at 15.1 m/s, and it takes 29.4 m. But ew.7 stands with its middle in the other
-    # lane and 0.2 m in the way: whether it is ahead in this one is open
+    # 28.4 m behind ew.7 at 15.1 m/s, and it takes 29.4 m. But ew.7 has its middle in the other
+    # lane and is 0.2 m in the way: whether it is ahead in this one is open
     "ew.8": {book: {"speed_limit": 41.2} for book in ("de", "gb")},
     # Stands askew into the lane beside until p.5 has left its own, and turns away from p.5 into it.
     # Who crosses is not passed, though p.5 is 0.9 m away when they are level.
