@@ -83,6 +83,12 @@ if TYPE_CHECKING:
     from rulec.planning.ranking.homotopy import HomotopyClasses as HomotopyClasses
     from rulec.planning.ranking.homotopy import Variant as Variant
     from rulec.planning.ranking.penalties import PenaltyRank as PenaltyRank
+    from rulec.recordings.recording import Lanelet as Lanelet
+    from rulec.recordings.recording import Participant as Participant
+    from rulec.recordings.recording import PlanningProblem as PlanningProblem
+    from rulec.recordings.recording import Recording as Recording
+    from rulec.recordings.recording import TrackState as TrackState
+    from rulec.recordings.recording_format import RecordingSource as RecordingSource
     from rulec.report.text.listing import Listed as Listed
     from rulec.rulebook.batch.batch_check import Checked as Checked
     from rulec.rulebook.rulebook_model import Example as Example
@@ -91,11 +97,6 @@ if TYPE_CHECKING:
     from rulec.rulebook.rulebook_model import Variable as Variable
     from rulec.scenario import Choice as Choice
     from rulec.scenario import Scenario as Scenario
-    from rulec.scenario.recorded.recording import Lanelet as Lanelet
-    from rulec.scenario.recorded.recording import Participant as Participant
-    from rulec.scenario.recorded.recording import PlanningProblem as PlanningProblem
-    from rulec.scenario.recorded.recording import Recording as Recording
-    from rulec.scenario.recorded.recording import TrackState as TrackState
     from rulec.trace import Trace as Trace
     from rulec.trace import TraceGraph as TraceGraph
     from rulec.trace.trace_columns import TraceCells as TraceCells
@@ -150,7 +151,8 @@ _HOME = {
     "rulec.rulebook.batch.batch_check": "Checked",
     "rulec.rulebook.rulebook_model": "Example Rule Rulebook Variable",
     "rulec.scenario": "Choice Scenario",
-    "rulec.scenario.recorded.recording": "Lanelet Participant PlanningProblem Recording TrackState",
+    "rulec.recordings.recording": "Lanelet Participant PlanningProblem Recording TrackState",
+    "rulec.recordings.recording_format": "RecordingSource",
     "rulec.trace": "Trace TraceGraph",
     "rulec.trace.trace_columns": "TraceCells TraceColumns layout_of",
     "rulec.vocabulary": "Vocabulary",

@@ -83,6 +83,7 @@ def values():
         *(maneuvers, maneuvers.prunings()[0], first, first.maneuver, maneuvers.classes()),
         *(maneuvers.variants(1)[0], rulec.load_scenario("s2"), rulec.Choice(), recording, judged),
         *(drive, drive.drive, rulec.NoDrive("1", "it stands"), rulec.RequestedDrives()),
+        rulec.RecordingSource(Path(RECORDING)),
         *(rulec.RequestedDrives().thresholds, recording.participants[0], audit, audit.counts),
         *(audit.findings[0], audit.articles[0], diff, diff.pairs[0], diff.pairs[0].comparison),
         *((*diff.only_first, *diff.only_second)[0], run, run.outcomes[0], lineage),
@@ -198,7 +199,7 @@ def test_a_process_pool():
 def test_a_compiled_rulebook_fits_itself_to_a_step_after_it_was_pickled():
     rules = pickle.loads(pickle.dumps(rulec.compile_rulebook("de")))
     assert {rule.step_s for rule in rules.at_step(0.1).rules} >= {None}
-    answers = rulec.verify_recording(RECORDING, rules, net=NET).answers()
+    answers = rulec.verify_recording(RECORDING, rules, map_path=NET).answers()
     assert not any(
         isinstance(one, rulec.DriveVerdict) and isinstance(one.answer, rulec.NotJudged)
         for one in answers

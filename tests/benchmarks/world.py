@@ -17,13 +17,13 @@ from program import run
 from timing import Timed, in_turns, processor_time
 
 import rulec
+from rulec import read_recording
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.partition import NavigationGraph
 from rulec.planning import Maneuvers, evaluate
 from rulec.rulebook.loader import parse_rulebook
 from rulec.scenario import Choice, Scenario
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
-from rulec.scenario.scenario_files import read_recording
 
 BUSIEST = "USA_US101-24_2_T-1.xml"
 # All vehicles count: traffic that is congested may be overtaken on either side

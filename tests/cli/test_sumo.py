@@ -70,12 +70,12 @@ def test_a_net_without_recorded_traffic(tmp_path, files, capfd):
     traces = tmp_path / "traces.jsonl"
     traces.write_text("", encoding="utf-8")
     assert main(["verify", str(traces), "-r", "gb", "--net", files[1]]) == 2
-    assert "--net is for recorded traffic" in capfd.readouterr().err
+    assert "--map is for recorded traffic" in capfd.readouterr().err
 
 
 def test_the_net_alone(files, capfd):
     assert main(["verify", files[1], "-r", "gb"]) == 2
-    assert "it is a SUMO net, which has only roads" in capfd.readouterr().err
+    assert "it is a map (nets of SUMO's), with nobody on its roads" in capfd.readouterr().err
 
 
 def test_what_a_file_is_tells_its_content(files, tmp_path, capfd):

@@ -2,13 +2,13 @@
 
 import pytest
 
+from rulec import read_recording
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
 from rulec.extraction.selection import RequestedDrives
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import verify
-from rulec.scenario.scenario_files import read_recording
 from support.builders.recordings import RECORDINGS
 
 FILES = sorted(RECORDINGS.glob("*.xml"))

@@ -7,7 +7,7 @@ import pytest
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.drives import Drives
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.scenario.recorded.recording import Light
+from rulec.recordings.recording import Light
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import lanelet, recording, straight, vehicle

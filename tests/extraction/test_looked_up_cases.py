@@ -7,11 +7,11 @@ from functools import cache
 
 import pytest
 
+from rulec import read_recording
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
-from rulec.scenario.scenario_files import read_recording
 from support.builders.recordings import RECORDINGS
 
 FOLDER = RECORDINGS.parent / "commonroad_more"

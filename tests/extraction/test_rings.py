@@ -6,7 +6,7 @@ from math import cos, pi, sin
 import pytest
 
 from rulec.extraction.drives import Drive, Drives
-from rulec.scenario.recorded.recording import Participant, TrackState
+from rulec.recordings.recording import Participant, TrackState
 from support.builders.recordings import lanelet, recording, rectangle
 from support.measured import middle
 

@@ -15,7 +15,7 @@ from rulec.extraction.source_tolerances import (
     rounded_to,
     tolerances_of,
 )
-from rulec.scenario.recorded.recording import StatedError
+from rulec.recordings.recording import StatedError
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes

@@ -7,10 +7,10 @@ are those of the simulation, in s: of the first state by which a rule is violate
 
 import pytest
 
+from rulec import read_recording
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives as Wanted
-from rulec.scenario.scenario_files import read_recording
 from support.builders.sumo_files import SUMO
 
 FILE = SUMO / "fcd.xml.gz"

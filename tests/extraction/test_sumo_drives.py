@@ -4,10 +4,10 @@ import re
 
 import pytest
 
+from rulec import read_recording
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives as Wanted
-from rulec.scenario.scenario_files import read_recording
 from support.builders.sumo_files import ROAD_NET, body, data, moment, written
 
 STEP_S = 0.5

@@ -15,10 +15,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rulec import read_recording
+from rulec.recordings.polylines import densified
 from rulec.scenario.recorded.ego_start import ego_start, reference_lanelet
-from rulec.scenario.recorded.reference_line import densified, reference_line
+from rulec.scenario.recorded.reference_line import reference_line
 from rulec.scenario.recorded.route import lanelets_at, route
-from rulec.scenario.scenario_files import read_recording
 from rulec.scenario.scenario_model import Choice
 from support.builders.recordings import RECORDINGS
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from rulec.scenario.scenario_files import read_recording
+from rulec import read_recording
 from support.builders.recordings import RECORDINGS, SAMPLES
 from support.environments import environment
 from support.oracles.commonroad_io import assert_equal

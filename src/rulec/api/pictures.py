@@ -19,6 +19,7 @@ from rulec.planning.product.accepted_edges import accepted_edges
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.cheapest import Maneuver
+from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.report.pictures.drawing.picture_formats import Drawing
 from rulec.report.pictures.drives.drive_page import drive_page
 from rulec.report.pictures.drives.drive_picture import chosen_moment, drive_entries, drive_picture
@@ -33,7 +34,6 @@ from rulec.report.pictures.picture_captions import (
 from rulec.report.pictures.scene_picture import scene_legend, scene_pictures
 from rulec.report.pictures.trace_picture import ribbon_entries, ribbon_picture
 from rulec.report.pictures.trace_ribbon import ribbon
-from rulec.scenario.scenario_messages import NOT_IN_RECORDING
 from rulec.trace import Trace
 
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rulec.diagnostics.code import Code
     from rulec.monitoring.explain.explanation import Explanation
     from rulec.monitoring.verdict import Violation
+    from rulec.recordings.recording_format import RecordingSource
     from rulec.report.text.listing import Listed
     from rulec.rulebook.batch.batch_check import Checked
     from rulec.rulebook.rulebook_model import Rulebook
@@ -215,22 +216,23 @@ class RulebookVerbs(SessionSettings):
         return audit(loaded.rulebook, inherited, failing)
 
     def audit_source(
-        self, reference: str | Path, source: str | Path, net: str | Path | None = None
+        self, reference: str | Path, source: str | Path, where: RecordingSource | None = None
     ) -> SourceAudit:
         """Say which rules can be judged on what a source tells.
 
-        ``source`` is a format (``commonroad``, ``sumo``), of which some files may tell less, or a
-        file of recorded traffic with its ``net``. Raises RulecError.
+        ``source`` is a format, such as ``commonroad``, of which some files may tell less, or a file
+        of recorded traffic; ``where`` says how to read that. Raises RulecError.
         """
         from rulec.analysis.audit.source_audit import audit_source
         from rulec.extraction.selection import RequestedDrives, selected_drives
         from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
-        from rulec.scenario.scenario_files import read_recording
+        from rulec.recordings.recording_files import read_recording
+        from rulec.recordings.recording_format import RecordingSource
 
         rulebook = self.compile(reference)
         told = TELLABLE_WORDS.get(str(source))
         if told is None:
-            recording = read_recording(Path(source), None if net is None else Path(net))
+            recording = read_recording(where or RecordingSource(Path(source)))
             drives = selected_drives(recording, RequestedDrives(), str(source), rulebook.traffic)
             told = told_words(drives)
         return audit_source(rulebook, str(source), told)

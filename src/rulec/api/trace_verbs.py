@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from rulec.monitoring.assumptions import Assumptions
     from rulec.monitoring.batch.verdict_columns import VerdictColumns
     from rulec.monitoring.verdict import NotJudged, Verdict
+    from rulec.recordings.recording import Recording
     from rulec.report.pictures.drawing.picture_formats import Format as PictureFormat
     from rulec.report.pictures.drawing.styles import Theme
-    from rulec.scenario.recorded.recording import Recording
     from rulec.trace import Trace
     from rulec.trace.trace_columns import TraceCells, TraceColumns
 
@@ -91,23 +91,36 @@ class TraceVerbs(SessionSettings):
 
         return list(verify_cells(cells, self._compiled(rules).fitted_to(cells.step_s)))
 
-    def read_recording(self, path: str | Path, net: str | Path | None = None) -> Recording:
-        """Read recorded traffic, with SUMO's road network ``net``. Raises RulecError."""
-        from rulec.scenario.scenario_files import read_recording
+    def read_recording(
+        self,
+        path: str | Path,
+        map_path: str | Path | None = None,
+        *,
+        form: str | None = None,
+        scenario_id: str | None = None,
+    ) -> Recording:
+        """Read the recording in a file, of several there the one that ``scenario_id`` names.
 
-        return read_recording(Path(path), None if net is None else Path(net))
+        ``map_path`` is the map for formats that have no roads of their own; ``form``, such as
+        ``"sumo"``, is for files that do not show their format. Raises RulecError.
+        """
+        from rulec.recordings.recording_files import read_recording
+        from rulec.recordings.recording_format import RecordingSource
+
+        roads = None if map_path is None else Path(map_path)
+        return read_recording(RecordingSource(Path(path), roads, form, scenario_id))
 
     def verify_recording(
         self,
         recording: str | Path | Recording,
         rules: Rules,
         wanted: RequestedDrives | None = None,
-        net: str | Path | None = None,
+        map_path: str | Path | None = None,
     ) -> RecordingVerdicts:
         """Judge the drives of recorded vehicles, each in turn as ego.
 
-        ``recording`` is a file of CommonRoad or SUMO (with its ``net``), or what has been read from
-        it; ``wanted`` says whose drives, by which thresholds, on which assumptions.
+        ``recording`` is a file (``map_path`` has its roads if it has none), or what has been read
+        from it; ``wanted`` says whose drives, by which thresholds, on which assumptions.
 
         Raises:
             RulecError: R0407 or R0507 if the rules do not fit the step, R0612 for a vehicle that is
@@ -118,7 +131,7 @@ class TraceVerbs(SessionSettings):
 
         file = recording if isinstance(recording, str | Path) else recording.name
         if isinstance(recording, str | Path):
-            recording = self.read_recording(recording, net)
+            recording = self.read_recording(recording, map_path)
         compiled = self._compiled(rules)
         return RecordingVerdicts(recording, compiled, wanted or RequestedDrives(), str(file))
 
@@ -130,7 +143,7 @@ class TraceVerbs(SessionSettings):
         rules: Rules,
         ego: str = "",
         wanted: RequestedDrives | None = None,
-        net: str | Path | None = None,
+        map_path: str | Path | None = None,
         *,
         only: Sequence[str] = (),
         at_s: float | None = None,
@@ -155,7 +168,7 @@ class TraceVerbs(SessionSettings):
 
         vehicle, part, _ = ego.partition("#")
         request = replace(wanted or RequestedDrives(), egos=(vehicle,) if vehicle else ())
-        verdicts = self.verify_recording(recording, rules, request, net)
+        verdicts = self.verify_recording(recording, rules, request, map_path)
         trace = ego if part else ""
         drawing = drive_drawing(verdicts, trace, frozenset(only) if only else None, at_s)
         return as_bytes(drawing, form, verdicts.recording.name, theme)

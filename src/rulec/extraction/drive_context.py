@@ -15,7 +15,7 @@ from rulec.extraction.tracks.road_extents import RoadExtents, lanes_touched
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.scenario.recorded.recording import Recording, Side
+from rulec.recordings.recording import Recording, Side
 
 KMH = 3.6
 """km/h in one m/s."""

@@ -24,7 +24,7 @@ from rulec.extraction.tracks.road_extents import (
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Floats, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
-from rulec.scenario.recorded.recording import Recording, Side
+from rulec.recordings.recording import Recording, Side
 
 FEWEST_STATES = 2
 

@@ -14,7 +14,7 @@ from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.verdict import NotJudged, Verdict, agreed
-from rulec.scenario.recorded.recording import Recording
+from rulec.recordings.recording import Recording
 from rulec.value_display import Rows, short_repr
 
 MOST_STATES = 1 << 13

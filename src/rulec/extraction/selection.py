@@ -13,9 +13,9 @@ from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
+from rulec.recordings.recording import Recording
+from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.rulebook.rulebook_model import Traffic
-from rulec.scenario.recorded.recording import Recording
-from rulec.scenario.scenario_messages import NOT_IN_RECORDING
 from rulec.trace import Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary

@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass, replace
 from statistics import median
 
-from rulec.scenario.recorded.recording import Recording, Rounding
+from rulec.recordings.recording import Recording, Rounding
 
 
 @dataclass(frozen=True, slots=True)

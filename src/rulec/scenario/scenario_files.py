@@ -4,79 +4,18 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
 from rulec.files import decoded, opened
+from rulec.recordings.recording_files import is_recording, read_recording
+from rulec.recordings.recording_format import RECORDING, RecordingSource
+from rulec.recordings.recording_messages import OTHER_CHOICE
 from rulec.resources import scenarios_folder
-from rulec.scenario.safe_xml import is_xml, root_of
-from rulec.scenario.scenario_messages import NOT_A_SCENARIO, OTHER_CHOICE, UNKNOWN_SCENARIO
+from rulec.scenario.scenario_messages import NOT_A_SCENARIO, UNKNOWN_SCENARIO
 from rulec.scenario.scenario_model import Choice, Scenario
 from rulec.scenario.toml.conversion import to_scenario
 from rulec.scenario.toml.toml_tables import TomlFile
-from rulec.scenario.xml_element import XmlFormat, short
 from rulec.toml import parsed_toml
-
-if TYPE_CHECKING:
-    from rulec.scenario.recorded.recording import Recording
-
-RECORDING = XmlFormat(
-    "recorded traffic",
-    "",
-    "a recording is a CommonRoad scenario, or SUMO's floating-car data with their net",
-)
-
-
-def read_recording(path: Path, net: Path | None = None) -> Recording:
-    """Read a file of recorded traffic; ``net`` is for SUMO's data, which have none.
-
-    Raises RulecError R0610 for a file that cannot be read as what it seems to be, R0613 for a net
-    where none is needed, R0614 and R0615 for a missing or wrong one, R0701 if a file cannot be
-    opened.
-    """
-    if is_protobuf(path):
-        _refuse(net, path)
-        # NumPy and Shapely take a while, and few commands read recordings.
-        from rulec.scenario.commonroad.commonroad_protobuf import read_protobuf
-
-        return read_protobuf(path)
-    root = root_of(path, RECORDING)
-    if root == "fcd-export":
-        # As above.
-        from rulec.scenario.sumo.sumo_recording import read_sumo
-
-        return read_sumo(path, net)
-    if root == "net":
-        way_out = "give the floating-car data, and this file with --net"
-        raise RECORDING.refused(path, "it is a SUMO net, which has only roads", help_text=way_out)
-    if root != "commonRoad":
-        why = f"it is XML of `{short(root)}`"
-        expected = "expected `commonRoad` or `fcd-export`"
-        raise RECORDING.refused(path, why, expected=expected)
-    _refuse(net, path)
-    # As above.
-    from rulec.scenario.commonroad.commonroad_file import read_commonroad
-
-    return read_commonroad(path)
-
-
-def _refuse(net: Path | None, path: Path) -> None:
-    if net is not None:
-        raise OTHER_CHOICE.error(
-            SourceLocation(str(path)),
-            f"`{path.name}` has its own roads, and takes no net",
-            help="leave out --net, which is for SUMO's floating-car data",
-        )
-
-
-def is_recording(file: str) -> bool:
-    """True if a file's name or first bytes show recorded traffic."""
-    return is_xml(Path(file)) or is_protobuf(Path(file))
-
-
-def is_protobuf(path: Path) -> bool:
-    """True if a file's name says that it is CommonRoad's other form, Protocol Buffers."""
-    return path.suffix.lower() == ".pb"
 
 
 def read_scene(path: Path, choice: Choice) -> Scenario:
@@ -87,7 +26,8 @@ def read_scene(path: Path, choice: Choice) -> Scenario:
     # Scenarios in TOML start without NumPy and Shapely, which recordings need
     from rulec.scenario.recorded.recorded_scene import seen_from_ego
 
-    recording = read_recording(path, choice.net)
+    source = RecordingSource(path, choice.map_path, choice.input_format, choice.scenario_id)
+    recording = read_recording(source)
     try:
         return seen_from_ego(recording, choice, str(path))
     except ValueError as reason:

@@ -217,8 +217,8 @@ class Choice:
     ``prediction``: others move as recorded, or from time 0 on with constant acceleration; or each
     of them does the one or the other, with these probabilities. Traffic is ``congested`` below a
     median speed. ``ego_width_m``: None is what the participant has whose part ego takes, if it
-    takes one's; else ego is a point. ``net`` is the file with the roads, for formats that keep them
-    apart. Ids are those of the file; numbers will do.
+    takes one's; else ego is a point. ``map_path``, ``input_format`` and ``scenario_id`` are those
+    of a ``RecordingSource``. Ids are those of the file; numbers will do.
     """
 
     ego: str | int | None = None
@@ -226,7 +226,9 @@ class Choice:
     reference: str | int | None = None
     prediction: Prediction | Mapping[Prediction, Fraction] = "recorded"
     congested_below_kmh: float = CONGESTED_BELOW_KMH
-    net: Path | None = None
+    map_path: Path | None = None
+    input_format: str | None = None
+    scenario_id: str | None = None
     ego_width_m: float | None = None
 
 

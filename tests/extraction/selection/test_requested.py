@@ -8,7 +8,7 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.traffic_thresholds import USUAL
-from rulec.scenario.recorded.recording import TrackState
+from rulec.recordings.recording import TrackState
 from support.builders.drive_contexts import steady
 from support.builders.recordings import recording, rectangle, vehicle
 from support.generators.random_recordings import lanes

@@ -5,7 +5,7 @@ from math import cos, radians, sin
 import pytest
 
 from rulec.extraction.signals.map.junction_signals import junction_signals
-from rulec.scenario.recorded.recording import Light
+from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes

@@ -14,9 +14,9 @@ from rulec.extraction.signals.map.oncoming_priority import goes_first
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.tracks.junctions import junctions_of
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.scenario.recorded.recording import Light, Recording
-from rulec.scenario.sumo.lanelets import net_lanelets
-from rulec.scenario.sumo.net import read_net
+from rulec.recordings.recording import Light, Recording
+from rulec.recordings.sumo.lanelets import net_lanelets
+from rulec.recordings.sumo.net import read_net
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight
 

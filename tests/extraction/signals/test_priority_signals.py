@@ -8,9 +8,9 @@ import pytest
 
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.tracks.junctions import junctions_of
-from rulec.scenario.recorded.recording import Recording
-from rulec.scenario.sumo.lanelets import net_lanelets
-from rulec.scenario.sumo.net import read_net
+from rulec.recordings.recording import Recording
+from rulec.recordings.sumo.lanelets import net_lanelets
+from rulec.recordings.sumo.net import read_net
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 

@@ -10,7 +10,7 @@ import pytest
 
 from rulec.extraction.signals.map.road_signals import road_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.scenario.recorded.recording import Weather
+from rulec.recordings.recording import Weather
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 

@@ -9,7 +9,7 @@ import pytest
 
 from rulec.extraction.signals.map.zone_signals import zone_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.scenario.recorded.recording import Light
+from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 

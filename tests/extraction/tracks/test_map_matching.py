@@ -13,7 +13,7 @@ from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.map_matching import NEAR_M, SIGMA_M, MapMatching, candidates
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
-from rulec.scenario.recorded.recording import Participant, TrackState
+from rulec.recordings.recording import Participant, TrackState
 from support.builders.recordings import lanelet, recording, rectangle, straight, vehicle
 from support.generators.lanelet_grids import lanelet_grid, street
 

@@ -16,6 +16,7 @@ import rulec
 from rulec.api.pictures import drive_drawing
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
+from rulec.recordings.recording import Light
 from rulec.report.pictures.drawing.canvas import Area, LabelText
 from rulec.report.pictures.drawing.clipping import clipped_lines, clipped_ring
 from rulec.report.pictures.drawing.picture_formats import as_bytes
@@ -24,7 +25,6 @@ from rulec.report.pictures.drives.drive_picture import chosen_moment, drive_pict
 from rulec.report.pictures.drives.nearest_points import nearest_points
 from rulec.report.pictures.drives.scene_json import scene_data
 from rulec.report.pictures.drives.scene_of_drive import SIGHT_M, drive_scene
-from rulec.scenario.recorded.recording import Light
 from support.builders.recordings import recording, straight, vehicle
 
 HOSTILE = "</script><script>alert('x')</script>&<b>"

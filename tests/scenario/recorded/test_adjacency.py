@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.scenario.recorded.adjacency import bordering, with_neighbours
+from rulec.recordings.adjacency import bordering, with_neighbours
 from support.builders.recordings import lanelet, recording, straight
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.scenario.recorded.recording import TrackState, id_order
+from rulec.recordings.recording import TrackState, id_order
 from rulec.scenario.recorded.route import lanelet_of, lanelets_at, route
 from support.builders.recordings import lanelet, recording, straight
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from rulec.diagnostics import RulecError
+from rulec.recordings.recording import Light, Participant
 from rulec.scenario import Alternative, Box, Choice, ConstantAcceleration, Footprints
 from rulec.scenario.motion import swept
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
-from rulec.scenario.recorded.recording import Light, Participant
 from rulec.scenario.recorded.traffic_obstacles import GOES_ON_S
 from support.builders.recordings import recording, rectangle, straight, vehicle
 

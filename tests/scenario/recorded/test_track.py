@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.scenario.recorded.recording import TrackState
-from rulec.scenario.recorded.track import Track, TrackOutlines, TrackStates, rectangles
+from rulec.recordings.recording import TrackState
+from rulec.recordings.track import Track, TrackOutlines, TrackStates, rectangles
 
 TRACK = Track(
     np.array([2, 5]),

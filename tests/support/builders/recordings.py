@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rulec.scenario.recorded.recording import (
+from rulec.recordings.recording import (
     Lanelet,
     Participant,
     PlanningProblem,
@@ -19,7 +19,7 @@ BESIDE = Path(__file__).resolve().parents[4] / "shared/data/commonroad"
 RECORDINGS = Path(os.environ.get("RULEC_RECORDINGS", BESIDE))
 
 _TOP = Path(__file__).resolve().parents[3]
-_SAMPLES = _TOP / "tests/scenario/commonroad/samples"
+_SAMPLES = _TOP / "tests/recordings/commonroad/samples"
 SAMPLES = {
     file: _SAMPLES / f"{file.stem}.json"
     for file in (

@@ -7,8 +7,8 @@ what a recording calls otherwise.
 import numpy as np
 import pytest
 
-from rulec.scenario.commonroad.commonroad_surroundings import Intersection, junctions
-from rulec.scenario.recorded.recording import Light, Weather
+from rulec.recordings.commonroad.commonroad_surroundings import Intersection, junctions
+from rulec.recordings.recording import Light, Weather
 
 MARKS = {
     "solid": "solid",

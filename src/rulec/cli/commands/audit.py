@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.scenario_options import net_option
+from rulec.cli.options.scenario_options import recording_options, recording_source
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import errors_told, open_session
 from rulec.report.text.console import page_width, print_result
@@ -44,10 +44,10 @@ if TYPE_CHECKING:
 @click.option(
     "--source",
     metavar="FILE|FORMAT",
-    help="Say which rules can be judged on what a recording tells, or files of a format "
-    "(`commonroad`, `sumo`), and which words the others lack.",
+    help="Say which rules can be judged on what a recording tells, or files of a format, one of "
+    "`rulec formats`, and which words the others lack.",
 )
-@net_option
+@recording_options
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
@@ -56,8 +56,8 @@ def command(
     run: bool,
     compare: str | None,
     source: str | None,
-    net: Path | None,
     at: str,
+    **options: Any,
 ) -> int:
     """Say what every RULEBOOK (a name, or the path of a source) rests on.
 
@@ -72,6 +72,7 @@ def command(
     from rulec.report.rulebooks.audit_report import render
 
     shared.only_sources(rulebooks, "cannot be audited")
+    where = recording_source(source or "", options)
     older = None
     if compare is not None:
         if Path(compare).suffix == ".json":
@@ -84,7 +85,7 @@ def command(
         with errors_told():
             done = open_session(at).audit(rulebook, run_examples=run)
             if source is not None:
-                sources.append(open_session(at).audit_source(rulebook, source, net))
+                sources.append(open_session(at).audit_source(rulebook, source, where))
             audits.append(done)
     against = {} if older is None else compare_audits(audits, older)
     if audits or output_format == "json":

@@ -16,9 +16,10 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.scenario_options import (
     drives_options,
     graph_options,
-    net_option,
     read_scene,
     reading_options,
+    recording_options,
+    recording_source,
     requested_drives,
     scene_reading,
 )
@@ -158,7 +159,7 @@ def trace(
     help="Light or dark; `auto` is as the reader prefers, and light in PNG and PDF.",
 )
 @drives_options
-@net_option
+@recording_options
 @shared.at_option
 @_picture_options
 def drive(
@@ -168,7 +169,6 @@ def drive(
     patterns: tuple[str, ...],
     at_s: float | None,
     theme: Theme,
-    net: Path | None,
     at: str,
     output: Path,
     form: str | None,
@@ -181,12 +181,14 @@ def drive(
     """
     # Recordings, verdicts and pictures, 400 ms: not for --help.
     from rulec.api.pictures import drive_drawing
+    from rulec.recordings.recording_files import read_recording
 
     rules = read_machines(rulebook, at)
     vehicle, part, _ = ego.partition("#")
     wanted = requested_drives((vehicle,) if vehicle else (), options, rules.vocabulary)
     kept = frozenset(rule.name for rule in _only(rules, patterns).rules) if patterns else None
-    verdicts = rulec.verify_recording(file, rules, wanted, net)
+    recording = read_recording(recording_source(file, options))
+    verdicts = rulec.verify_recording(recording, rules, wanted)
     _write(drive_drawing(verdicts, ego if part else "", kept, at_s), output, form, theme)
 
 

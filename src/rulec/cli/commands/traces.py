@@ -95,7 +95,8 @@ def command(
     print_written(f"{wanted:,} of {shown_count(total)} traces to {output}", output)
 
 
-_OF_DRIVES = {"ego", "net", "thresholds", "assumed", "as_recorded"}
+_OF_DRIVES = {"ego", "thresholds", "assumed", "as_recorded"}
+_OF_DRIVES |= {"map_path", "input_format", "scenario_id"}
 """The options that mean something for drives."""
 
 
@@ -106,13 +107,13 @@ def _write_drives(
     rulebook: str | None,
     limit: int | None,
     form: Format | None,
-    options: Mapping[str, Any],
+    options: dict[str, Any],
 ) -> None:
     # numpy and shapely, 200 ms: only for recordings.
     from rulec.extraction.selection import selected_drives
     from rulec.extraction.to_trace import Drive
-    from rulec.scenario.scenario_files import read_recording
-    from rulec.scenario.scenario_messages import NOT_IN_RECORDING
+    from rulec.recordings.recording_files import read_recording
+    from rulec.recordings.recording_messages import NOT_IN_RECORDING
     from rulec.trace.formats.trace_files import format_of, with_bounds, write_traces
     from rulec.trace.vocabulary_projection import MEASURED
 
@@ -122,7 +123,7 @@ def _write_drives(
     vocabulary = None if book is None else book.vocabulary
     egos = () if options["ego"] is None else (options["ego"],)
     result = selected_drives(
-        read_recording(file, options["net"]),
+        read_recording(scenario_options.recording_source(file, options)),
         scenario_options.requested_drives(egos, options, vocabulary),
         str(file),
         "" if book is None else book.traffic,

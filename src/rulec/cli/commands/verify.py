@@ -14,7 +14,6 @@ from typing import IO, TYPE_CHECKING, Any, cast
 
 import click
 
-import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
@@ -30,6 +29,8 @@ if TYPE_CHECKING:
     from rulec.monitoring.assumptions import Assumptions
     from rulec.monitoring.explain.explanation import Deciding, Explanation
     from rulec.monitoring.verdict import NotJudged, Verdict
+    from rulec.recordings.recording import Recording
+    from rulec.recordings.recording_format import RecordingSource
     from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
     from rulec.trace.trace_model import Ending
@@ -71,7 +72,7 @@ if TYPE_CHECKING:
     help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
 )
 @scenario_options.drives_options
-@scenario_options.net_option
+@scenario_options.recording_options
 @shared.json_option
 @shared.at_option
 def command(
@@ -84,7 +85,6 @@ def command(
     ends: Ending | None,
     json_output: bool,
     at: str,
-    net: Path | None,
     egos: tuple[str, ...],
     **options: Any,
 ) -> int:
@@ -93,18 +93,19 @@ def command(
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
     cannot be judged is reported and does not stop the others.
 
-    FILE may also be recorded traffic: CommonRoad's (.xml, .pb), or SUMO's floating-car data. Then
-    every vehicle is judged by what it did, and a table says who violated what.
+    FILE may also be recorded traffic, of any format that `rulec formats` lists. Then every vehicle
+    is judged by what it did, and a table says who violated what.
 
     Exit status: 0 no hard rule is violated, 1 one is, 2 a trace could not be judged, or no rule.
     """
     # Formats of recordings, 80 ms: not for --help.
-    from rulec.scenario.scenario_files import is_recording
+    from rulec.recordings.recording_files import is_recording
 
     rules = read_machines(rulebook, at)
-    recordings = [file for file in files if is_recording(file)]
+    named = options["input_format"] is not None
+    recordings = [file for file in files if named or is_recording(file)]
     about = {name: value for name, value in options.items() if name != "assumed"}
-    option = scenario_options.given_drives_option({"net": net, "egos": egos, **about})
+    option = scenario_options.given_drives_option({"egos": egos, **about})
     if option and not recordings:
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     to_explain = n_explained if n_explained is not None else 0 if json_output else 1
@@ -114,7 +115,7 @@ def command(
     if recordings:
         request = scenario_options.requested_drives(egos, options, rules.vocabulary)
         for file in recordings:
-            run.recording(file, net, request)
+            run.recordings(scenario_options.recording_source(file, dict(options)), request)
     if len(recordings) < len(files):
         assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
         run.traces([file for file in files if file not in recordings], form, assumed)
@@ -170,26 +171,33 @@ class _Run:
             print_result(verdict_report.summary(counts, not_judged))
         self.violated |= counts[False] > 0
 
-    def recording(self, file: str, net: Path | None, request: RequestedDrives) -> None:
-        """Judge every drive of a recording."""
+    def recordings(self, source: RecordingSource, request: RequestedDrives) -> None:
+        """Judge every recording in a file."""
         # numpy and shapely, 250 ms: only for recordings.
-        from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
+        from rulec.recordings.recording_files import read_recordings
+
+        try:
+            for recording in read_recordings(source):
+                self._recording(recording, str(source.path), request)
+        except RulecError as error:
+            self._complain(error)
+
+    def _recording(self, recording: Recording, file: str, request: RequestedDrives) -> None:
+        """Judge every drive of a recording. Raises RulecError."""
+        # numpy and shapely, 250 ms: as for ``recordings``.
+        from rulec.extraction import recording_verdicts as recorded
         from rulec.monitoring.verdict import NotJudged
         from rulec.report.verdicts import recording_table, verdict_report
 
-        try:
-            drives = rulec.verify_recording(file, self.rules, request, net)
-        except RulecError as error:
-            self._complain(error)
-            return
-        tally, blocks = ViolationTally(), []
+        drives = recorded.RecordingVerdicts(recording, self.rules, request, file)
+        tally, blocks = recorded.ViolationTally(), []
         names = [rule.name for rule in self.rules.rules]
         with progress(f"judging {file}", len(drives.egos)) as tell:
             for number, answer in enumerate(drives.answers(), 1):
                 tell(number)
                 tally.add(answer, names)
                 explained: list[Explanation] = []
-                if isinstance(answer, DriveVerdict):
+                if isinstance(answer, recorded.DriveVerdict):
                     verdict = answer.answer
                     if isinstance(verdict, NotJudged):
                         self._complain(verdict.error)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.options.shared_options import choice_option, combined, file_option
+from rulec.cli.options.shared_options import choice_option, combined
 from rulec.cli.options.shell_completion import complete_scenarios
+from rulec.recordings.format_table import FORMATS
+from rulec.recordings.recording_format import RecordingSource
 
 if TYPE_CHECKING:
     from rulec.extraction.selection import RequestedDrives
@@ -45,11 +48,39 @@ def _prediction(
     return fractions
 
 
-net_option = file_option(
-    "--net",
-    "For SUMO's floating-car data: the net.  [default: the one they name, or the only "
-    "one ending in .net.xml beside them]",
+recording_options = combined(
+    [
+        click.option(
+            "--map",
+            "--net",
+            "map_path",
+            metavar="FILE",
+            type=click.Path(dir_okay=False, path_type=Path),
+            help="For recorded traffic without roads of its own: the map.  [default: for SUMO's "
+            "data the net that they name, or the only one ending in .net.xml beside them]",
+        ),
+        click.option(
+            "--input-format",
+            metavar="NAME",
+            type=click.Choice([form.name for form in FORMATS]),
+            help="The format of recorded traffic, one of `rulec formats`.  [default: the one that "
+            "the file shows]",
+        ),
+        click.option(
+            "--scenario",
+            "scenario_id",
+            metavar="ID",
+            help="Of a file that holds several recordings: only this one.",
+        ),
+    ]
 )
+"""Where recorded traffic is read from; ``recording_source`` takes their values out."""
+
+
+def recording_source(file: str | Path, options: dict[str, Any]) -> RecordingSource:
+    """The source of a file, with the values of ``recording_options``, taken out."""
+    names = ("map_path", "input_format", "scenario_id")
+    return RecordingSource(Path(file), *(options.pop(name) for name in names))
 
 
 def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
@@ -138,7 +169,7 @@ graph_options = combined(
             metavar="KMH",
             help="In a recorded scene: traffic counts as congested below this median speed.",
         ),
-        net_option,
+        recording_options,
     ]
 )
 """The scenario, and how it is cut into cells; the rest is what ``read_scene`` takes out again."""
@@ -193,6 +224,7 @@ drives_options = combined(
 def given_drives_option(options: Mapping[str, Any]) -> str | None:
     """The first of these options for drives that has been given, if any."""
     names = {"egos": "--ego", "assumed": "--assume", "thresholds": "--threshold"}
+    names |= {"map_path": "--map", "scenario_id": "--scenario"}
     given = (names.get(name) or f"--{name.replace('_', '-')}" for name in options if options[name])
     return next(given, None)
 

@@ -8,7 +8,7 @@ from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.scenario.recorded.recording import Side
+from rulec.recordings.recording import Side
 
 _BESIDE_M = 0.5
 """A vehicle needs so much more room than it is wide."""

@@ -12,7 +12,7 @@ from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.tracks import Flags
-from rulec.scenario.recorded.recording import Lamp
+from rulec.recordings.recording import Lamp
 
 _PUBLIC = ("bus", "rail_vehicle")
 _FLASH_S = 1.0

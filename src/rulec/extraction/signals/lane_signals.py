@@ -10,7 +10,7 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns, named_values
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.scenario.recorded.recording import Lanelet, LaneMark
+from rulec.recordings.recording import Lanelet, LaneMark
 
 _INDICATORS = frozenset({"left_indicator", "right_indicator"})
 _INDICATIONS = ("no_indicator", "near_indicator", "far_indicator")

@@ -14,7 +14,7 @@ import numpy as np
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.scenario.recorded.recording import Lanelet
+from rulec.recordings.recording import Lanelet
 
 _TAPERED = 0.6
 """A lane that ends is narrower at its end than this part of what it was."""

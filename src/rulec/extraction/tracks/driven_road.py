@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_route import pieces_of
 from rulec.extraction.tracks.tracks import Floats
+from rulec.recordings.recording import Lanelet, Points, Recording, is_lane
 from rulec.scenario.recorded.lane_coordinates import (
     Lanes,
     borders_along,
     crossings_along,
     lanes_along,
 )
-from rulec.scenario.recorded.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.reference_line import (
     ReferenceLine,
     pieces_at,
@@ -28,7 +28,7 @@ from rulec.scenario.recorded.reference_line import (
     smoothed,
     turn,
 )
-from rulec.scenario.recorded.route import directions_beside, is_lane, lanes_beside, roads_beyond
+from rulec.scenario.recorded.route import directions_beside, lanes_beside, roads_beyond
 
 _BESIDE_M = 20.0
 _AWAY_M = 30.0

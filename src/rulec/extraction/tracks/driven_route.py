@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.map_matching import MatchedStretch
-from rulec.scenario.recorded.recording import Recording
+from rulec.recordings.recording import Recording
 from rulec.scenario.recorded.route import lanelet_length
 
 _SHIFT_COST, _SHORT_COST = 1e6, 1e5

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.junctions import Interval, Junction, JunctionWay, junctions_of
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.scenario.recorded.recording import Recording
+from rulec.recordings.recording import Recording
 from rulec.scenario.recorded.reference_line import turn
 
 _FARTHEST_M = 2.5

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from rulec.extraction.tracks.driven_road import junction_lanelets
-from rulec.scenario.recorded.recording import Lanelet, Points, Recording
+from rulec.recordings.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import lanelet_area
 

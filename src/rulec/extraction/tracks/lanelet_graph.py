@@ -10,9 +10,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from rulec.scenario.recorded.adjacency import bordering
-from rulec.scenario.recorded.recording import Lanelet, Recording
-from rulec.scenario.recorded.route import is_lane, lanelet_length, lanes_beside
+from rulec.recordings.adjacency import bordering
+from rulec.recordings.recording import Lanelet, Recording, is_lane
+from rulec.scenario.recorded.route import lanelet_length, lanes_beside
 
 MOST_HOPS = 4
 """The number of lanelets that a vehicle passes at most between two of its states."""

@@ -29,9 +29,9 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.tracks import Tracks
-from rulec.scenario.recorded.recording import Recording
+from rulec.recordings.recording import Recording, is_lane
 from rulec.scenario.recorded.reference_line import turn
-from rulec.scenario.recorded.route import directions_beside, is_lane, lanelet_area
+from rulec.scenario.recorded.route import directions_beside, lanelet_area
 
 NEAR_M = 3.0
 """The farthest that a vehicle may be beside a lanelet that it is matched to."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rulec.scenario.recorded import recording as model
+from rulec.recordings import recording as model
 
 _LAMPS: dict[model.Lamp, model.Lamp] = {
     "left_indicator": "right_indicator",

@@ -7,9 +7,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import shapely
 
-from rulec.scenario.recorded.recording import Lanelet, Recording, Side
+from rulec.recordings.recording import Lanelet, Recording, Side, is_lane
 from rulec.scenario.recorded.reference_line import turn
-from rulec.scenario.recorded.route import is_lane
 
 LONGEST_M = 300.0
 """A ring is no longer round."""

@@ -12,14 +12,9 @@ import shapely
 from rulec.extraction.tracks.junction_passages import JunctionPassages, junction_passages
 from rulec.extraction.tracks.rings import ring_lanelets
 from rulec.extraction.tracks.tracks import Tracks
-from rulec.scenario.recorded.recording import Lanelet, Recording, Side
+from rulec.recordings.recording import Lanelet, Recording, Side, is_lane
 from rulec.scenario.recorded.reference_line import turn
-from rulec.scenario.recorded.route import (
-    directions_beside,
-    is_lane,
-    lanelet_area,
-    lanes_beside,
-)
+from rulec.scenario.recorded.route import directions_beside, lanelet_area, lanes_beside
 
 SAME_CARRIAGEWAY_M = 1.5
 OTHER_CARRIAGEWAY_M = 30.0

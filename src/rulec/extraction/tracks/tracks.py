@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from rulec.extraction.source_tolerances import tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.scenario.recorded.recording import Lanelet, Participant, Points, Recording
-from rulec.scenario.recorded.route import is_lane, lanelet_area
+from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
+from rulec.scenario.recorded.route import lanelet_area
 
 Floats: TypeAlias = NDArray[float64]
 Flags: TypeAlias = NDArray[bool_]

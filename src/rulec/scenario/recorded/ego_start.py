@@ -9,9 +9,9 @@ from math import cos, hypot, sin
 import numpy as np
 
 from rulec.diagnostics import RulecError, SourceLocation, named
-from rulec.scenario.recorded import recording as recorded
+from rulec.recordings import recording as recorded
+from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.scenario.recorded.route import lanelet_of
-from rulec.scenario.scenario_messages import NOT_IN_RECORDING
 from rulec.scenario.scenario_model import Choice
 
 _SAME_PLACE_M = 0.1
@@ -41,12 +41,13 @@ def ego_start(recording: recorded.Recording, choice: Choice, file: str) -> EgoSt
     if not problems and not moving:
         message = "nobody moves in the file, and it has no planning problem"
         raise choice_error(message, "take a recording that has a vehicle", file)
-    if choice.ego is None and not problems:
+    if choice.ego is None and not problems and recording.ego not in moving:
         message = "the file has no planning problem, which would say where ego is"
         raise choice_error(
             message, f"choose one of its vehicles with --ego: {named_ids(moving)}", file
         )
-    number = recording.problems[0].id if choice.ego is None else str(choice.ego)
+    own = recording.problems[0].id if problems else recording.ego
+    number = own if choice.ego is None else str(choice.ego)
     if number in problems:
         return _of_problem(problems[number], recording, choice, named_ids(moving), file)
     if number not in moving:

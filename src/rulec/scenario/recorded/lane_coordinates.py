@@ -17,8 +17,9 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.scenario.recorded.recording import Lanelet, Points, Recording
-from rulec.scenario.recorded.reference_line import ReferenceLine, densified, pieces_at
+from rulec.recordings.polylines import densified
+from rulec.recordings.recording import Lanelet, Points, Recording
+from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at
 from rulec.scenario.recorded.route import lanelet_length, lanes_beside
 from rulec.scenario.scenario_model import MissingLane
 

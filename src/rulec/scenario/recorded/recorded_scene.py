@@ -14,11 +14,11 @@ from statistics import median
 
 import numpy as np
 
+from rulec.recordings.recording import Lanelet, Recording, TrackState
 from rulec.scenario.geometry import Box
 from rulec.scenario.motion import swept
 from rulec.scenario.recorded.ego_start import choice_error, ego_size, ego_start, reference_lanelet
 from rulec.scenario.recorded.lane_coordinates import borders_along, crossings_along, lanes_along
-from rulec.scenario.recorded.recording import Lanelet, Recording, TrackState
 from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
 from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
 from rulec.scenario.recorded.traffic_obstacles import TrafficView, traffic_obstacles

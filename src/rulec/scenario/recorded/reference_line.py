@@ -11,14 +11,14 @@ line goes on straight.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
 from numpy import float64, intp
 from numpy.typing import NDArray
 
-from rulec.scenario.recorded.recording import Points
+from rulec.recordings.polylines import densified, without_repeats
+from rulec.recordings.recording import Points
 
 BEYOND_M = 2000.0
 """How far the line goes on straight beyond its ends."""
@@ -179,24 +179,6 @@ def _bends(points: Points) -> NDArray[intp]:
 
 def _pairs(values: _Values) -> tuple[_Values, _Values]:
     return values[:-1], values[1:]
-
-
-def without_repeats(points: Points, closest_m: float) -> Points:
-    """The points that are not too close to the one before them."""
-    kept = [points[0]]
-    for point in points[1:]:
-        if np.hypot(*(point - kept[-1])) > closest_m:
-            kept.append(point)
-    return np.array(kept)
-
-
-def densified(points: Points, every_m: float) -> Points:
-    """A polyline with further points, none farther apart than a limit."""
-    parts = [points[:1]]
-    for start, end in pairwise(points):
-        count = max(1, int(np.ceil(np.hypot(*(end - start)) / every_m)))
-        parts.append(start + (end - start) * (np.arange(1, count + 1) / count)[:, None])
-    return np.concatenate(parts)
 
 
 def turn(before: Angle, after: Angle) -> Angle:

@@ -10,24 +10,16 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from rulec.scenario.recorded.recording import Lanelet, Points, Recording, TrackState, id_order
+from rulec.recordings.recording import Lanelet, Points, Recording, TrackState, id_order, is_lane
 from rulec.scenario.recorded.reference_line import pieces_at, turn
 
 REACH_M = 300.0
 """The road is followed this far ahead of ego and behind it, where the file has so much of it."""
 
-NO_LANES = frozenset({"sidewalk", "crosswalk", "border", "parking", "restricted_area"})
-"""Types of lanelets that are no part of the carriageway."""
-
 _NEAR_M = 3.0
 _SHORTEST_M = 1.0
 _LOOK_M = 30.0
 _TURNS_BACK = radians(135)
-
-
-def is_lane(lanelet: Lanelet) -> bool:
-    """True if a lanelet is a part of the carriageway."""
-    return not lanelet.types & NO_LANES
 
 
 def lanelet_area(lanelet: Lanelet) -> shapely.Polygon:

@@ -9,10 +9,10 @@ from math import cos, degrees, pi
 
 import numpy as np
 
+from rulec.recordings.recording import Participant, Points, Recording
 from rulec.scenario import scenario_model as model
 from rulec.scenario.geometry import Box
 from rulec.scenario.recorded.lane_coordinates import Lanes, kept_off_touched, outline_bounds
-from rulec.scenario.recorded.recording import Participant, Points, Recording
 from rulec.scenario.recorded.reference_line import ReferenceLine
 from rulec.scenario.recorded.route import REACH_M
 

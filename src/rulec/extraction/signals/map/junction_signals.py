@@ -8,7 +8,7 @@ from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.map.priority_signals import own_passages
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.scenario.recorded.recording import Light
+from rulec.recordings.recording import Light
 
 STOP_SIGNS = frozenset({"STOP", "STOP_4_WAY"})
 _LINE_REACH_M = 40.0

@@ -13,7 +13,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.scenario.recorded.recording import Lanelet
+from rulec.recordings.recording import Lanelet
 
 NO_LIMIT_KMH = 1000.0
 NO_CROSSING_M = 1000.0

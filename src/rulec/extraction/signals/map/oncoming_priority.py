@@ -10,7 +10,7 @@ import numpy as np
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import JunctionWay, approaches
-from rulec.scenario.recorded.recording import Points, Recording
+from rulec.recordings.recording import Points, Recording
 
 _GIVES_WAY = frozenset({"YIELD", "STOP", "STOP_4_WAY"})
 

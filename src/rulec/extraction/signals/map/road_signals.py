@@ -14,7 +14,7 @@ from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.surroundings import Directions
 from rulec.extraction.tracks.tracks import Flags
-from rulec.scenario.recorded.recording import Lanelet
+from rulec.recordings.recording import Lanelet
 
 _Value = TypeVar("_Value")
 

@@ -8,12 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from rulec.recordings.recording import Points
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.clipping import clipped_lines, clipped_ring
 from rulec.report.pictures.drawing.label_placement import Placing
 from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViolation
-from rulec.scenario.recorded.recording import Points
 
 _HEIGHT = 430.0
 _TOP = canvas.MARGIN + canvas.LINE_HEIGHT

@@ -15,9 +15,9 @@ from numpy import float64, intp
 from numpy.typing import NDArray
 
 from rulec.monitoring.explain.margins import number_with_error
+from rulec.recordings.recording import Points
 from rulec.report.pictures.trace_ribbon import Ribbon
 from rulec.rulebook.rulebook_model import Strength
-from rulec.scenario.recorded.recording import Points
 from rulec.vocabulary.partial_values import Interval
 
 Surface = Literal["lane", "crossing", "footway"]

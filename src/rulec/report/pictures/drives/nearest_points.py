@@ -6,8 +6,8 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.recording import Points
 from rulec.report.pictures.drives.drive_scene import Body
-from rulec.scenario.recorded.recording import Points
 
 _AS_NEAR_M = 0.25
 """Points that are farther by less are as near: of parallel sides the middle is taken."""

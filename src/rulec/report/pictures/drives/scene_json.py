@@ -9,9 +9,9 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.recording import Points
 from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViolation
 from rulec.report.pictures.trace_ribbon import RibbonRow, in_words, value_style
-from rulec.scenario.recorded.recording import Points
 
 _CM = 100
 _MRAD = 1000

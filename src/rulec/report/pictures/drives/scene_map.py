@@ -8,6 +8,7 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.recording import Lanelet, LaneMark, Points, Recording
 from rulec.report.pictures.drives.drive_scene import (
     MarkKind,
     RoadArea,
@@ -16,7 +17,6 @@ from rulec.report.pictures.drives.drive_scene import (
     SceneSign,
     Surface,
 )
-from rulec.scenario.recorded.recording import Lanelet, LaneMark, Points, Recording
 
 MAP_REACH_M = 150.0
 """A lanelet farther from ego's path is not drawn."""

@@ -16,6 +16,7 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.tracks import Tracks, tracks_of
 from rulec.monitoring.explain.explanation import Deciding, Explanation, explain
 from rulec.monitoring.verdict import Verdict, Violation
+from rulec.recordings.recording import Points
 from rulec.report.pictures.drives import scene_map
 from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViolation
 from rulec.report.pictures.drives.nearest_points import nearest_points
@@ -23,7 +24,6 @@ from rulec.report.pictures.picture_captions import trace_title
 from rulec.report.pictures.trace_ribbon import in_words, ribbon
 from rulec.report.text.terminal_text import first_of
 from rulec.report.verdicts.verdict_report import in_a_line, open_in_words
-from rulec.scenario.recorded.recording import Points
 from rulec.vocabulary.partial_values import Interval
 
 SIGHT_M = 120.0

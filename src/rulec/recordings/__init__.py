@@ -1,0 +1,1 @@
+"""Recordings of traffic, and reading them from the field's formats."""

@@ -1,0 +1,124 @@
+"""Lanelets of a CommonRoad file, and what they refer to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+
+from rulec.recordings import recording
+from rulec.recordings.commonroad.areas import read_points
+from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, SignElement, speed_limit
+from rulec.recordings.encodings.tree import Tree
+
+_MARKS: Mapping[str, recording.LaneMark | None] = MappingProxyType(
+    {
+        "solid": "solid",
+        "broad_solid": "solid",
+        "solid_solid": "double_solid",
+        "dashed": "broken",
+        "broad_dashed": "broken",
+        "dashed_dashed": "broken",
+        "no_marking": "none",
+        **dict.fromkeys(("solid_dashed", "dashed_solid", "curb", "lowered_curb", "unknown")),
+    }
+)
+"""CommonRoad's words for marks; those of two kinds say no more than nothing, for want of a side."""
+
+_TYPES = """
+urban country highway driveWay mainCarriageWay accessRamp exitRamp shoulder busLane busStop
+bicycleLane sidewalk crosswalk interstate intersection border parking restricted restricted_area
+unknown
+"""
+_FEWEST_POINTS = 2
+
+
+class LaneletEntry(NamedTuple):
+    """A lanelet without its signs, lights and junction, to which others refer."""
+
+    lanelet: recording.Lanelet
+    signs: tuple[str, ...]
+    lights: tuple[str, ...]
+
+
+def read_lanelet(tree: Tree) -> LaneletEntry:
+    """The lanelet in an element."""
+    left, right = (_bound(tree.child(name)) for name in ("leftBound", "rightBound"))
+    if len(left) != len(right):
+        why = f"a lanelet has {len(left)} points on its left, and {len(right)} on its right"
+        raise tree.wrong(why, "as many on one side as on the other")
+    limit = tree.first("speedLimit")
+    lanelet = recording.Lanelet(
+        id=tree.id(),
+        left=left,
+        right=right,
+        centre=0.5 * (left + right),
+        successors=tree.ids("successor"),
+        predecessors=tree.ids("predecessor"),
+        left_of=_neighbour(tree.first("adjacentLeft")),
+        right_of=_neighbour(tree.first("adjacentRight")),
+        types=frozenset(kind.one_of(_TYPES.split()) for kind in tree.all("laneletType")),
+        # Version 2018b has limits without signs
+        signs=frozenset() if limit is None else frozenset({MAX_SPEED}),
+        limit_mps=None if limit is None else speed_limit(limit),
+        left_mark=_mark(tree.child("leftBound")),
+        right_mark=_mark(tree.child("rightBound")),
+        stop_line=_stop_line(tree.first("stopLine")),
+    )
+    return LaneletEntry(lanelet, tree.ids("trafficSignRef"), tree.ids("trafficLightRef"))
+
+
+def _bound(tree: Tree) -> recording.Points:
+    points = read_points(tree)
+    if len(points) < _FEWEST_POINTS:
+        raise tree.wrong(f"the element `{tree.name}` has fewer than {_FEWEST_POINTS} points")
+    if np.ptp(points, axis=0).max() > recording.LONGEST_M:
+        raise tree.wrong(f"a lanelet's bound is longer than {recording.LONGEST_M / 1000:g} km")
+    return points
+
+
+def _neighbour(tree: Tree | None) -> str | None:
+    """The lanelet beside another one, if it leads the same way."""
+    if tree is None or tree.attributes.get("drivingDir") != "same":
+        return None
+    return tree.id("ref")
+
+
+def _mark(bound: Tree) -> recording.LaneMark | None:
+    mark = bound.first("lineMarking")
+    return None if mark is None else _MARKS[mark.one_of(_MARKS)]
+
+
+def _stop_line(tree: Tree | None) -> recording.Points | None:
+    """The ends of a stop line that has a place."""
+    if tree is None:
+        return None
+    points = read_points(tree)
+    if len(points) == 1:
+        raise tree.wrong("a stop line has only one end")
+    return points[:2] if len(points) else None
+
+
+def complete(
+    entry: LaneletEntry,
+    signs: Mapping[str, tuple[SignElement, ...]],
+    lights: Mapping[str, recording.Light],
+    junction: str,
+) -> recording.Lanelet:
+    """A lanelet with what it refers to, as far as the file has it."""
+    elements = [element for number in entry.signs for element in signs.get(number, ())]
+    lanelet = entry.lanelet
+    limits = [element.limit_mps for element in elements] + [lanelet.limit_mps]
+    inside = {"intersection"} if junction else set()
+    ids = sorted(set(entry.lights), key=recording.id_order)
+    return replace(
+        lanelet,
+        types=lanelet.types | inside,
+        signs=lanelet.signs | {element.name for element in elements},
+        limit_mps=min((limit for limit in limits if limit is not None), default=None),
+        lights=tuple(lights[number] for number in ids if number in lights),
+        junction=junction,
+    )

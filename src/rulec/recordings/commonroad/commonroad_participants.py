@@ -1,0 +1,160 @@
+"""Obstacles of a CommonRoad file, as a recording has them.
+
+Places and headings in a file may be areas and intervals. What an obstacle occupies then is all that
+it may occupy; where only one number can be used it is the middle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from operator import itemgetter
+
+import numpy as np
+import shapely
+
+from rulec.recordings import recording as recorded
+from rulec.recordings.commonroad.areas import (
+    Area,
+    Rectangle,
+    corners,
+    geometry,
+    outline_around,
+    outline_at,
+    read_area,
+)
+from rulec.recordings.commonroad.states import State, read_state
+from rulec.recordings.commonroad.time_extent import TimeExtent, read_steps
+from rulec.recordings.encodings.tree import Tree
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+
+Outlines = dict[int, recorded.Points]
+
+
+def read_body(tree: Tree, extent: TimeExtent, *, standing: bool) -> recorded.Participant:
+    """An obstacle with a shape, whether it stands or moves."""
+    kind = read_type(tree)
+    body = read_area(tree.child("shape"), body=True)
+    states = [read_state(tree.child("initialState"), initial=True)]
+    trajectory = None if standing else tree.first("trajectory")
+    states += [] if trajectory is None else map(read_state, trajectory.all("state"))
+    if not standing:
+        extent.add([state.step for state in states])
+    lamps, shows = _lamps(tree, extent)
+    known, outlines = _motion(body, states)
+    if not standing and trajectory is None:
+        predicted = _predicted(tree, extent)
+        outlines = {**outlines, **predicted} if predicted else outlines
+    return recorded.Participant(
+        tree.id(),
+        kind,
+        standing,
+        known,
+        outlines,
+        lamps=lamps,
+        shows=shows,
+        stated_error=_stated_error(states),
+    )
+
+
+def _stated_error(states: Sequence[State]) -> recorded.StatedError | None:
+    """The median of what states say themselves; None if most of them are exact."""
+    places = [shapely.minimum_bounding_radius(geometry(x.area)) if x.area else 0 for x in states]
+    place, speed = np.median(places), np.median([state.speed_error for state in states])
+    return recorded.StatedError(float(place), float(speed)) if place or speed else None
+
+
+def read_thing(tree: Tree) -> recorded.Participant:
+    """Something that covers an area for ever: an ``environmentObstacle``."""
+    outlines = {0: corners(geometry(read_area(tree.child("shape"))))}
+    return recorded.Participant(tree.id(), read_type(tree), True, {}, outlines)
+
+
+def read_phantom(tree: Tree, extent: TimeExtent) -> recorded.Participant:
+    """Something that may be there, of which nothing is known but where."""
+    return recorded.Participant(tree.id(), "unknown", False, {}, _predicted(tree, extent))
+
+
+def read_type(tree: Tree) -> str:
+    """The type of an obstacle."""
+    return tree.child("type").one_of(recorded.OBSTACLE_TYPES)
+
+
+def _motion(
+    body: Area, states: Sequence[State]
+) -> tuple[Mapping[int, recorded.TrackState], Mapping[int, recorded.Points]]:
+    # If the file has two states of one step, the later one holds
+    by_step = {state.step: state for state in states}
+    only = body[0] if len(body) == 1 else None
+    if (
+        isinstance(only, Rectangle)
+        and only.x == only.y == only.heading == 0
+        and all(state.is_exact for state in by_step.values())
+    ):
+        ordered = sorted(by_step.values(), key=itemgetter(0))
+        rows = [(x, y, heading.low, *motion) for _, x, y, _, heading, *motion, _ in ordered]
+        track = Track(
+            np.array([state.step for state in ordered], dtype=np.int64),
+            np.array(rows, dtype=float),
+            only.length,
+            only.width,
+            only.shift,
+        )
+        return TrackStates(track), TrackOutlines(track)
+    outlines = {step: _outline(body, state) for step, state in by_step.items()}
+    known = {step: track_state(state, outlines[step]) for step, state in by_step.items()}
+    return known, outlines
+
+
+def _outline(body: Area, state: State) -> recorded.Points:
+    if state.is_exact:
+        return outline_at(body, state.x, state.y, state.heading.low)
+    place = state.area or (Rectangle(0.0, 0.0, state.x, state.y),)
+    return outline_around(body, place, *state.heading)
+
+
+def track_state(state: State, outline: recorded.Points) -> recorded.TrackState:
+    """A state whose place, if it is an area, is the middle of an outline."""
+    x, y = outline.mean(axis=0).tolist() if state.area else (state.x, state.y)
+    return recorded.TrackState(x, y, state.heading.middle, state.speed, state.acceleration)
+
+
+def _predicted(tree: Tree, extent: TimeExtent) -> Outlines:
+    """What an obstacle occupies by time step; an interval of time has the same throughout."""
+    outlines: Outlines = {}
+    occupied = tree.first("occupancySet")
+    for occupancy in () if occupied is None else occupied.all("occupancy"):
+        steps = read_steps(occupancy.child("time"), extent)
+        outline = corners(geometry(read_area(occupancy.child("shape"))))
+        outlines.update(dict.fromkeys(steps, outline))
+    return outlines
+
+
+_SIGNALS: Mapping[str, recorded.Lamp] = {
+    "indicatorLeft": "left_indicator",
+    "indicatorRight": "right_indicator",
+    "hazardWarningLights": "hazard_lights",
+    "brakingLights": "brake_light",
+    "flashingBlueLights": "blue_light",
+    "horn": "horn",
+}
+
+
+_LIT: Mapping[str, bool] = {"true": True, "1": True, "false": False, "0": False}
+
+
+def _lamps(
+    tree: Tree, extent: TimeExtent
+) -> tuple[dict[int, frozenset[recorded.Lamp]], frozenset[recorded.Lamp]]:
+    """The lamps that are lit by time step, and all that the signal states speak of."""
+    states = tree.all("initialSignalState")[:1]
+    if (series := tree.first("signalSeries")) is not None:
+        states += series.all("signalState")
+    lamps: dict[int, frozenset[recorded.Lamp]] = {}
+    shows: frozenset[recorded.Lamp] | None = None
+    # One that is empty stands for none
+    for state in filter(lambda state: state.children, states):
+        said = {_SIGNALS[child.name]: child for child in state.children if child.name in _SIGNALS}
+        lit = frozenset(lamp for lamp, child in said.items() if _LIT[child.one_of(_LIT)])
+        lamps.update(dict.fromkeys(read_steps(state.child("time"), extent), lit))
+        shows = frozenset(said) if shows is None else shows & frozenset(said)
+    return lamps, shows or frozenset()

@@ -1,0 +1,122 @@
+"""Lights, intersections and the weather of a CommonRoad file, as a recording has them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence, Set
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from rulec.recordings import recording
+from rulec.recordings.encodings.tree import Tree
+
+_COLOURS = frozenset({"red", "yellow", "redYellow", "green", "inactive"})
+_WET = frozenset({"light_rain", "mid_rain", "heavy_rain", "hail"})
+_DRY = frozenset({"clear", "sunny", "cloudy"})
+_WEATHERS = _WET | _DRY | {"fog", "snow", "unknown"}
+_GROUNDS = frozenset({"wet", "clean", "dirty", "damaged", "snow", "ice", "unknown"})
+_FAR_M = 1000.0
+_ACUTE = 0.5
+_WAYS = tuple(
+    f"{word}{way}" for word in ("outgoing", "successors") for way in ("Right", "Straight", "Left")
+)
+
+
+class Intersection(NamedTuple):
+    """An intersection, and the lanelets that ways through it begin with."""
+
+    id: str
+    starts: tuple[str, ...]
+
+
+def read_light(tree: Tree) -> recording.Light | None:
+    """The programme of a traffic light; None if it has none, or is out of order."""
+    active, cycle = tree.first("active"), tree.first("cycle")
+    if cycle is None or (active is not None and active.word in ("false", "0")):
+        return None
+    phases = []
+    for element in cycle.all("cycleElement"):
+        steps = element.child("duration").whole()
+        if steps <= 0:
+            raise element.wrong("a traffic light has a phase that does not last")
+        phases.append((element.child("color").one_of(_COLOURS), steps))
+    offset = cycle.first("timeOffset")
+    begin = 0 if offset is None else offset.whole()
+    return recording.Light(begin, tuple(phases)) if phases else None
+
+
+def read_intersection(tree: Tree) -> Intersection:
+    """The intersection in an element."""
+    starts = [
+        number for incoming in tree.all("incoming") for way in _WAYS for number in incoming.ids(way)
+    ]
+    return Intersection(tree.id(), tuple(starts))
+
+
+def junctions(
+    intersections: Iterable[Intersection], lanelets: Mapping[str, recording.Lanelet]
+) -> dict[str, str]:
+    """Lanelet -> the intersection that it lies in, by the file's own intersections.
+
+    Ways through an intersection may be of several lanelets, of which it names the first: those that
+    nobody crosses, before others that are crossed, only lead to it.
+    """
+    waiting = list(intersections)
+    crossed = _crossed(list(lanelets.values())) if waiting else set()
+    inside: dict[str, str] = {}
+    for intersection in waiting:
+        for start in intersection.starts:
+            if start in lanelets:
+                chain = _crossed_after(start, lanelets, crossed)
+                members = chain if start in crossed or not chain else chain - {start}
+                inside.update(dict.fromkeys(members or {start}, intersection.id))
+    return inside
+
+
+def _crossed_after(
+    start: str, lanelets: Mapping[str, recording.Lanelet], crossed: Set[str]
+) -> set[str]:
+    """The lanelets that are crossed and follow one end to end, itself included."""
+    found = {start} & crossed
+    waiting = [start]
+    while waiting:
+        for number in lanelets[waiting.pop()].successors:
+            if number in crossed and number not in found:
+                found.add(number)
+                waiting.append(number)
+    return found
+
+
+def _crossed(lanelets: Sequence[recording.Lanelet]) -> set[str]:
+    """The lanelets whose middles others cross at more than an acute angle."""
+    lines = [shapely.LineString(lanelet.centre) for lanelet in lanelets]
+    pairs = shapely.STRtree(lines).query(lines, predicate="crosses").T.tolist()
+    crossed: set[str] = set()
+    for one, other in pairs:
+        place = shapely.point_on_surface(shapely.intersection(lines[one], lines[other]))
+        turned = _direction(lines[one], place) - _direction(lines[other], place)
+        if one < other and abs(np.sin(turned)) > _ACUTE:
+            crossed.update((lanelets[one].id, lanelets[other].id))
+    return crossed
+
+
+def _direction(line: shapely.LineString, place: shapely.Point) -> float:
+    at = line.project(place)
+    before, after = (line.interpolate(max(at + away, 0.0)) for away in (-0.5, 0.5))
+    return float(np.arctan2(after.y - before.y, after.x - before.x))
+
+
+def read_weather(location: Tree) -> recording.Weather:
+    """The weather at a location; dry weather leaves only what lies on the road."""
+    environment = location.first("environment")
+    if environment is None:
+        return recording.Weather()
+    sky, soil = map(environment.first, ("weather", "underground"))
+    weather = None if sky is None else sky.one_of(_WEATHERS)
+    ground = None if soil is None else soil.one_of(_GROUNDS)
+    wet = True if weather in _WET or ground == "wet" else None
+    if ground in ("clean", "dirty", "damaged") and weather in _DRY:
+        wet = False
+    icy = {"ice": True, "clean": False, "wet": False}.get(str(ground))
+    return recording.Weather(wet, icy, _FAR_M if weather in _DRY else None)

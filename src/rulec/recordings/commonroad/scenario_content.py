@@ -1,0 +1,138 @@
+"""What has been read of a CommonRoad scenario, and the recording that it makes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TypeVar
+
+from rulec.recordings import recording
+from rulec.recordings.adjacency import with_neighbours
+from rulec.recordings.commonroad.commonroad_lanelets import LaneletEntry, complete, read_lanelet
+from rulec.recordings.commonroad.commonroad_participants import read_body, read_phantom, read_thing
+from rulec.recordings.commonroad.commonroad_surroundings import (
+    Intersection,
+    junctions,
+    read_intersection,
+    read_light,
+    read_weather,
+)
+from rulec.recordings.commonroad.countries import country_in, side_in
+from rulec.recordings.commonroad.planning_problems import (
+    ProblemEntry,
+    planning_problem,
+    read_problem,
+)
+from rulec.recordings.commonroad.time_extent import TimeExtent
+from rulec.recordings.commonroad.traffic_signs import SignElement, read_sign
+from rulec.recordings.encodings.tree import FileFormat, Tree
+
+SHORTEST_STEP_S = 1e-6
+
+_T = TypeVar("_T")
+
+
+@dataclass(slots=True)
+class Content:
+    """What has been read of a file so far, by id; participants first by kind."""
+
+    step_s: float = 0.0
+    sign_country: str = ""
+    lanelets: dict[str, LaneletEntry] = field(default_factory=dict)
+    signs: dict[str, tuple[SignElement, ...]] = field(default_factory=dict)
+    lights: dict[str, recording.Light | None] = field(default_factory=dict)
+    intersections: dict[str, Intersection] = field(default_factory=dict)
+    bodies: dict[str, dict[str, recording.Participant]] = field(default_factory=dict)
+    problems: dict[str, ProblemEntry] = field(default_factory=dict)
+    weather: recording.Weather = field(default_factory=recording.Weather)
+    extent: TimeExtent = field(default_factory=TimeExtent)
+
+
+def to_recording(content: Content, path: Path, form: FileFormat) -> recording.Recording:
+    """The recording of a scenario, which has its file's name.
+
+    Raises RulecError R0610 for time steps that are too far apart.
+    """
+    participants = tuple(body for kind in _KINDS for body in content.bodies.get(kind, {}).values())
+    content.extent.check(path, form, len(participants))
+    lanelets = _lanelets(content)
+    name = Path(path.name.removesuffix(".gz")).stem
+    problems = sorted(content.problems.values(), key=lambda problem: int(problem.id))
+    return with_neighbours(
+        recording.Recording(
+            name,
+            content.step_s,
+            lanelets,
+            participants,
+            tuple(planning_problem(problem, lanelets) for problem in problems),
+            side=side_in(name),
+            country=country_in(name),
+            weather=content.weather,
+        )
+    )
+
+
+def add_step(content: Content, root: Tree) -> None:
+    """Note how long a time step is, which the root says."""
+    content.step_s = root.number("timeStepSize")
+    if content.step_s < SHORTEST_STEP_S:
+        raise root.wrong(f"a time step of {content.step_s:g} s is none")
+
+
+def add(content: Content, tree: Tree) -> None:
+    """Read an element below the root."""
+    match tree.name:
+        case "lanelet":
+            _enter(content.lanelets, tree, read_lanelet)
+        case "trafficSign":
+            _enter(content.signs, tree, lambda sign: read_sign(sign, content.sign_country))
+        case "trafficSignValue":
+            # The part with the traffic says what a sign shows then
+            content.signs[tree.id()] = read_sign(tree, content.sign_country)
+        case "trafficLight":
+            _enter(content.lights, tree, read_light)
+        case "intersection":
+            _enter(content.intersections, tree, read_intersection)
+        case "planningProblem":
+            _enter(content.problems, tree, read_problem)
+        case "location":
+            content.weather = read_weather(tree)
+        case "obstacle":
+            # Version 2018b
+            role = tree.child("role").one_of(("static", "dynamic"))
+            _add_participant(content, tree, f"{role}Obstacle")
+        case kind if kind in _KINDS:
+            _add_participant(content, tree, kind)
+
+
+_KINDS: Mapping[str, Callable[[Tree, TimeExtent], recording.Participant]] = {
+    "staticObstacle": lambda tree, extent: read_body(tree, extent, standing=True),
+    "dynamicObstacle": lambda tree, extent: read_body(tree, extent, standing=False),
+    "environmentObstacle": lambda tree, _: read_thing(tree),
+    "phantomObstacle": read_phantom,
+}
+
+
+def _add_participant(content: Content, tree: Tree, kind: str) -> None:
+    number = tree.id()
+    if any(number in bodies for bodies in content.bodies.values()):
+        raise tree.wrong(f"there are two obstacles `{number}`")
+    content.bodies.setdefault(kind, {})[number] = _KINDS[kind](tree, content.extent)
+
+
+def _enter(known: dict[str, _T], tree: Tree, read: Callable[[Tree], _T]) -> None:
+    number = tree.id()
+    if number in known:
+        raise tree.wrong(f"there are two elements `{tree.name}` with the id `{number}`")
+    known[number] = read(tree)
+
+
+def _lanelets(content: Content) -> dict[str, recording.Lanelet]:
+    plain = {number: entry.lanelet for number, entry in content.lanelets.items()}
+    inside = junctions(content.intersections.values(), plain)
+    lights = {number: light for number, light in content.lights.items() if light is not None}
+    return {
+        number: complete(entry, content.signs, lights, inside.get(number, ""))
+        for number, entry in content.lanelets.items()
+    }

@@ -1,0 +1,66 @@
+"""How far apart the time steps of a file are, which decides how much memory it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rulec.recordings.encodings.tree import FileFormat, Tree
+from rulec.recordings.recording import MOST_STEPS, SPARSEST
+
+SPARSEST_STATES = 200
+"""One in so many pairs of an obstacle and a time step has a state in the file, at least."""
+
+_NEVER_TOO_MANY = 2_000_000
+_WAY_OUT = "look for a time that is wrong, or take a part"
+
+
+@dataclass(slots=True)
+class TimeExtent:
+    """The time steps of the obstacles of a file, noted as they are read.
+
+    ``repeated``: how many steps there are in intervals of time beyond the first ones.
+    """
+
+    moments: set[int] = field(default_factory=set)
+    states: int = 0
+    repeated: int = 0
+
+    def add(self, steps: Iterable[int]) -> None:
+        """Note the steps of states."""
+        known = tuple(steps)
+        self.moments.update(known)
+        self.states += len(known)
+
+    def check(self, path: Path, form: FileFormat, obstacles: int) -> None:
+        """Raises RulecError R0610 for steps that are too far apart for so few states."""
+        first, last = min(self.moments, default=0), max(self.moments, default=0)
+        spread = last - first
+        most = max(_NEVER_TOO_MANY, SPARSEST_STATES * self.states)
+        too_far = spread > min(MOST_STEPS, SPARSEST * len(self.moments))
+        if too_far or (spread + 1) * obstacles > most:
+            why = (
+                f"the time steps {first} to {last} are too far apart for what is in it "
+                f"(obstacles: {obstacles:,}, states: {self.states:,})"
+            )
+            raise form.refused(path, why, help_text=_WAY_OUT)
+
+
+def read_steps(tree: Tree, extent: TimeExtent) -> range:
+    """The time steps that an element says: one, or those from one to another.
+
+    Raises RulecError R0610 for intervals that are longer than any recording.
+    """
+    if (exact := tree.first("exact")) is not None:
+        first = last = exact.whole()
+    else:
+        first, last = (tree.child(name).whole() for name in ("intervalStart", "intervalEnd"))
+    if last < first:
+        raise tree.wrong(f"an interval of time begins at step {first} and ends at {last}")
+    extent.add((first, last))
+    extent.repeated += last - first
+    if extent.repeated > MOST_STEPS:
+        why = f"its intervals of time have more than {MOST_STEPS:,} steps together"
+        raise tree.form.refused(tree.path, why, tree.place, help_text=_WAY_OUT)
+    return range(first, last + 1)

@@ -1,0 +1,137 @@
+"""Traffic signs of CommonRoad files: the ids that countries give them, and their names.
+
+The names are those of `commonroad-io`, the ids those of each country's catalogue of signs. Signs
+about driving are in the tables; all others are called ``UNKNOWN``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import inf
+from types import MappingProxyType
+from typing import NamedTuple
+
+from rulec.recordings.encodings.tree import Tree
+
+MAX_SPEED = "MAX_SPEED"
+UNKNOWN = "UNKNOWN"
+_GERMAN_MAX_SPEED = "274"
+"""Files of all countries have it."""
+
+
+def _signs(text: str) -> dict[str, str]:
+    """Names by id, from pairs with commas in between."""
+    words = text.replace(",", " ").split()
+    return dict(zip(words[::2], words[1::2], strict=True))
+
+
+_GERMANY = _signs("""
+101 WARNING_DANGER_SPOT, 102 WARNING_RIGHT_BEFORE_LEFT, 103-10 WARNING_LEFT_CURVE,
+103-20 WARNING_RIGHT_CURVE, 108 WARNING_STEEP_HILL_DOWNWARDS, 114 WARNING_SLIPPERY_ROAD,
+123 WARNING_CONSTRUCTION_SITE, 124 WARNING_TRAFFIC_QUEUES_LIKELY, 125 WARNING_ONCOMING_TRAFFIC,
+131 WARNING_TRAFFIC_LIGHTS_AHEAD, 133-10 WARNING_PEDESTRIANS_RIGHT,
+133-20 WARNING_PEDESTRIANS_LEFT, 138 WARNING_CROSSING_CYCLIST,
+142-10 WARNING_ANIMAL_CROSSING_RIGHT, 145-50 WARNING_LOOSE_GRAVEL, 201 RAILWAY, 205 YIELD,
+206 STOP, 208 PRIORITY_OPPOSITE_DIRECTION, 209-10 TURN_RIGHT_AHEAD, 209-20 TURN_LEFT_AHEAD,
+209-30 KEEP_STRAIGHT_AHEAD, 211-20 PRESCRIBED_DIRECTION_RIGHT, 215 ROUNDABOUT,
+220-10 ONEWAY_RIGHT, 220-20 ONEWAY_LEFT, 222-10 PRESCRIBED_PASSING_LEFT,
+222-20 PRESCRIBED_PASSING_RIGHT, 223.2 DO_NOT_DRIVE_ON_SHOULDER_LANE,
+223.2-50 DO_NOT_DRIVE_ON_SHOULDER_LANE_2_LANE, 223.2-51 DO_NOT_DRIVE_ON_SHOULDER_LANE_3_LANE,
+224-50 BUS_STOP, 237 BIKEWAY, 239 PEDESTRIAN_SIDEWALK, 240 PEDESTRIAN_AND_BICYCLE_ROAD,
+242.1 PEDESTRIAN_ZONE_START, 242.2 PEDESTRIAN_ZONE_END, 244.1 BICYCLE_ROAD_START,
+244.2 BICYCLE_ROAD_END, 245 BUS_LANE, 250 BAN_ALL_VEHICLES, 251 BAN_CARS, 253 BAN_TRUCKS,
+254 BAN_BICYCLE, 255 BAN_MOTORCYCLE, 257-54 BAN_BUS, 259 BAN_PEDESTRIAN,
+260 BAN_CAR_TRUCK_BUS_MOTORCYCLE, 261 BAN_VEHICLES_CARRYING_DANGEROUS_GOODS, 262 MAX_WEIGHT,
+264 MAX_WIDTH, 265 MAX_HEIGHT, 266 MAX_LENGTH, 267 NO_ENTRY, 270.1 ENVIRONMENTAL_ZONE_START,
+270.2 ENVIRONMENTAL_ZONE_END, 272 U_TURN, 274 MAX_SPEED, 274.1 MAX_SPEED_ZONE_START,
+274.2 MAX_SPEED_ZONE_END, 275 MIN_SPEED, 276 NO_OVERTAKING_START,
+277 NO_OVERTAKING_TRUCKS_START, 278 MAX_SPEED_END, 280 NO_OVERTAKING_END,
+281 NO_OVERTAKING_TRUCKS_END, 282 ALL_MAX_SPEED_AND_OVERTAKING_END, 283-10 NO_STOP_START_RIGHT,
+283-30 NO_STOP_CENTER_RIGHT, 286-30 RESTRICTED_STOP_CENTER_RIGHT, 301 RIGHT_OF_WAY,
+306 PRIORITY, 308 PRIORITY_OVER_ONCOMING, 310 TOWN_SIGN, 311 TOWN_SIGN_BACK, 314 PARKING_AREA,
+314-10 PARKING_AREA_LEFT, 314-20 PARKING_AREA_RIGHT, 314-30 PARKING_AREA_RIGHT_LEFT,
+325.1 TRAFFIC_CALMED_AREA_START, 325.2 TRAFFIC_CALMED_AREA_END, 327 TUNNEL, 328 EMERGENCY_STOP,
+330.1 INTERSTATE_START, 330.2 INTERSTATE_END, 331.1 HIGHWAY_START, 331.2 HIGHWAY_END,
+350 PEDESTRIANS_CROSSING, 720 GREEN_ARROW
+""")
+"""Also for countries that are not in the table, Zamunda among them."""
+
+_COUNTRIES: Mapping[str, Mapping[str, str]] = MappingProxyType(
+    {
+        "USA": _signs("""
+R1-1 STOP, R1-3 STOP_4_WAY, R2-1 MAX_SPEED, R3-4 U_TURN, CW20-1 ROAD_WORK_AHEAD,
+R7-1 NO_PARKING_ANY_TIME, R7-4 NO_STANDING, R7-201a TOW_AWAY_ZONE, R6-1L ONE_WAY_LEFT,
+R6-1R ONE_WAY_RIGHT, R5-1 DO_NOT_ENTER, R3-2 NO_LEFT_TURN, R3-5R RIGHT_TURN_ONLY,
+R3-8b TURN_ONLY_LANES, R3-1 NO_RIGHT_TURN, R4-7 KEEP_RIGHT, R10-11 NO_TURN_ON_RED, R1-6 ONEWAY,
+W3-3 SIGNAL_AHEAD, R8-3gP LOADING_ZONE, R8-3 NO_PARKING, R3-5L LEFT_TURN_ONLY,
+R3-27 NO_STRAIGHT_THROUGH, W1-3L LEFT_REVERSE_TURN, W11-2 PEDESTRIAN_WARNING,
+M6-2aL DIAGONAL_DOWNWARD_LEFT_ARROW, W4-2R RIGHT_LANE_ENDS, R7-8 RESERVED_HANDICAP_PARKING,
+R7-107 NO_PARKING_BUS_STOP, R8-3C ON_PAVEMENT, R10-7 DO_NOT_BLOCK_INTERSECTION,
+W1-6L WARNING_ARROW_LEFT
+"""),
+        "ESP": _signs("""
+r1 YIELD, r2 STOP, r100 BAN_ALL_VEHICLES, r101 NO_ENTRY, r106 BAN_TRUCKS, r107 MAX_WEIGHT,
+r205 MAX_HEIGHT, r301 MAX_SPEED, r305 NO_OVERTAKING_START, r307 NO_STOPPING, r308 NO_WAITING,
+s13 PEDESTRIANS_CROSSING
+"""),
+        "AUS": _signs("R1-1 STOP, R1-2 YIELD, R3-1 PEDESTRIANS_CROSSING"),
+        "RUS": _signs("3.24 MAX_SPEED"),
+        "ARG": _signs("R15 MAX_SPEED"),
+        "BEL": _signs("C43 MAX_SPEED"),
+        "FRA": _signs("B14 MAX_SPEED"),
+        "GRC": _signs("Ρ-32 MAX_SPEED"),
+        "HRV": _signs("B31 MAX_SPEED"),
+        "PRI": _signs("R2-1 MAX_SPEED"),
+        "CHN": {},
+        "ITA": {},
+    }
+)
+
+
+_LATER_IN_USA = ("STOP", "STOP_4_WAY", "NO_TURN_ON_RED", "ONEWAY")
+
+
+def signs_by_number(country: str) -> dict[int, str]:
+    """The names of a country's signs by their numbers in Protocol Buffers."""
+    if country in _COUNTRIES:
+        later = _LATER_IN_USA if country == "USA" else ()
+        names = [name for name in _COUNTRIES[country].values() if name not in later]
+        return dict(enumerate(names or [MAX_SPEED]))
+    # Signs that are not about driving are left out between the last ones
+    *first, crossing, arrow = _GERMANY.values()
+    return {**dict(enumerate(first)), 92: crossing, 170: arrow}
+
+
+class SignElement(NamedTuple):
+    """A sign, of perhaps several on a post; the speed limit (m/s) that it says, if any."""
+
+    name: str
+    limit_mps: float | None
+
+
+def read_sign(tree: Tree, country: str) -> tuple[SignElement, ...]:
+    """The signs on a post, by the ids of a country (ISO 3166)."""
+    return tuple([_element(child, country) for child in tree.all("trafficSignElement")])
+
+
+def _element(tree: Tree, country: str) -> SignElement:
+    named = tree.first("signName")
+    name = _name(tree.child("trafficSignID").word, country) if named is None else named.word
+    value = tree.first("additionalValue")
+    limit = speed_limit(value) if name == MAX_SPEED and value is not None else None
+    return SignElement(name, limit)
+
+
+def _name(number: str, country: str) -> str:
+    names = _COUNTRIES.get(country, _GERMANY)
+    return MAX_SPEED if number == _GERMAN_MAX_SPEED else names.get(number, UNKNOWN)
+
+
+def speed_limit(tree: Tree) -> float:
+    """A speed limit (m/s); infinity means that there is none."""
+    if tree.word.lower() in ("inf", "infinity"):
+        return inf
+    limit = tree.number()
+    if limit < 0:
+        raise tree.wrong(f"a speed limit is {limit:g}", "a number not below 0")
+    return limit

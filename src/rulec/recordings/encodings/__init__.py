@@ -1,0 +1,1 @@
+"""XML, Protocol Buffers and the like, read within bounds."""

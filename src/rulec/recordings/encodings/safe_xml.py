@@ -1,0 +1,170 @@
+"""XML as a stream, safe against harmful files and in little memory.
+
+Documents that define entities are refused at the definition, before anything is expanded or
+fetched. Packed files (gzip) are unpacked on the way, up to the same limit.
+"""
+
+from __future__ import annotations
+
+import gzip
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, cast
+from xml.parsers.expat import ExpatError, ParserCreate, XMLParserType, errors
+
+from rulec.files import opened
+from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat, short
+
+LONGEST_TAG = 1_000_000
+"""Bytes; expat keeps a tag in memory until it ends."""
+
+_BLOCK = 1 << 16
+_PACKED = b"\x1f\x8b"
+_SUFFIXES = (".xml", ".xml.gz")
+_ENDS_EARLY = (
+    errors.XML_ERROR_NO_ELEMENTS,
+    errors.XML_ERROR_UNCLOSED_TOKEN,
+    errors.XML_ERROR_UNCLOSED_CDATA_SECTION,
+    errors.XML_ERROR_PARTIAL_CHAR,
+)
+
+
+def scan(
+    path: Path,
+    form: XmlFormat,
+    begin: Callable[[XmlElement], None],
+    *,
+    end: Callable[[str], None] | None = None,
+    comment: Callable[[str], None] | None = None,
+    text: Callable[[str], None] | None = None,
+) -> None:
+    """Scan an XML file once, with callbacks where elements begin and end, for comments and text.
+
+    Text comes in pieces of some kB.
+
+    Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
+    """
+    parser = ParserCreate()
+    rooted = False
+
+    def element(name: str, attributes: dict[str, str]) -> None:
+        nonlocal rooted
+        if not rooted and name != form.root:
+            why = f"it is XML, but of `{short(name)}`, not of `{form.root}`"
+            raise form.refused(path, why, parser.CurrentLineNumber)
+        rooted = True
+        begin(XmlElement(name, attributes, parser, path, form))
+
+    def definition(*_: object) -> None:
+        why = "it has a `DOCTYPE`, which this format has not, and which could define anything"
+        way_out = "take the `<!DOCTYPE …>` out"
+        raise form.refused(path, why, parser.CurrentLineNumber, help_text=way_out)
+
+    parser.StartElementHandler = element
+    parser.StartDoctypeDeclHandler = definition
+    if end is not None:
+        parser.EndElementHandler = end
+    if comment is not None:
+        parser.CommentHandler = comment
+    if text is not None:
+        parser.buffer_text = True
+        parser.CharacterDataHandler = text
+    size = 0
+    try:
+        for block in _blocks(path, form):
+            size += len(block)
+            if size > form.largest_bytes:
+                why = f"it is too large: at most {form.largest_bytes:,} bytes are read"
+                raise form.refused(path, why)
+            _parse(parser, block, path, form)
+            if size - max(parser.CurrentByteIndex, 0) > LONGEST_TAG + _BLOCK:
+                why = f"it has a tag of more than {LONGEST_TAG:,} bytes"
+                raise form.refused(path, why, parser.CurrentLineNumber)
+        if not size:
+            raise form.refused(path, "it is empty")
+        parser.Parse(b"", True)
+    except ExpatError as problem:
+        words = errors.messages[problem.code]
+        why = f"it is not well-formed XML: {words}"
+        if words in _ENDS_EARLY:
+            why = "it ends before all that has begun in it ends; it has been cut short"
+        raise form.refused(path, why, problem.lineno) from None
+    finally:
+        # Parser and handlers hold each other, and all that has been read
+        parser.StartElementHandler = parser.EndElementHandler = None
+        parser.CommentHandler = parser.CharacterDataHandler = None
+
+
+def root_of(path: Path, form: XmlFormat) -> str:
+    """The name of a file's root element; ``form`` says what to call a file that has none.
+
+    Raises RulecError R0610 for a file that is no XML, R0701 for one that cannot be read.
+    """
+    parser = ParserCreate()
+    names: list[str] = []
+    parser.StartElementHandler = lambda name, _: names.append(name)
+    size = 0
+    try:
+        for block in _blocks(path, form):
+            size += len(block)
+            _parse(parser, block, path, form)
+            if names:
+                break
+            if size > LONGEST_TAG:
+                raise form.refused(path, f"nothing begins in its first {LONGEST_TAG:,} bytes")
+        if not size:
+            raise form.refused(path, "it is empty")
+        if not names:
+            parser.Parse(b"", True)
+    except ExpatError as problem:
+        if not names:
+            why = f"it is not well-formed XML: {errors.messages[problem.code]}"
+            raise form.refused(path, why, problem.lineno) from None
+    return names[0]
+
+
+def is_xml(path: Path) -> bool:
+    """True if a file's name or first bytes show XML, perhaps packed."""
+    if path.name.lower().endswith(_SUFFIXES):
+        return True
+    try:
+        if not path.is_file():
+            return False  # what comes through a pipe can be read only once
+        with path.open("rb") as stream, _unpacked(stream) as content:
+            start = content.read(64)
+    except (OSError, ValueError, EOFError, zlib.error):
+        return False
+    text = start.removeprefix(b"\xef\xbb\xbf").lstrip()
+    return text.startswith((b"<", b"\xff\xfe<", b"\xfe\xff\0<"))
+
+
+def _blocks(path: Path, form: XmlFormat) -> Iterator[bytes]:
+    with opened(path) as raw, _unpacked(raw) as stream:
+        try:
+            while block := stream.read(_BLOCK):
+                yield block
+        except EOFError:
+            raise form.refused(path, "it is packed, and ends too soon") from None
+        except (gzip.BadGzipFile, zlib.error):
+            raise form.refused(path, "it is packed, and damaged") from None
+
+
+@contextmanager
+def _unpacked(raw: IO[bytes]) -> Iterator[IO[bytes]]:
+    start = raw.read(len(_PACKED)) if raw.seekable() else b""
+    if raw.seekable():
+        raw.seek(0)
+    if start != _PACKED:
+        yield raw
+        return
+    with gzip.open(raw, "rb") as stream:
+        yield cast("IO[bytes]", stream)
+
+
+def _parse(parser: XMLParserType, block: bytes, path: Path, form: XmlFormat) -> None:
+    try:
+        parser.Parse(block, False)
+    except (LookupError, ValueError):
+        raise form.refused(path, "its encoding is none that is known here") from None

@@ -1,0 +1,94 @@
+"""Formats of XML files, and their elements with checked attributes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from xml.parsers.expat import XMLParserType
+
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.recordings.recording_messages import NOT_A_RECORDING
+
+LARGEST = 1e8
+"""Numbers in a file are smaller than this, places included: the earth is not so large."""
+
+
+@dataclass(frozen=True, slots=True)
+class XmlFormat:
+    """A format of XML files: its name with an article, and its root element."""
+
+    words: str
+    root: str
+    help: str
+    largest_bytes: int = 200_000_000
+
+    def refused(
+        self,
+        path: Path,
+        why: str,
+        place: int | None = None,
+        *,
+        expected: str = "",
+        help_text: str = "",
+    ) -> RulecError:
+        """The error (R0610) for a file of another format, with the line if that is known."""
+        message = f"the file cannot be read as {self.words}: {why}"
+        where = SourceLocation(str(path), place)
+        return NOT_A_RECORDING.error(where, message, expected=expected, help=help_text or self.help)
+
+
+@dataclass(slots=True)
+class XmlElement:
+    """An element of a file that is being read. Its methods raise RulecError R0610."""
+
+    # Not frozen: a recording has millions, and a frozen one takes five times as long to make
+    name: str
+    attributes: dict[str, str]
+    parser: XMLParserType
+    path: Path
+    form: XmlFormat
+
+    def get(self, key: str) -> str:
+        """An attribute's text, empty if it is missing."""
+        return self.attributes.get(key, "")
+
+    def text(self, key: str) -> str:
+        """An attribute's text, which must not be missing or empty."""
+        value = self.attributes.get(key)
+        if not value:
+            raise self.wrong(f"a `{self.name}` has no `{key}`")
+        return value
+
+    def number(self, key: str, default: float | None = None) -> float:
+        """The number in an attribute, or its default."""
+        if default is not None and key not in self.attributes:
+            return default
+        return self.as_number(key, self.text(key))
+
+    def positive(self, key: str, default: float | None = None) -> float:
+        """A number above 0."""
+        value = self.number(key, default)
+        if value <= 0:
+            raise self.wrong(f"`{key}` of a `{self.name}` is {value:g}", "a number above 0")
+        return value
+
+    def as_number(self, key: str, text: str) -> float:
+        """The number that a text spells, which must not be huge."""
+        try:
+            value = float(text)
+        except ValueError:
+            value = LARGEST
+        if not abs(value) < LARGEST:
+            expected = f"a number below {LARGEST:.0e}"
+            raise self.wrong(f"`{key}` of a `{self.name}` is `{short(text)}`", expected)
+        return value
+
+    def wrong(self, why: str, expected: str = "") -> RulecError:
+        """The error (R0610) for the place that the parser has come to."""
+        expected = expected and f"expected {expected}"
+        return self.form.refused(self.path, why, self.parser.CurrentLineNumber, expected=expected)
+
+
+def short(text: str) -> str:
+    """A file's text for a message: short, and without control characters."""
+    return "".join(c if c.isprintable() else "?" for c in text[:40])

@@ -1,0 +1,66 @@
+"""Maps of every format, for recordings without roads of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.recording_format import Glance
+
+if TYPE_CHECKING:
+    from rulec.recordings.road_map import RoadMap
+
+MAP = XmlFormat("a map", "", "`rulec formats` lists the maps that are read")
+
+
+@dataclass(frozen=True, slots=True)
+class MapFormat:
+    """A format of maps: ``read`` takes the file, and the time step (s) that lights count in."""
+
+    name: str
+    title: str
+    files: str
+    recognises: Callable[[Glance], bool]
+    read: Callable[[Path, float], RoadMap]
+
+
+def _sumo(path: Path, step_s: float) -> RoadMap:
+    # NumPy and Shapely take a while, and few commands read recordings.
+    from rulec.recordings.sumo.sumo_recording import read_sumo_map
+
+    return read_sumo_map(path, step_s)
+
+
+def _commonroad(path: Path, step_s: float) -> RoadMap:
+    # As above.
+    from rulec.recordings.commonroad.commonroad_file import read_commonroad_map
+
+    return read_commonroad_map(path, step_s)
+
+
+MAP_FORMATS = (
+    MapFormat("sumo", "nets of SUMO's", "*.net.xml", lambda glance: glance.root == "net", _sumo),
+    MapFormat(
+        "commonroad",
+        "the roads of CommonRoad scenarios",
+        "*.xml",
+        lambda glance: glance.root == "commonRoad",
+        _commonroad,
+    ),
+)
+
+
+def read_map(path: Path, step_s: float) -> RoadMap:
+    """Read a map of any format; its lights count in steps of ``step_s``.
+
+    Raises RulecError R0610 for a file that is no map, R0701 if it cannot be opened.
+    """
+    glance = Glance(path)
+    for form in MAP_FORMATS:
+        if form.recognises(glance):
+            return form.read(path, step_s)
+    why = f"it is XML of `{short(glance.root)}`" if glance.root else "it is of no known format"
+    raise MAP.refused(path, why)

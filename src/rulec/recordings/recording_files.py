@@ -1,0 +1,103 @@
+"""Recorded traffic from files of any format."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rulec.diagnostics import SourceLocation, did_you_mean, named
+from rulec.recordings.encodings.safe_xml import is_xml
+from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.format_table import FORMATS
+from rulec.recordings.map_files import MAP_FORMATS
+from rulec.recordings.recording_format import (
+    RECORDING,
+    Glance,
+    RecordingFormat,
+    RecordingSource,
+)
+from rulec.recordings.recording_messages import NOT_IN_RECORDING, OTHER_CHOICE
+
+if TYPE_CHECKING:
+    from rulec.recordings.recording import Recording
+
+_MOST_NAMED = 5
+
+
+def is_recording(file: str) -> bool:
+    """True if a file's name or first bytes show recorded traffic.
+
+    XML that is of no format is taken for a recording, too: nothing else that is read is XML.
+    """
+    glance = Glance(Path(file))
+    return is_xml(glance.path) or any(form.recognises(glance) for form in FORMATS)
+
+
+def read_recordings(source: RecordingSource) -> Iterator[Recording]:
+    """The recordings in a file, one after the other; most formats have one in each.
+
+    Raises RulecError R0610 for a file that cannot be read as what it seems to be, R0612 for a
+    scenario that is not in it, R0613 for a map where none is needed, R0614 and R0615 for a missing
+    or wrong one, R0701 if a file cannot be opened.
+    """
+    form = _format_of(source)
+    if source.map_path is not None and not form.takes_map:
+        raise OTHER_CHOICE.error(
+            SourceLocation(str(source.path)),
+            f"`{source.path.name}` has its own roads, and takes no map",
+            help="leave out --map, which is for recordings without roads of their own",
+        )
+    if source.scenario_id is None:
+        yield from form.read(source)
+        return
+    names = []
+    for recording in form.read(source):
+        if recording.name == source.scenario_id:
+            yield recording
+            return
+        names.append(recording.name)
+    raise NOT_IN_RECORDING.error(
+        SourceLocation(str(source.path)),
+        f"there is no scenario `{source.scenario_id}` in the file",
+        help=did_you_mean(source.scenario_id, names) or f"choose {_some(names)}",
+    )
+
+
+def read_recording(source: RecordingSource) -> Recording:
+    """The only recording in a file, or the one that is named.
+
+    Raises RulecError: as for ``read_recordings``, R0612 also if there are several.
+    """
+    recordings = read_recordings(source)
+    recording = next(recordings)
+    other = next(recordings, None)
+    if other is not None:
+        raise NOT_IN_RECORDING.error(
+            SourceLocation(str(source.path)),
+            f"there are several recordings in the file, {named([recording.name, other.name])} "
+            "to begin with",
+            help=f"choose one, as with --scenario {recording.name}",
+        )
+    return recording
+
+
+def _format_of(source: RecordingSource) -> RecordingFormat:
+    glance = Glance(source.path)
+    for form in FORMATS:
+        if source.form == form.name or (source.form is None and form.recognises(glance)):
+            return form
+    for kind in MAP_FORMATS:
+        if kind.recognises(glance):
+            way_out = "give the recording, and this file with --map"
+            why = f"it is a map ({kind.title}), with nobody on its roads"
+            raise RECORDING.refused(source.path, why, help_text=way_out)
+    if glance.root:
+        why = f"it is XML of `{short(glance.root)}`"
+        raise RECORDING.refused(source.path, why, expected="expected `commonRoad` or `fcd-export`")
+    raise RECORDING.refused(source.path, "it is of no known format")
+
+
+def _some(names: list[str]) -> str:
+    more = len(names) - _MOST_NAMED
+    return named(names[:_MOST_NAMED]) + (f", or one of {more:,} more" if more > 0 else "")

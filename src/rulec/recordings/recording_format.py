@@ -1,0 +1,80 @@
+"""What a format of recordings is, and where one is read from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rulec.files import opened
+from rulec.recordings.encodings.safe_xml import is_xml, root_of
+from rulec.recordings.encodings.xml_element import XmlFormat
+
+if TYPE_CHECKING:
+    from rulec.recordings.recording import Recording
+
+_HEAD_BYTES = 4096
+
+RECORDING = XmlFormat(
+    "recorded traffic", "", "`rulec formats` lists the formats that are read, and how files look"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingSource:
+    """A file of recorded traffic, and how to read it.
+
+    ``map_path`` is the map for formats that have no roads of their own, ``form`` the name of the
+    format, None if the file shows it, ``scenario_id`` which of several in the file, None for all.
+    """
+
+    path: Path
+    map_path: Path | None = None
+    form: str | None = None
+    scenario_id: str | None = None
+
+
+@dataclass(frozen=True)
+class Glance:
+    """What a file shows at first sight."""
+
+    path: Path
+
+    @cached_property
+    def name(self) -> str:
+        """Its name in small letters, without the ending of packed files."""
+        return self.path.name.lower().removesuffix(".gz")
+
+    @cached_property
+    def head(self) -> bytes:
+        """Its first bytes, as they are in the file; none if it cannot be read."""
+        if not self.path.is_file():
+            return b""
+        with opened(self.path) as stream:
+            return stream.read(_HEAD_BYTES)
+
+    @cached_property
+    def root(self) -> str:
+        """The name of its root element if it is XML, else empty.
+
+        Raises RulecError R0610 for XML that is broken there, R0701.
+        """
+        return root_of(self.path, RECORDING) if is_xml(self.path) else ""
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingFormat:
+    """A format of recorded traffic.
+
+    ``name`` is what ``--input-format`` calls it, ``title`` what people do, ``files`` says how its
+    files are called. ``takes_map``: it has no roads of its own. ``read`` raises RulecError.
+    """
+
+    name: str
+    title: str
+    files: str
+    recognises: Callable[[Glance], bool]
+    read: Callable[[RecordingSource], Iterator[Recording]]
+    takes_map: bool = False

@@ -1,0 +1,103 @@
+"""Messages about recordings."""
+
+from __future__ import annotations
+
+from rulec.diagnostics.code import Code
+
+_COMMONROAD = """\
+cat > road.xml <<'END'
+<commonRoad commonRoadVersion="2018b" benchmarkID="ZAM_Road-1_1_T-1" timeStepSize="0.1"
+    author="" affiliation="" source="" tags="" date="2020-01-01">
+  <lanelet id="1">
+    <leftBound><point><x>0</x><y>2</y></point><point><x>99</x><y>2</y></point></leftBound>
+    <rightBound><point><x>0</x><y>-2</y></point><point><x>99</x><y>-2</y></point></rightBound>
+  </lanelet>
+  <planningProblem id="2">
+    <initialState>
+      <position><point><x>9</x><y>0</y></point></position>
+      <velocity><exact>5</exact></velocity><orientation><exact>0</exact></orientation>
+      <yawRate><exact>0</exact></yawRate><slipAngle><exact>0</exact></slipAngle>
+      <time><exact>0</exact></time>
+    </initialState>
+    <goalState>
+      <time><intervalStart>0</intervalStart><intervalEnd>40</intervalEnd></time>
+    </goalState>
+  </planningProblem>
+</commonRoad>
+END
+"""
+NOT_A_RECORDING = Code(
+    "R0610",
+    title="a file cannot be read as recorded traffic",
+    why="Recorded traffic is XML: a CommonRoad scenario, version 2018b or 2020a, or SUMO's "
+    "floating-car data with their net; the root element tells which. CommonRoad's scenarios may "
+    "be in Protocol Buffers, too (`.pb`); their parts lie beside each other. A file has to be "
+    "well-formed and complete, and to do without a `DOCTYPE`: what that defines may fill the "
+    "memory or fetch other files.",
+    bad=_COMMONROAD.replace("2018b", "2017a") + "rulec maneuvers road.xml -r esterle2019",
+    good=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019",
+    kind="command",
+)
+
+NOT_IN_RECORDING = Code(
+    "R0612",
+    title="what is chosen is not in the recorded scene",
+    why="A recorded scene has its own ids for planning problems, vehicles and lanelets, and "
+    "its own times. The message names those that can be chosen with `--ego`, `--at-time` and "
+    "`--reference`. Without any choice, ego is the first planning problem's, so there has to "
+    "be one, and it has to be on a lane.",
+    bad=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019 --ego 7",
+    good=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019 --ego 2",
+    kind="command",
+)
+
+OTHER_CHOICE = Code(
+    "R0613",
+    title="a choice for recorded scenes was made for another scenario",
+    why="What `--ego`, `--at-time`, `--reference`, `--prediction` and `--congested-below` choose "
+    "from is what was recorded. A built-in scenario, or one in TOML, says itself where ego and "
+    "the road are and how others move. `--map` is for tracks that have no roads of their "
+    "own, `--scenario` for files that hold several recordings.",
+    bad="rulec maneuvers s1 -r esterle2019 --ego 2",
+    good="rulec maneuvers s1 -r esterle2019",
+    kind="command",
+)
+
+_FCD = """\
+cat > fcd.xml <<'END'
+<fcd-export>
+  <timestep time="0.00">
+    <vehicle id="f.0" x="20" y="0" angle="90" type="DEFAULT_VEHTYPE" speed="9" lane="east_0"/>
+  </timestep>
+</fcd-export>
+END
+"""
+_NET = """\
+cat > road.net.xml <<'END'
+<net version="1.20">
+  <edge id="east" from="a" to="b">
+    <lane id="east_0" index="0" speed="13.89" length="200" shape="0,0 200,0"/>
+  </edge>
+</net>
+END
+"""
+NET_MISSING = Code(
+    "R0614",
+    title="floating-car data of SUMO's have no net",
+    why="They say where everybody was, but not where the roads are; that is in SUMO's net. Without "
+    "`--map` it is the one that a comment at the head of the data names, or the only file "
+    "`*.net.xml` in the same folder.",
+    bad=_FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+    good=_NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+    kind="command",
+)
+
+OTHER_NET = Code(
+    "R0615",
+    title="floating-car data of SUMO's and the net do not belong together",
+    why="All lanes and edges that the data name are in the net that they were made with, and "
+    "everybody is near its roads. Data with geographic coordinates cannot be used.",
+    bad=_NET.replace("east", "west") + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+    good=_NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
+    kind="command",
+)

@@ -1,0 +1,204 @@
+"""SUMO's floating-car data: who was where at which moment, and the files beside them.
+
+A vehicle's ``x`` and ``y`` are the middle of its front bumper; its ``angle`` is a compass's:
+degrees clockwise from the y axis. Who rides in a vehicle is a part of it, and left out.
+"""
+
+from __future__ import annotations
+
+import re
+from array import array
+from dataclasses import dataclass, field
+from html import unescape
+from operator import itemgetter
+from pathlib import Path, PurePosixPath
+
+from rulec.diagnostics import RulecError, SourceLocation, named
+from rulec.recordings.encodings.safe_xml import scan
+from rulec.recordings.encodings.xml_element import LARGEST, XmlElement, XmlFormat, short
+from rulec.recordings.recording_messages import NET_MISSING
+
+FCD = XmlFormat(
+    "SUMO's floating-car data",
+    "fcd-export",
+    "SUMO writes them with the option --fcd-output",
+    2_000_000_000,
+)
+BODIES = frozenset({"vehicle", "person", "container"})
+LONGEST_ID = 200
+MICROSECONDS = 1_000_000
+"""In a second: moments are whole numbers of them."""
+
+_OPTION = re.compile(r'<(net-file|route-files|additional-files|fcd-output\.geo)\s+value="([^"]*)"')
+_PLACE = ("x", "y", "angle", "speed")
+_place_of = itemgetter(*_PLACE)
+_NOWHERE = -(2.0**30)
+"""What SUMO writes for x and y of who is in no place, as while it is moved elsewhere."""
+
+
+@dataclass(frozen=True, slots=True)
+class FcdHead:
+    """SUMO's configuration, a comment at the head of its output."""
+
+    net: str = ""
+    demand: tuple[str, ...] = ()
+    geographic: bool = False
+
+
+def fcd_head(comment: str) -> FcdHead:
+    """The configuration in a comment, as far as it matters here."""
+    options = {name: unescape(value) for name, value in _OPTION.findall(comment)}
+    demand = [
+        name.strip()
+        for key in ("route-files", "additional-files")
+        for name in options.get(key, "").split(",")
+    ]
+    return FcdHead(
+        options.get("net-file", ""),
+        tuple(filter(None, demand)),
+        options.get("fcd-output.geo") in ("true", "1", "yes", "on"),
+    )
+
+
+@dataclass(slots=True)
+class FcdTrack:
+    """The track of a participant in rows of floating-car data: x, y, angle and speed.
+
+    ``moments`` are indices into those of the file.
+    """
+
+    element: str
+    type: str
+    moments: array[int] = field(default_factory=lambda: array("q"))
+    rows: array[float] = field(default_factory=lambda: array("d"))
+    accelerations: array[float] = field(default_factory=lambda: array("d"))
+    lamps: dict[int, int] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class FloatingCarData:
+    """The content of a floating-car data file.
+
+    ``moments`` are times in microseconds, ``on`` the lanes and edges that are named.
+    """
+
+    head: FcdHead = field(default_factory=FcdHead)
+    moments: list[int] = field(default_factory=list)
+    tracks: dict[str, FcdTrack] = field(default_factory=dict)
+    on: dict[str, tuple[str, int]] = field(default_factory=dict)
+
+
+def read_fcd(path: Path) -> FloatingCarData:
+    """The file's content. Raises RulecError R0610 if it is none, R0701 if it cannot be read."""
+    data = FloatingCarData()
+    carriers = 0
+
+    def comment(text: str) -> None:
+        if not data.moments and "<" in text:
+            data.head = fcd_head(text)
+
+    def begin(element: XmlElement) -> None:
+        nonlocal carriers
+        if element.name in BODIES:
+            carriers += 1
+            if not data.moments:
+                raise element.wrong(f"a `{element.name}` is in no `timestep`")
+            if carriers == 1 and not element.attributes.get("vehicle"):
+                _add(data, element)
+        elif element.name == "timestep":
+            moment = round(element.number("time") * MICROSECONDS)
+            if data.moments and moment <= data.moments[-1]:
+                raise element.wrong("its time steps are not in ascending order")
+            data.moments.append(moment)
+
+    def end(name: str) -> None:
+        nonlocal carriers
+        carriers -= name in BODIES
+
+    scan(path, FCD, begin, end=end, comment=comment)
+    return data
+
+
+def _add(data: FloatingCarData, element: XmlElement) -> None:
+    name, attributes = element.name, element.attributes
+    try:
+        row = tuple(map(float, _place_of(attributes)))
+        acceleration = float(attributes.get("acceleration", "nan"))
+        key = attributes["id"]
+    except (KeyError, ValueError):
+        raise _wrong(element) from None
+    if row[0] == row[1] == _NOWHERE:
+        return
+    # NaN is not below anything
+    if not (max(map(abs, row)) < LARGEST and sum(row) == sum(row)):
+        raise _wrong(element)
+    track = data.tracks.get(key)
+    if track is not None and track.element != name:
+        # SUMO lets a person be called like a vehicle; here ids are one for all
+        key = f"{name} {key}"
+        track = data.tracks.get(key)
+    moment = len(data.moments) - 1
+    if track is None:
+        if not 0 < len(key) <= LONGEST_ID:
+            raise element.wrong(f"the id of a `{name}` is empty, or longer than {LONGEST_ID}")
+        track = data.tracks[key] = FcdTrack(name, attributes.get("type", ""))
+    elif track.moments[-1] == moment:
+        raise element.wrong(f"`{short(key)}` is twice in one time step")
+    track.moments.append(moment)
+    track.rows.extend(row)
+    track.accelerations.append(acceleration if abs(acceleration) < LARGEST else float("nan"))
+    if "signals" in attributes:
+        track.lamps[moment] = int(element.number("signals"))
+    place = attributes.get("lane") or attributes.get("edge")
+    if place and place not in data.on:
+        kind = "lane" if attributes.get("lane") else "edge"
+        data.on[place] = kind, element.parser.CurrentLineNumber
+
+
+def _wrong(element: XmlElement) -> RulecError:
+    element.text("id")
+    for key in _PLACE:
+        element.number(key)
+    element.number("acceleration", 0.0)
+    raise AssertionError("one of these is not a number")
+
+
+def net_beside(path: Path, head: FcdHead) -> Path:
+    """The net of floating-car data. Raises RulecError R0614 if it is not clear which that is."""
+    written = named_beside(path, head.net) if head.net else None
+    if written is not None:
+        return written
+    nets = [*path.parent.glob("*.net.xml"), *path.parent.glob("*.net.xml.gz")]
+    if len(nets) == 1:
+        return nets[0]
+    if nets:
+        why = f"there are several nets beside it: {named(sorted(net.name for net in nets))}"
+    elif head.net:
+        why = f"`{_name(head.net)}`, which it was made with, is not beside it"
+    else:
+        why = "there is no net beside it"
+    raise NET_MISSING.error(
+        SourceLocation(str(path)),
+        f"SUMO's floating-car data do not say where the roads are, and {why}",
+        help="name SUMO's net with --map FILE",
+    )
+
+
+def demand_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
+    """The files beside floating-car data that may describe the types of vehicles."""
+    written = [file for name in head.demand if (file := named_beside(path, name)) is not None]
+    if written:
+        return tuple(written)
+    only = [*path.parent.glob("*.rou.xml"), *path.parent.glob("*.rou.xml.gz")]
+    return tuple(only) if len(only) == 1 else ()
+
+
+def named_beside(path: Path, written: str) -> Path | None:
+    """The file beside floating-car data that a file names, if it is there."""
+    # Only the name counts: what a file says shall not lead anywhere else
+    candidate = path.parent / _name(written)
+    return candidate if candidate.is_file() else None
+
+
+def _name(written: str) -> str:
+    return PurePosixPath(written.replace("\\", "/").replace("\0", "")).name

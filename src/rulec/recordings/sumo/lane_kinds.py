@@ -1,0 +1,73 @@
+"""What the lanes of a SUMO net are for: going on with their road, joining it, leaving it.
+
+A lane goes on where each lane of its road leads to one of the next road, for the next kilometre or
+up to the net's end: signs and arrows that send lanes to places of their own stand no earlier. A
+road of one lane needs none. Lanes join and leave where links do (``_link`` in the road's type).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Set
+
+import numpy as np
+
+from rulec.recordings.sumo.net import SumoNet
+
+_AHEAD_M = 1000.0
+_LINK = "_link"
+_Lanes = Mapping[str, list[str]]
+
+
+def lane_kinds(net: SumoNet, drivable: Set[str]) -> dict[str, str]:
+    """Lane -> CommonRoad's word for what it is for, of those of which the net tells it.
+
+    ``drivable``: the lanes on which vehicles drive.
+    """
+    # To turn round is no way on
+    onward: dict[str, list[str]] = defaultdict(list)
+    before: dict[str, set[str]] = defaultdict(set)
+    for connection in net.connections:
+        if {connection.start, connection.end} <= drivable:
+            own, after = net.lanes[connection.start].edge, net.lanes[connection.end].edge
+            if (after.start, after.end) != (own.end, own.start):
+                onward[connection.start].append(connection.end)
+                before[after.id].add(own.type)
+    edges: dict[str, list[str]] = defaultdict(list)
+    for name in drivable:
+        if not net.lanes[name].edge.function:
+            edges[net.lanes[name].edge.id].append(name)
+    kinds: dict[str, str] = {}
+    for edge, lanes in edges.items():
+        through = len(lanes) == 1 or _goes_on(net, edge, edges, onward)
+        joined = any(_LINK in kind for kind in before[edge])
+        goes_on = any(onward[lane] for lane in lanes)
+        for lane in lanes:
+            leads_to = {net.lanes[end].edge.type for end in onward[lane]}
+            if _LINK in net.edges[edge].type:
+                continue
+            if through:
+                kinds[lane] = "mainCarriageWay"
+            elif leads_to and all(_LINK in kind for kind in leads_to):
+                kinds[lane] = "exitRamp"
+            elif joined and goes_on and not onward[lane]:
+                kinds[lane] = "accessRamp"
+    return kinds
+
+
+def _goes_on(net: SumoNet, edge: str, edges: _Lanes, onward: _Lanes) -> bool:
+    """True if all lanes of an edge lead on beside each other."""
+    way, seen = 0.0, {edge}
+    while way < _AHEAD_M and any(onward.get(lane) for lane in edges[edge]):
+        each = [onward.get(lane, []) for lane in edges[edge]]
+        ends = {end for after in each for end in after}
+        if any(len(after) != 1 for after in each) or len(ends) < len(each):
+            return False
+        if len(following := {net.lanes[end].edge.id for end in ends}) > 1:
+            return False
+        (edge,) = following
+        if edge in seen:
+            return True
+        seen.add(edge)
+        way += float(np.hypot(*np.diff(net.lanes[min(ends)].shape, axis=0).T).sum())
+    return True

@@ -1,0 +1,266 @@
+"""The lanes of a SUMO net as lanelets.
+
+A lane's border lies half its width beside its middle. Within a junction the limit of the road that
+leads there goes on: what the net says there is how fast one gets around the bend.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from rulec.recordings.polylines import without_repeats
+from rulec.recordings.recording import Lanelet, LaneMark, Points
+from rulec.recordings.sumo.lane_kinds import lane_kinds
+from rulec.recordings.sumo.net import NetConnection, NetEdge, NetLane, SumoNet
+from rulec.recordings.sumo.right_of_way import (
+    LEVEL_CROSSINGS,
+    UNREGULATED,
+    rights_of_ways,
+    signs_of_lanes,
+)
+
+_WALKERS = {"pedestrian", "wheelchair"}
+_RIDERS = {"bicycle", "scooter"}
+_BUSES = {"bus", "coach", "taxi"}
+_ALL = frozenset(
+    {"passenger", "private", "truck", "trailer", "delivery", "motorcycle", "moped", "hov"}
+    | {"evehicle", "emergency", "authority", "army", "vip", "custom1", "custom2"}
+    | {"tram", "rail", "rail_urban", "rail_electric", "rail_fast", "subway", "ship"}
+    | _WALKERS
+    | _RIDERS
+    | _BUSES
+)
+_RAILS = {name for name in _ALL if name.startswith("rail")} | {"tram", "subway", "ship"}
+_KMH = 3.6
+_ROUNDED_KMH = 0.02
+"""Nets have limits in m/s with two decimals, which is so far from a whole number of km/h."""
+
+_GIVES_WAY = "m"
+_ARMS = 3
+_CLOSEST_M = 0.01
+_SHARPEST = 0.5
+"""Where the line turns back on itself its border would run away; so far it may, at most."""
+
+
+def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
+    """Lane id -> lanelet, of all lanes that are longer than nothing."""
+    shapes = {lane.id: without_repeats(lane.shape, _CLOSEST_M) for lane in net.lanes.values()}
+    there = {key for key, shape in shapes.items() if len(shape) > 1}
+    after = _successors(net.connections, there, set(net.lanes))
+    before: dict[str, list[str]] = defaultdict(list)
+    for start, ends in after.items():
+        for end in ends:
+            before[end].append(start)
+    origins = _origins(net, before)
+    limits = {key: _unrounded(road.speed) for key, road in origins.items()}
+    driven = {key for key in origins if _permitted(net.lanes[key]) - _WALKERS - _RIDERS - _RAILS}
+    kinds = lane_kinds(net, driven)
+    junctions = _junctions(net)
+    lights, ways = net.lane_lights(step_s), net.way_lights(step_s)
+    rights, signs = rights_of_ways(net), signs_of_lanes(net)
+    links: dict[str, list[NetConnection]] = defaultdict(list)
+    entries: dict[str, list[NetConnection]] = defaultdict(list)
+    for connection in net.connections:
+        links[connection.start].append(connection)
+        entries[connection.end].append(connection)
+    lanelets = {}
+    for lane in net.lanes.values():
+        if lane.id not in there:
+            continue
+        left, right, centre = _lines(lane, shapes[lane.id])
+        own, origin = rights.get(lane.id), origins.get(lane.id, lane)
+        junction = junction_of(lane)
+        towards_left = 1 if net.side == "right" else -1
+        lanelets[lane.id] = Lanelet(
+            id=lane.id,
+            left=left,
+            right=right,
+            centre=centre,
+            successors=tuple(after[lane.id]),
+            predecessors=tuple(before[lane.id]),
+            left_of=_neighbour(lane, towards_left, there),
+            right_of=_neighbour(lane, -towards_left, there),
+            types=frozenset(
+                (
+                    *_types(lane, net, junctions, entries[lane.id]),
+                    *_place_types(origin.edge, net, lane),
+                    *filter(None, [kinds.get(origin.id)]),
+                )
+            ),
+            signs=signs.get(lane.id, frozenset()),
+            limit_mps=limits.get(lane.id),
+            lights=tuple(lights.get(lane.id, ())),
+            lights_to=ways.get(lane.id, {}),
+            left_mark=_mark(lane, towards_left, there),
+            right_mark=_mark(lane, -towards_left, there),
+            stop_line=np.stack((left[-1], right[-1])) if links[lane.id] else None,
+            junction=junction if junction in junctions else "",
+            foes=own.foes if own else None,
+            first=own.first if own else None,
+        )
+    return lanelets
+
+
+def _lines(lane: NetLane, shape: Points) -> tuple[Points, Points, Points]:
+    if lane.edge.function == "walkingarea" and len(shape) > 3:
+        # The shape is an outline: one half of it is one side, the other half the other
+        half = len(shape) // 2
+        right, left = shape[:half], shape[half:][::-1]
+        count = max(len(right), len(left))
+        right, left = _resampled(right, count), _resampled(left, count)
+        return left, right, (left + right) / 2
+    return parallel_line(shape, lane.width / 2), parallel_line(shape, -lane.width / 2), shape
+
+
+def parallel_line(points: Points, offset: float) -> Points:
+    """The parallel of a line of two or more different points, at a distance to the left."""
+    ahead = np.diff(points, axis=0)
+    ahead /= np.hypot(*ahead.T)[:, None]
+    across = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
+    before = np.concatenate((across[:1], across))
+    after = np.concatenate((across, across[-1:]))
+    # Both pieces' parallels meet on the line that halves the angle between them
+    stretch = np.maximum(1.0 + (before * after).sum(axis=1), _SHARPEST)
+    line: Points = points + offset * (before + after) / stretch[:, None]
+    return line
+
+
+def _resampled(points: Points, count: int) -> Points:
+    at = np.linspace(0, len(points) - 1, count)
+    every = np.arange(len(points))
+    return np.stack([np.interp(at, every, points[:, axis]) for axis in (0, 1)], axis=1)
+
+
+def _successors(
+    connections: list[NetConnection], there: set[str], known: set[str]
+) -> dict[str, list[str]]:
+    """Lane -> next lanes, without those of no length."""
+    direct: dict[str, list[str]] = defaultdict(list)
+    for connection in connections:
+        direct[connection.start].append(
+            connection.via if connection.via in known else connection.end
+        )
+
+    def reached(start: str, passed: tuple[str, ...] = ()) -> Iterator[str]:
+        for end in direct.get(start, ()):
+            if end in there:
+                yield end
+            elif end not in passed:
+                yield from reached(end, (*passed, end))
+
+    return defaultdict(list, {key: list(dict.fromkeys(reached(key))) for key in there})
+
+
+def _neighbour(lane: NetLane, step: int, there: set[str]) -> str | None:
+    if lane.edge.function in ("crossing", "walkingarea"):
+        return None
+    beside_it = f"{lane.edge.id}_{lane.index + step}"
+    return beside_it if beside_it in there else None
+
+
+def _origins(net: SumoNet, before: Mapping[str, list[str]]) -> dict[str, NetLane]:
+    """Lane -> the lane of the road that leads there, for those on which vehicles drive."""
+    origins = {}
+    for lane in net.lanes.values():
+        origin, seen = lane, {lane.id}
+        while origin.edge.function == "internal":
+            earlier = next(
+                (start for start in before.get(origin.id, ()) if start not in seen), None
+            )
+            if earlier is None:
+                break
+            origin = net.lanes[earlier]
+            seen.add(earlier)
+        if origin.edge.function == "" and not _permitted(lane) <= _WALKERS:
+            origins[lane.id] = origin
+    return origins
+
+
+def _unrounded(limit_mps: float) -> float:
+    kmh = limit_mps * _KMH
+    return round(kmh) / _KMH if abs(kmh - round(kmh)) <= _ROUNDED_KMH else limit_mps
+
+
+def _mark(lane: NetLane, step: int, there: set[str]) -> LaneMark | None:
+    """The line between two lanes of an edge: solid where it is forbidden to change across it."""
+    if lane.edge.function or _neighbour(lane, step, there) is None:
+        return None
+    # ``marks`` are to the left and right as SUMO has them, by rising and falling index
+    return "solid" if lane.marks[0 if step > 0 else 1] else "broken"
+
+
+def junction_of(lane: NetLane) -> str:
+    """The junction that a lane lies in, or empty."""
+    return lane.edge.id[1:].rpartition("_")[0] if lane.edge.function == "internal" else ""
+
+
+def _junctions(net: SumoNet) -> set[str]:
+    arms: dict[str, set[str]] = defaultdict(set)
+    for lane in net.lanes.values():
+        if lane.edge.function == "" and not _permitted(lane) <= _WALKERS:
+            arms[lane.edge.start].add(lane.edge.end)
+            arms[lane.edge.end].add(lane.edge.start)
+    return {node for node, others in arms.items() if len(others) >= _ARMS}
+
+
+def _types(
+    lane: NetLane, net: SumoNet, junctions: set[str], entries: list[NetConnection]
+) -> Iterator[str]:
+    permitted = _permitted(lane)
+    if lane.edge.function == "crossing":
+        # Where walkers have to give way there is no crossing that gives them priority
+        waits = entries and all(entry.state == _GIVES_WAY and not entry.light for entry in entries)
+        yield "sidewalk" if waits else "crosswalk"
+        if entries and any(entry.light for entry in entries):
+            yield "directed"
+    elif lane.edge.function == "walkingarea" or (permitted and permitted <= _WALKERS):
+        yield "sidewalk"
+    elif not permitted & (_ALL - _WALKERS - {"ship"}) or not permitted - _RAILS:
+        yield "restricted_area"
+        if permitted and permitted <= _RAILS:
+            yield "rail"
+    elif permitted <= _WALKERS | _RIDERS:
+        yield "sidewalk" if permitted & _WALKERS else "bicycleLane"
+    elif permitted & _BUSES and not permitted & {"passenger", "private", "truck"}:
+        yield "busLane"
+    junction = junction_of(lane)
+    crosses_rails = junction in net.junctions and net.junctions[junction].type in LEVEL_CROSSINGS
+    if crosses_rails:
+        yield "level_crossing"
+    elif junction in junctions:
+        yield "intersection"
+        if net.junctions and net.junctions[junction].type in UNREGULATED:
+            yield "unregulated"
+
+
+_URBAN = ("residential", "living_street", "pedestrian")
+_ORDINARY = (*_URBAN, "tertiary", "secondary", "unclassified", "service")
+"""Others, such as trunk roads, may be expressways."""
+_FAST_KMH = 80.0
+
+
+def _place_types(road: NetEdge, net: SumoNet, lane: NetLane) -> Iterator[str]:
+    """Types that say where a lane of a road is, as far as the road's type and limit tell."""
+    if lane.edge.id in net.roundabouts:
+        yield "roundabout"
+    if "motorway" in road.type:
+        yield "highway"
+    elif any(word in road.type for word in _ORDINARY):
+        yield "ordinary"
+    if any(word in road.type for word in _URBAN):
+        yield "urban"
+    elif lane.edge.function == "" and lane.speed * _KMH > _FAST_KMH:
+        yield "rural"
+    if lane.edge.parameters.get("tunnel", "no") not in ("no", ""):
+        yield "tunnel"
+
+
+def _permitted(lane: NetLane) -> frozenset[str]:
+    if lane.allow is not None:
+        return _ALL if lane.allow == "all" else frozenset(lane.allow.split()) & _ALL
+    if lane.disallow is not None:
+        return frozenset() if lane.disallow == "all" else _ALL - frozenset(lane.disallow.split())
+    return _ALL

@@ -1,0 +1,64 @@
+"""SUMO's states of traffic lights at every moment, as its output ``SaveTLSStates`` has them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from rulec.recordings.encodings.safe_xml import root_of, scan
+from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat
+from rulec.recordings.sumo.fcd import FcdHead, demand_beside, named_beside
+from rulec.recordings.sumo.net import SignalProgramme
+
+STATES = XmlFormat(
+    "SUMO's states of traffic lights",
+    "tlsStates",
+    "SUMO writes them for a `timedEvent` of the type `SaveTLSStates`",
+)
+_ADDITIONAL = XmlFormat("an additional file of SUMO", "additional", "SUMO takes it with -a")
+_A_DAY_S = 86_400.0
+
+
+def light_states_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
+    """The recorded states of lights: what additional files name, else the only ``*.tls.xml``."""
+    names: list[str] = []
+
+    def begin(element: XmlElement) -> None:
+        if element.name == "timedEvent" and element.get("type") == "SaveTLSStates":
+            names.append(element.get("dest"))
+
+    for file in demand_beside(path, head):
+        if root_of(file, _ADDITIONAL) == "additional":
+            scan(file, _ADDITIONAL, begin)
+    found = {there for name in names if (there := named_beside(path, name)) is not None}
+    if found:
+        return tuple(sorted(found))
+    only = [*path.parent.glob("*.tls.xml"), *path.parent.glob("*.tls.xml.gz")]
+    return tuple(only) if len(only) == 1 else ()
+
+
+def read_light_states(path: Path) -> Mapping[str, SignalProgramme]:
+    """Read what each light showed, as a programme that runs once.
+
+    The first state holds from time 0 on, the last one for a day: SUMO writes both outputs for the
+    same time. Raises RulecError R0610 for a file that is none, R0701 if it cannot be read.
+    """
+    changes: dict[str, list[tuple[float, str]]] = {}
+
+    def begin(element: XmlElement) -> None:
+        if element.name == "tlsState":
+            time, state = element.number("time"), element.text("state")
+            known = changes.setdefault(element.text("id"), [])
+            if known and time < known[-1][0]:
+                raise element.wrong("its times are not in ascending order")
+            if not known or known[-1][1] != state:
+                known.append((time, state))
+
+    scan(path, STATES, begin)
+    return {name: SignalProgramme(0.0, _phases(known)) for name, known in changes.items()}
+
+
+def _phases(changes: list[tuple[float, str]]) -> tuple[tuple[float, str], ...]:
+    starts = [0.0, *(time for time, _ in changes[1:])]
+    ends = [*starts[1:], starts[-1] + _A_DAY_S]
+    return tuple((ends[k] - starts[k], state) for k, (_, state) in enumerate(changes))

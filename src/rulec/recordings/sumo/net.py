@@ -1,0 +1,273 @@
+"""A SUMO net: edges with lanes, connections, and traffic lights."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from rulec.recordings.encodings.safe_xml import scan
+from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat
+from rulec.recordings.recording import LONGEST_M, Light, Points, Side
+
+NET = XmlFormat("a SUMO net", "net", "SUMO's program `netconvert` makes such files")
+
+LANE_WIDTH_M = 3.2
+"""SUMO's, where a net says nothing else."""
+
+WIDEST_M = 100.0
+
+COLOURS: Mapping[str, str] = {
+    "r": "red",
+    "s": "red",
+    "u": "redYellow",
+    "y": "yellow",
+    "Y": "yellow",
+    "g": "green",
+    "G": "green",
+    "o": "inactive",
+    "O": "inactive",
+}
+"""SUMO's letters, and CommonRoad's words; ``s`` is red with an arrow that lets turn right."""
+
+
+@dataclass(frozen=True, slots=True)
+class NetEdge:
+    """An edge: ``function`` is empty for a road, ``type`` is what the map's source calls it."""
+
+    id: str
+    function: str
+    type: str
+    start: str
+    end: str
+    parameters: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NetLane:
+    """A lane of an edge: ``index`` counts from the kerb on.
+
+    ``shape`` is its middle, of a walking area the outline.
+    """
+
+    id: str
+    edge: NetEdge
+    index: int
+    shape: Points
+    width: float
+    speed: float
+    allow: str | None
+    disallow: str | None
+    marks: tuple[bool, bool] = (False, False)
+    """Is it forbidden to change lanes to the left, to the right?"""
+
+
+@dataclass(frozen=True, slots=True)
+class NetJunction:
+    """A junction: its type, and for each way through it a lane, whom it waits for, and its foes.
+
+    ``first`` and ``foes`` are bits, one for each way, the last one first.
+    """
+
+    id: str
+    type: str
+    ways: tuple[str, ...]
+    first: list[str] = field(default_factory=list)
+    foes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NetConnection:
+    """A connection from a lane to the next one, over ``via`` within a junction.
+
+    ``link`` is its number at its ``light``.
+    """
+
+    start: str
+    end: str
+    via: str
+    state: str
+    light: str
+    link: int
+
+
+@dataclass(frozen=True, slots=True)
+class SignalProgramme:
+    """A traffic light's programme: phases of a duration (s) and a letter for each link."""
+
+    begin: float
+    phases: tuple[tuple[float, str], ...]
+
+    def has_arrow(self, link: int) -> bool:
+        """True if a link may turn at red after a stop."""
+        return any(0 <= link < len(letters) and letters[link] == "s" for _, letters in self.phases)
+
+    def light(self, link: int, step_s: float) -> Light | None:
+        """The light of a link in time steps, if the programme has any."""
+        phases: list[tuple[str, int]] = []
+        ends, done = 0.0, 0
+        for duration, letters in self.phases:
+            if not 0 <= link < len(letters):
+                return None
+            ends += duration
+            steps = round(ends / step_s) - done
+            done += steps
+            colour = COLOURS.get(letters[link], "inactive")
+            if phases and phases[-1][0] == colour:
+                phases[-1] = colour, phases[-1][1] + steps
+            elif steps:
+                phases.append((colour, steps))
+        return Light(round(self.begin / step_s), tuple(phases)) if phases else None
+
+
+@dataclass(slots=True)
+class SumoNet:
+    """The content of a SUMO net; a light that reacts to traffic has None as programme."""
+
+    side: Side = "right"
+    edges: dict[str, NetEdge] = field(default_factory=dict)
+    lanes: dict[str, NetLane] = field(default_factory=dict)
+    connections: list[NetConnection] = field(default_factory=list)
+    junctions: dict[str, NetJunction] = field(default_factory=dict)
+    roundabouts: set[str] = field(default_factory=set)
+    programmes: dict[str, list[SignalProgramme | None]] = field(default_factory=dict)
+
+    def lane_lights(self, step_s: float) -> dict[str, list[Light]]:
+        """Lane -> the lights at its end, one for each way on that has its own.
+
+        A light that reacts to traffic, or has several programmes, has none that one could tell.
+        """
+        lights: dict[str, list[Light]] = {}
+        for connection in self.connections:
+            programmes = self.programmes.get(connection.light, [])
+            if len(programmes) != 1 or programmes[0] is None:
+                continue
+            light = programmes[0].light(connection.link, step_s)
+            known = lights.setdefault(connection.start, [])
+            if light is not None and light not in known:
+                known.append(light)
+        return lights
+
+    def way_lights(self, step_s: float) -> dict[str, dict[str, Light]]:
+        """Lane -> the lane that follows -> the light for that way."""
+        lights: dict[str, dict[str, Light]] = {}
+        for connection in self.connections:
+            programmes = self.programmes.get(connection.light, [])
+            if len(programmes) == 1 and programmes[0] is not None:
+                light = programmes[0].light(connection.link, step_s)
+                if light is not None:
+                    onward = connection.via or connection.end
+                    lights.setdefault(connection.start, {})[onward] = light
+        return lights
+
+    def unknown_lights(self) -> list[str]:
+        """The lights whose programme is not known."""
+        return [name for name, known in self.programmes.items() if len(known) > 1 or None in known]
+
+
+def read_net(path: Path) -> SumoNet:
+    """The net in a file. Raises RulecError R0610 if it is none, R0701 if it cannot be read."""
+    net = SumoNet()
+    edge: NetEdge | None = None
+    junction: NetJunction | None = None
+    light: XmlElement | None = None
+    phases: list[tuple[float, str]] = []
+
+    def finish_light() -> None:
+        nonlocal light
+        if light is not None:
+            fixed = light.attributes.get("type", "static") == "static"
+            programme = SignalProgramme(light.number("offset", 0.0), tuple(phases))
+            known = net.programmes.setdefault(light.text("id"), [])
+            known.append(programme if fixed and phases else None)
+            phases.clear()
+            light = None
+
+    def begin(element: XmlElement) -> None:
+        nonlocal edge, junction, light
+        if element.name != "phase":
+            finish_light()
+        match element.name:
+            case "net":
+                net.side = "left" if element.get("lefthand") in ("true", "1") else "right"
+            case "edge":
+                function, kind, start, end = map(element.get, ("function", "type", "from", "to"))
+                edge = NetEdge(element.text("id"), function, kind, start, end)
+                net.edges[edge.id] = edge
+            case "lane":
+                if edge is None:
+                    raise element.wrong("a `lane` is in no `edge`")
+                lane = _lane(element, edge)
+                if lane.id in net.lanes:
+                    raise element.wrong(f"there are two lanes `{lane.id}`")
+                net.lanes[lane.id] = lane
+            case "param" if edge is not None:
+                edge.parameters[element.get("key")] = element.get("value")
+            case "junction":
+                edge = None
+                ways = tuple(element.get("intLanes").split())
+                junction = NetJunction(element.text("id"), element.get("type"), ways)
+                net.junctions[junction.id] = junction
+            case "request" if junction is not None:
+                junction.first.append(element.get("response"))
+                junction.foes.append(element.get("foes"))
+            case "roundabout":
+                net.roundabouts.update(element.get("edges").split())
+            case "connection":
+                net.connections.append(_connection(element))
+            case "tlLogic":
+                light = element
+            case "phase" if light is not None:
+                phases.append((element.positive("duration"), element.text("state")))
+
+    scan(path, NET, begin)
+    finish_light()
+    if not net.lanes:
+        raise NET.refused(path, "it has no lane")
+    return net
+
+
+def _lane(element: XmlElement, edge: NetEdge) -> NetLane:
+    places = []
+    for place in element.text("shape").split():
+        numbers = [element.as_number("shape", part) for part in place.split(",")]
+        if len(numbers) not in (2, 3):
+            raise element.wrong("a place in the `shape` of a `lane` has no x and y")
+        places.append(numbers[:2])
+    if np.ptp(places, axis=0).max() > LONGEST_M:
+        raise element.wrong(f"a lane is longer than {LONGEST_M / 1000:g} km")
+    width = element.positive("width", LANE_WIDTH_M)
+    if width > WIDEST_M:
+        raise element.wrong(f"a lane is {width:g} m wide", f"{WIDEST_M:g} m at most")
+    return NetLane(
+        id=element.text("id"),
+        edge=edge,
+        index=int(element.number("index")),
+        shape=np.array(places, dtype=float),
+        width=width,
+        speed=element.positive("speed"),
+        allow=element.attributes.get("allow"),
+        disallow=element.attributes.get("disallow"),
+        marks=(
+            _forbids(element.attributes.get("changeLeft")),
+            _forbids(element.attributes.get("changeRight")),
+        ),
+    )
+
+
+def _forbids(changing: str | None) -> bool:
+    """True if what may change lanes there does not include passenger cars."""
+    return changing is not None and not {"all", "passenger"} & set(changing.split())
+
+
+def _connection(element: XmlElement) -> NetConnection:
+    return NetConnection(
+        start=f"{element.text('from')}_{element.text('fromLane')}",
+        end=f"{element.text('to')}_{element.text('toLane')}",
+        via=element.get("via"),
+        state=element.get("state"),
+        light=element.get("tl"),
+        link=int(element.number("linkIndex", -1.0)),
+    )

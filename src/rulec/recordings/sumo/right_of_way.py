@@ -1,0 +1,100 @@
+"""Who goes first at the junctions of a SUMO net, and what signs say so.
+
+A junction of a net has for each way through it the bits of its ``request``: those of the other ways
+whose traffic it waits for, and those whose traffic is in its way.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from rulec.recordings.sumo.net import NetConnection, NetJunction, SumoNet
+
+UNREGULATED = frozenset({"right_before_left", "left_before_right", "unregulated"})
+"""Types of junctions without signs or lights."""
+
+LEVEL_CROSSINGS = frozenset({"rail_crossing"})
+
+_STOPS = {"s", "w"}
+_GIVES_WAY, _GOES_FIRST = "m", "M"
+_Ways = frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class WayRights:
+    """The ways in a way's way, and those of them that go first, by their lanes."""
+
+    foes: _Ways
+    first: _Ways
+
+
+def rights_of_ways(net: SumoNet) -> dict[str, WayRights]:
+    """Lane within a junction -> who is in the way of its traffic, and who goes first."""
+    onward = {
+        connection.start: connection.via
+        for connection in net.connections
+        if connection.via and connection.start.startswith(":")
+    }
+    backward = {end: start for start, end in onward.items()}
+    rights = {}
+    for junction in net.junctions.values():
+        if len(junction.ways) == len(junction.foes):
+            ways = [_lanes_of(way, onward, backward) for way in junction.ways]
+            for number, lanes in enumerate(ways):
+                foes = _named(junction.foes[number], ways)
+                own = WayRights(foes, _named(junction.first[number], ways))
+                rights.update(dict.fromkeys(lanes, own))
+    return rights
+
+
+def _lanes_of(way: str, onward: Mapping[str, str], backward: Mapping[str, str]) -> tuple[str, ...]:
+    """The lanes of a way through a junction, which may be parted where one waits in it."""
+    lanes = [way]
+    while (before := backward.get(lanes[0])) is not None and before not in lanes:
+        lanes.insert(0, before)
+    while (after := onward.get(lanes[-1])) is not None and after not in lanes:
+        lanes.append(after)
+    return tuple(lanes)
+
+
+def _named(bits: str, ways: list[tuple[str, ...]]) -> _Ways:
+    # The bit of the first way is the last one
+    return frozenset(
+        lane for bit, way in zip(reversed(bits), ways, strict=False) if bit == "1" for lane in way
+    )
+
+
+def signs_of_lanes(net: SumoNet) -> dict[str, frozenset[str]]:
+    """Lane -> the signs at its end that its links obey, where no light is.
+
+    A road gives way at a junction by sign if none of its links goes first there: links that only
+    turn across what comes towards them wait for that without a sign.
+    """
+    by_edge: dict[str, list[NetConnection]] = defaultdict(list)
+    for connection in net.connections:
+        if connection.start in net.lanes and not connection.light:
+            by_edge[net.lanes[connection.start].edge.id].append(connection)
+    signs: dict[str, set[str]] = defaultdict(set)
+    for edge, links in by_edge.items():
+        junction = net.junctions.get(net.edges[edge].end)
+        minor = all(link.state != _GOES_FIRST for link in links)
+        for link in links:
+            signs[link.start].update(_signs(link, junction, minor=minor))
+    for connection in net.connections:
+        programmes = [x for x in net.programmes.get(connection.light, ()) if x is not None]
+        if any(programme.has_arrow(connection.link) for programme in programmes):
+            signs[connection.start].add("GREEN_ARROW")
+    return {lane: frozenset(own) for lane, own in signs.items()}
+
+
+def _signs(link: NetConnection, junction: NetJunction | None, *, minor: bool) -> Iterator[str]:
+    if link.state in _STOPS:
+        yield "STOP"
+    if junction is None or junction.type not in ("priority", "priority_stop"):
+        return
+    if minor and link.state == _GIVES_WAY:
+        yield "YIELD"
+    if not minor and any("1" in bits for bits in junction.first):
+        yield "PRIORITY"

@@ -1,0 +1,269 @@
+"""SUMO's floating-car data and their companion files as one recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from math import gcd
+from pathlib import Path
+
+import numpy as np
+from numpy import float64, int64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import SourceLocation
+from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.recording import (
+    MOST_STEPS,
+    SPARSEST,
+    Lamp,
+    Lanelet,
+    Participant,
+    Recording,
+    Rounding,
+)
+from rulec.recordings.recording_messages import OTHER_NET
+from rulec.recordings.road_map import RoadMap
+from rulec.recordings.sumo.fcd import (
+    FCD,
+    MICROSECONDS,
+    FcdTrack,
+    FloatingCarData,
+    demand_beside,
+    net_beside,
+    read_fcd,
+)
+from rulec.recordings.sumo.lanelets import net_lanelets
+from rulec.recordings.sumo.light_states import light_states_beside, read_light_states
+from rulec.recordings.sumo.net import SumoNet, read_net
+from rulec.recordings.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+
+ON_NETS = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
+ON_NETS |= {"lanes"}
+"""A net has every lane, sign, light and track."""
+
+COMPLETE = ON_NETS | {"officer", "arrivals"}
+"""There is no officer at all in SUMO.
+
+Who is in the data no longer has arrived where it was going."""
+
+NEAR_M = 1000.0
+"""Nobody in the data is farther from the net than this."""
+
+_NAMED = 5
+
+_LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
+    (1, frozenset({"right_indicator"})),
+    (2, frozenset({"left_indicator"})),
+    (4, frozenset({"hazard_lights"})),
+    (8, frozenset({"brake_light"})),
+    (512 | 1024, frozenset({"doors"})),
+    (2048 | 4096, frozenset({"blue_light"})),
+)
+"""The bits of SUMO's ``signals`` that others can see and that rules are about."""
+
+
+def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
+    """Read floating-car data on the roads of a net: the one given, or the one beside them.
+
+    Raises RulecError R0610 for a file that cannot be read as what it should be, R0614 if there is
+    no net, R0615 for another road's net, R0701 if a file cannot be opened.
+    """
+    data = read_fcd(path)
+    if data.head.geographic:
+        why = "its places are geographic, degrees of longitude and latitude"
+        raise FCD.refused(path, why, help_text="have SUMO write them without --fcd-output.geo")
+    if not data.tracks:
+        raise FCD.refused(path, "nobody is in it")
+    net_path = net_beside(path, data.head) if net_path is None else net_path
+    net = read_net(net_path)
+    _check_places(path, data, net_path, net)
+    step_s = time_step(path, data.moments)
+    types = read_vehicle_types(demand_beside(path, data.head))
+    unknown: set[str] = set()
+    participants = tuple(_participants(data, types, step_s, unknown))
+    for file in light_states_beside(path, data.head):
+        shown = read_light_states(file).items()
+        net.programmes.update({name: [programme] for name, programme in shown})
+    lanelets = net_lanelets(net, step_s)
+    _check_near(path, participants, lanelets.values())
+    return Recording(
+        name=path.name.split(".")[0] or path.name,
+        step_s=step_s,
+        lanelets=lanelets,
+        participants=participants,
+        problems=(),
+        form="SUMO data",
+        side=net.side,
+        remarks=tuple(_remarks(unknown, net)),
+        complete=COMPLETE,
+        rounding=_rounding(data),
+    )
+
+
+def read_sumo_map(path: Path, step_s: float) -> RoadMap:
+    """The roads of a net, for recordings of others than SUMO. Raises RulecError R0610, R0701."""
+    net = read_net(path)
+    return RoadMap(
+        form="SUMO net",
+        lanelets=net_lanelets(net, step_s),
+        side=net.side,
+        complete=ON_NETS,
+        remarks=tuple(_remarks((), net)),
+    )
+
+
+_MOST_DECIMALS = 6
+_HAIR = 1e-3
+_MANY = 100
+"""In so few numbers it may be chance that none has a second decimal, which SUMO writes."""
+
+
+def _rounding(data: FloatingCarData) -> Rounding:
+    """The rounding of places and speeds, by the decimals that all of them have."""
+    rows = np.concatenate([np.array(track.rows, dtype=float) for track in data.tracks.values()])
+    x, y, _, speed = rows.reshape(-1, 4).T
+    return Rounding(_unit(np.concatenate((x, y))), _unit(speed))
+
+
+def _unit(numbers: NDArray[float64]) -> float:
+    fewest = 0 if len(numbers) >= _MANY else 2
+    for decimals in range(fewest, _MOST_DECIMALS):
+        scaled = numbers * 10.0**decimals
+        if np.abs(scaled - np.round(scaled)).max() < _HAIR:
+            return float(10.0**-decimals)
+    return float(10.0**-_MOST_DECIMALS)
+
+
+def _participants(
+    data: FloatingCarData, types: dict[str, VehicleType], step_s: float, unknown: set[str]
+) -> Iterator[Participant]:
+    step = round(step_s * MICROSECONDS)
+    steps = np.array(data.moments, dtype=int64) // step
+    for key, track in data.tracks.items():
+        kind, known = vehicle_type(track.type, track.element, types)
+        if not known:
+            unknown.add(f"`{short(track.type)}` ({kind.kind}, {kind.length:g} m)")
+        yield from fcd_participants(key, track, kind, steps, step_s)
+
+
+def _remarks(unknown: Iterable[str], net: SumoNet) -> Iterator[str]:
+    guessed = sorted(unknown)
+    if guessed:
+        yield f"types that no file describes are taken to be as usual: {_some(guessed)}"
+    lights = [f"`{short(name)}`" for name in net.unknown_lights()]
+    if lights:
+        yield f"the programmes of these traffic lights are not known: {_some(lights)}"
+
+
+def _some(names: list[str]) -> str:
+    more = len(names) - _NAMED
+    return ", ".join(names[:_NAMED] + ([f"{more} more"] if more > 0 else []))
+
+
+def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNet) -> None:
+    for name, (kind, line) in data.on.items():
+        if name not in (net.lanes if kind == "lane" else net.edges):
+            raise OTHER_NET.error(
+                SourceLocation(str(path), line),
+                f"somebody is on {kind} `{short(name)}`, which the net {net_path.name} has not",
+                help="name with --map the net that the data were made with",
+            )
+
+
+def _check_near(
+    path: Path, participants: Iterable[Participant], lanelets: Iterable[Lanelet]
+) -> None:
+    roads = np.concatenate([lanelet.centre for lanelet in lanelets])
+    low, high = roads.min(axis=0) - NEAR_M, roads.max(axis=0) + NEAR_M
+    for participant in participants:
+        state = participant.states[next(iter(participant.states))]
+        place = np.array([state.x, state.y])
+        if (place < low).any() or (place > high).any():
+            raise OTHER_NET.error(
+                SourceLocation(str(path)),
+                f"`{short(participant.id)}` is at x = {state.x:g}, y = {state.y:g}, far from all "
+                "roads of the net",
+                help="have SUMO write places in the net's own metres, without "
+                "--fcd-output.geo and --fcd-output.utm",
+            )
+
+
+def time_step(path: Path, moments: list[int]) -> float:
+    """The time step (s): the shortest time between two moments of the file.
+
+    Moments may be missing, as when nobody was there; what lies between two steps may not be. With
+    one moment only it is a second, or the part of one that goes into its time. Raises RulecError
+    R0610 for moments that are not all on one grid from time 0 on, or too far apart.
+    """
+    if len(moments) < 2:
+        return gcd(MICROSECONDS, *moments) / MICROSECONDS
+    step = min(after - before for before, after in pairwise(moments))
+    off = next((moment for moment in moments if moment % step), None)
+    if off is not None:
+        why = (
+            f"its times are uneven: {off / MICROSECONDS:g} s is no multiple of "
+            f"{step / MICROSECONDS:g} s, the shortest time from one to the next"
+        )
+        way_out = "have SUMO write every step, or one in so many (--device.fcd.period)"
+        raise FCD.refused(path, why, help_text=way_out)
+    spread = (moments[-1] - moments[0]) // step
+    if spread > min(MOST_STEPS, SPARSEST * len(moments)):
+        why = (
+            f"its {len(moments)} time steps of {step / MICROSECONDS:g} s are spread over "
+            f"{(moments[-1] - moments[0]) / MICROSECONDS:g} s"
+        )
+        raise FCD.refused(path, why, help_text="look for a time that is wrong, or take a part")
+    return step / MICROSECONDS
+
+
+def fcd_participants(
+    key: str, track_rows: FcdTrack, kind: VehicleType, steps: NDArray[int64], step_s: float
+) -> Iterator[Participant]:
+    """The participants of a track: who vanishes and comes back is another one then.
+
+    ``steps``: the time step of every moment of the file.
+    """
+    own = steps[np.array(track_rows.moments, dtype=int64)]
+    rows = _centres(np.array(track_rows.rows, dtype=float).reshape(-1, 4), kind.length)
+    rows = np.column_stack((rows, _accelerations(track_rows, rows[:, 3], own, step_s)))
+    lamps = {int(steps[moment]): _lit(bits) for moment, bits in track_rows.lamps.items()}
+    starts = np.flatnonzero(np.diff(own, prepend=own[0] - 2) > 1)
+    for number, (start, end) in enumerate(zip(starts, [*starts[1:], len(own)], strict=True), 1):
+        track = Track(own[start:end], rows[start:end], kind.length, kind.width)
+        name = key if number == 1 else f"{key}_{number}"
+        first, last = int(own[start]), int(own[end - 1])
+        yield Participant(
+            id=name,
+            type=kind.kind,
+            standing=False,
+            states=TrackStates(track),
+            outlines=TrackOutlines(track),
+            lamps={step: lit for step, lit in lamps.items() if first <= step <= last},
+            shows=_SHOWN if lamps else frozenset(),
+        )
+
+
+def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
+    heading = np.pi / 2 - np.radians(rows[:, 2])
+    heading = (heading + np.pi) % (2 * np.pi) - np.pi
+    x = rows[:, 0] - length / 2 * np.cos(heading)
+    y = rows[:, 1] - length / 2 * np.sin(heading)
+    return np.column_stack((x, y, heading, rows[:, 3]))
+
+
+def _accelerations(
+    track_rows: FcdTrack, speeds: NDArray[float64], steps: NDArray[int64], step_s: float
+) -> NDArray[float64]:
+    """The accelerations, as stated or else from the difference of speed since the step before."""
+    stated = np.array(track_rows.accelerations, dtype=float)
+    changes = np.diff(speeds, prepend=speeds[0]) / (np.diff(steps, prepend=steps[0] - 1) * step_s)
+    return np.where(np.isnan(stated), changes, stated)
+
+
+_SHOWN = frozenset(lamp for _, lamps in _LAMPS for lamp in lamps)
+
+
+def _lit(bits: int) -> frozenset[Lamp]:
+    return frozenset(lamp for bit, lamps in _LAMPS if bits & bit for lamp in lamps)

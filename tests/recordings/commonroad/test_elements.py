@@ -1,0 +1,245 @@
+"""What single elements of CommonRoad's files mean, and what is said of those that mean nothing."""
+
+from math import inf, pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rulec import read_recording
+from rulec.diagnostics import RulecError
+from rulec.recordings.recording import Light, Weather
+from support.builders.recordings import ROAD_XML
+
+BOX = "<rectangle><length>4</length><width>2</width></rectangle>"
+EXACT = "<orientation><exact>0</exact></orientation><time>"
+PLACE = "<position><point><x>40</x><y>0</y></point></position>"
+RIGHT = "</rightBound>"
+INTERVAL = """<orientation><intervalStart>{}</intervalStart><intervalEnd>{}</intervalEnd>
+</orientation><time>"""
+GOAL = "<goalState>"
+AT = "<center><x>{}</x><y>{}</y></center>"
+
+
+@pytest.fixture
+def read(tmp_path):
+    def read(*changes, name="ZAM_Road-1_1_T-1"):
+        text = ROAD_XML
+        for before, after in changes:
+            assert before in text
+            text = text.replace(before, after, 1)
+        file = tmp_path / f"{name}.xml"
+        file.write_text(text)
+        return read_recording(file)
+
+    return read
+
+
+def bounds(outline):
+    return [*outline.min(axis=0), *outline.max(axis=0)]
+
+
+def test_a_truck_shape_lies_around_its_rear_axle(read):
+    dims = "<truckDims><length>6</length><width>2.5</width></truckDims>"
+    truck = f"<truckShape>{dims}<originXShift>-2</originXShift></truckShape>"
+    (found,) = read((BOX, truck)).participants
+    assert bounds(found.outlines[0]) == [39, -1.25, 45, 1.25]
+    assert (found.states[0].x, found.states[0].y) == (40, 0)
+
+
+def test_how_far_states_may_be_wrong_is_half_of_what_they_leave_open(read):
+    area = f"<rectangle><length>0.6</length><width>0.8</width>{AT.format(40, 0)}</rectangle>"
+    (found,) = read((PLACE, f"<position>{area}</position>")).participants
+    assert found.stated_error == pytest.approx((0.5, 0.0))
+    assert read().participants[0].stated_error is None
+
+
+def test_of_several_states_the_median_counts():
+    """Of a cycle's five places one is exact, and two circles around them are wider than 1 m."""
+    sample = Path(__file__).with_name("samples") / "DEU_EveryElement-1_1_T-1.xml"
+    (cycle,) = [body for body in read_recording(sample).participants if body.id == "82"]
+    assert cycle.stated_error == pytest.approx((1.0, 0.0))
+
+
+def test_shapes_together_turn_around_the_obstacles_place(read):
+    rear = f"<rectangle><length>4</length><width>2</width>{AT.format(-4, 0)}</rectangle>"
+    group = f"<shapeGroup><shape>{BOX}</shape><shape>{rear}</shape></shapeGroup>"
+    quarter = EXACT.replace("<exact>0", f"<exact>{pi / 2}")
+    (found,) = read((BOX, group), (EXACT, quarter)).participants
+    assert bounds(found.outlines[0]) == pytest.approx([39, -6, 41, 2])
+
+
+def test_a_shape_beside_its_place_that_may_be_turned_counts_either_way(read):
+    ahead = BOX.replace("</rectangle>", f"{AT.format(3, 0)}</rectangle>")
+    turned = EXACT.replace(
+        "<exact>0</exact>", "<intervalStart>0</intervalStart><intervalEnd>0.001</intervalEnd>"
+    )
+    (found,) = read((BOX, ahead), (EXACT, turned)).participants
+    assert bounds(found.outlines[0]) == pytest.approx([35, -1, 45, 1], abs=0.02)
+
+
+def test_angles_beyond_a_full_turn(read):
+    low, high = 6 * pi - 0.1, 6 * pi + 0.3
+    interval = f"<intervalStart>{low}</intervalStart><intervalEnd>{high}</intervalEnd>"
+    (found,) = read((EXACT, EXACT.replace("<exact>0</exact>", interval))).participants
+    assert found.states[0].heading == pytest.approx(2 * pi + 0.1)
+
+
+def test_of_two_states_of_one_step_the_later_one_holds(read):
+    state = f"<state>{PLACE.replace('40', '{}')}{EXACT}<exact>{{}}</exact></time></state>"
+    states = "".join(state.format(x, step) for x, step in [(42, 2), (41, 1), (43, 2)])
+    (found,) = read(
+        ("<velocity><exact>5</exact></velocity>\n    </initialState>", "</initialState>"),
+        ("  </obstacle>", f"<trajectory>{states}</trajectory></obstacle>"),
+    ).participants
+    assert {step: state.x for step, state in found.states.items()} == {0: 40, 1: 41, 2: 43}
+    assert found.outlines[2].max(axis=0).tolist() == [45, 1]
+    assert found.states[0].speed == 0
+
+
+def test_lamps_in_any_spelling_of_truth_and_for_an_interval(read):
+    time = "<time><intervalStart>1</intervalStart><intervalEnd>3</intervalEnd></time>"
+    series = f"<signalState>{time}<horn>0</horn><indicatorLeft>1</indicatorLeft></signalState>"
+    series = f"<signalSeries>{series}</signalSeries></obstacle>"
+    (found,) = read(("</obstacle>", series)).participants
+    assert found.lamps == dict.fromkeys((1, 2, 3), frozenset({"left_indicator"}))
+    assert found.shows == {"left_indicator", "horn"}
+
+
+@pytest.mark.parametrize(
+    ("light", "lights"),
+    [
+        ("<cycle>{}<timeOffset>4</timeOffset></cycle>", (Light(4, (("red", 30),)),)),
+        ("<cycle>{}</cycle><active>1</active>", (Light(0, (("red", 30),)),)),
+        ("<cycle>{}</cycle><active>0</active>", ()),
+        ("<cycle/>", ()),
+        ("", ()),
+    ],
+)
+def test_lights(read, light, lights):
+    phase = "<cycleElement><duration>30</duration><color>red</color></cycleElement>"
+    found = read(
+        (RIGHT, f'{RIGHT}<trafficLightRef ref="7"/><trafficLightRef ref="9"/>'),
+        ("  <obstacle", f'<trafficLight id="7">{light.format(phase)}</trafficLight><obstacle'),
+    )
+    assert found.lanelets["1"].lights == lights
+
+
+@pytest.mark.parametrize(
+    ("country", "number", "name"),
+    [
+        ("DEU", "205", "YIELD"),
+        ("ZAM", "720", "GREEN_ARROW"),
+        ("POL", "206", "STOP"),  # not in the tables
+        ("C-USA", "R1-3", "STOP_4_WAY"),
+        ("USA", "206", "UNKNOWN"),
+        ("USA", " R10-11 ", "NO_TURN_ON_RED"),
+        ("ESP", "r305", "NO_OVERTAKING_START"),
+        ("ITA", "274", "MAX_SPEED"),
+        ("AUS", "274", "MAX_SPEED"),
+    ],
+)
+def test_signs_by_the_country_of_the_benchmark(read, country, number, name):
+    post = f"<trafficSignElement><trafficSignID>{number}</trafficSignID></trafficSignElement>"
+    found = read(
+        ("ZAM_", f"{country}_"),
+        (RIGHT, f'{RIGHT}<trafficSignRef ref="7"/>'),
+        ("  <obstacle", f'<trafficSign id="7">{post}</trafficSign><obstacle'),
+        name="my own drive",
+    )
+    assert found.lanelets["1"].signs == {name}
+    assert found.lanelets["1"].limit_mps is None
+
+
+def test_the_lowest_limit_holds_and_none_may_be_infinite(read):
+    def found(*limits):
+        posts = "".join(
+            "<trafficSignElement><trafficSignID>274</trafficSignID>"
+            f"<additionalValue>{limit}</additionalValue></trafficSignElement>"
+            for limit in limits
+        )
+        recording = read(
+            (RIGHT, f'{RIGHT}<trafficSignRef ref="7"/>'),
+            ("  <obstacle", f'<trafficSign id="7">{posts}</trafficSign><obstacle'),
+        )
+        return recording.lanelets["1"].limit_mps
+
+    assert found("inf") == inf
+    assert found("13.5", "inf", "8.25") == 8.25
+
+
+@pytest.mark.parametrize(
+    ("sky", "ground", "weather"),
+    [
+        ("sunny", "clean", Weather(wet=False, icy=False, visibility_m=1000)),
+        ("clear", "ice", Weather(wet=None, icy=True, visibility_m=1000)),
+        ("hail", "snow", Weather(wet=True)),
+        ("fog", "wet", Weather(wet=True, icy=False)),
+    ],
+)
+def test_the_weather(read, sky, ground, weather):
+    said = f"<weather>{sky}</weather><underground>{ground}</underground>"
+    place = f"<location><environment>{said}</environment></location>"
+    assert read(("  <obstacle", f"{place}<obstacle")).weather == weather
+
+
+def test_tiny_numbers_are_none(read):
+    """Geometry squares them, and divides by that."""
+    found = read(("<x>40</x>", "<x>1e-320</x>"))
+    assert found.participants[0].states[0].x == 0
+    assert np.isfinite(found.participants[0].outlines[0]).all()
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "says"),
+    [
+        (BOX, "", "the element `shape` has no shape in it"),
+        (BOX, "<semiTrailerTruckShape/>", "`semiTrailerTruckShape` is no shape that is known"),
+        (BOX, BOX.replace(">4<", ">0<"), "`length` is 0"),
+        (BOX, BOX.replace("<width>", "<originXShift>3</originXShift><width>"), "outside it"),
+        (BOX, "<polygon><point><x>0</x><y>0</y></point></polygon>", "fewer than 3 points"),
+        (BOX, "<circle/>", "the element `circle` has no `radius`"),
+        (PLACE, "<position/>", "neither a `point` nor a shape"),
+        (PLACE, '<position><lanelet ref="1"/></position>', "neither a `point` nor a shape"),
+        (EXACT, "<orientation/><time>", "neither `exact` nor `intervalStart`"),
+        (EXACT, INTERVAL.format(1, 0), "begins at 1 and ends at 0"),
+        (EXACT, INTERVAL.format(0, 7), "a full turn or more"),
+        ("<x>0</x><y>-2</y>", "<x>0</x><y>-2</y></point><point><x>1</x><y>-2</y>", "2 points on"),
+        (RIGHT, f"{RIGHT}<stopLine><point><x>1</x><y>1</y></point></stopLine>", "only one end"),
+        (RIGHT, f"{RIGHT}<speedLimit>-1</speedLimit>", "a speed limit is -1"),
+        (RIGHT, f"{RIGHT}<speedLimit>nan</speedLimit>", "`speedLimit` is `nan`"),
+        (RIGHT, f"{RIGHT}<laneletType>road</laneletType>", "`laneletType` is `road`"),
+        (RIGHT, f"<lineMarking/>{RIGHT}", "`lineMarking` is empty"),
+        (RIGHT, f'{RIGHT}<successor ref="two"/>', "`ref` of a `successor` is `two`"),
+        (RIGHT, f"{RIGHT}<successor/>", "the element `successor` has no `ref`"),
+        (GOAL, f'{GOAL}<position><lanelet ref="8"/></position>', "lanelet 8, which the file has"),
+        ('<planningProblem id="2">', '<planningProblem id="-2">', "`id` of a `planningProblem`"),
+        ('"0.1"', '"1e-9"', "a time step of 1e-09 s"),
+    ],
+)
+def test_what_means_nothing(read, before, after, says):
+    with pytest.raises(RulecError) as caught:
+        read((before, after))
+    (found,) = caught.value.diagnostics
+    assert says in found.message
+    # The place is the line of the element in question, or one that it begins on
+    line = ROAD_XML[: ROAD_XML.index(before)].count("\n") + 1
+    assert found.place.line in range(line - 6, line + 3)
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("lanelet", "two elements `lanelet` with the id `1`"),
+        ("obstacle", "two obstacles `3`"),
+        ("planningProblem", "two elements `planningProblem` with the id `2`"),
+    ],
+)
+def test_what_is_there_twice(read, name, says):
+    start, end = ROAD_XML.index(f"  <{name} "), ROAD_XML.index(f"</{name}>") + len(f"</{name}>")
+    one = ROAD_XML[start:end]
+    with pytest.raises(RulecError) as caught:
+        read((one, one + one))
+    (found,) = caught.value.diagnostics
+    assert says in found.message
+    assert found.place.line == ROAD_XML[:end].count("\n") + 1

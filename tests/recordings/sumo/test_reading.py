@@ -1,0 +1,183 @@
+"""SUMO's floating-car data become recordings: places, sizes, times, and who they are."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec import read_recording
+from rulec.recordings.sumo.vehicle_types import CLASSES
+from rulec.recordings.track import rectangles
+from support.builders.sumo_files import body, data, moment, written
+
+
+def read(folder, *moments, **more):
+    return read_recording(written(folder, data(*moments), **more))
+
+
+def only(recording):
+    (one,) = recording.participants
+    return one
+
+
+@pytest.mark.parametrize(
+    ("angle", "heading", "centre"),
+    [
+        (0.0, pi / 2, (50.0, 8.0)),
+        (90.0, 0.0, (48.0, 10.0)),
+        (180.0, -pi / 2, (50.0, 12.0)),
+        (270.0, pi, (52.0, 10.0)),
+    ],
+)
+def test_from_the_bumper_to_the_centre(tmp_path, angle, heading, centre):
+    """A car of 4 m with its front bumper at (50, 10), and a compass's angle."""
+    one = only(read(tmp_path, moment(0, body(x=50, y=10, angle=angle))))
+    state = one.states[0]
+    assert (state.x, state.y) == pytest.approx(centre)
+    assert np.exp(1j * state.heading) == pytest.approx(np.exp(1j * heading))
+    corners = one.outlines[0]
+    assert corners.mean(axis=0) == pytest.approx(centre)
+    long, wide = (4.0, 1.6) if angle in (90.0, 270.0) else (1.6, 4.0)
+    assert np.ptp(corners, axis=0) == pytest.approx((long, wide))
+
+
+@pytest.mark.parametrize(
+    ("kind", "element", "expected"),
+    [
+        ("small", "vehicle", ("car", 4.0, 1.6)),
+        ("lorry", "vehicle", ("truck", 10.0, 2.4)),
+        ("DEFAULT_VEHTYPE", "vehicle", ("car", 5.0, 1.8)),
+        ("DEFAULT_BIKETYPE", "vehicle", ("bicycle", 1.6, 0.65)),
+        ("DEFAULT_PEDTYPE", "person", ("pedestrian", 0.215, 0.478)),
+        ("bus", "vehicle", ("bus", 12.0, 2.5)),
+        ("of my own", "vehicle", ("car", 5.0, 1.8)),
+        ("of my own", "person", ("pedestrian", 0.215, 0.478)),
+    ],
+)
+def test_kinds_and_sizes(tmp_path, kind, element, expected):
+    """By the file of routes; by SUMO's own types; by the name, if it is that of a class."""
+    recording = read(tmp_path, moment(0, body(kind=kind, element=element)))
+    one = only(recording)
+    size = np.ptp(one.outlines[0], axis=0)
+    assert (one.type, *size) == (expected[0], *map(pytest.approx, expected[1:]))
+    guessed = kind in ("bus", "of my own")
+    assert len(recording.remarks) == guessed
+    assert all(f"`{kind}`" in remark for remark in recording.remarks)
+
+
+def test_every_class_has_a_kind_that_rulebooks_can_have_a_word_for():
+    from rulec.recordings.recording import OBSTACLE_TYPES
+
+    assert {one.kind for one in CLASSES.values()} <= set(OBSTACLE_TYPES)
+
+
+def test_speed_and_acceleration(tmp_path):
+    """As the file says; else the change of speed since the step before, 0 at the first."""
+    told = body(name="told", speed=10, acceleration=-1.5)
+    steps = [moment(0, told, body(speed=10)), moment(0.5, told, body(speed=11))]
+    first, second = read(tmp_path, *steps).participants
+    assert [x.acceleration for x in first.states.values()] == [-1.5, -1.5]
+    assert [x.acceleration for x in second.states.values()] == [0.0, 2.0]
+    assert [x.speed for x in second.states.values()] == [10.0, 11.0]
+
+
+def test_time_begins_with_the_simulation(tmp_path):
+    recording = read(tmp_path, moment(3600, body()), moment(3600.5, body()))
+    assert recording.step_s == 0.5
+    assert list(only(recording).states) == [7200, 7201]
+
+
+@pytest.mark.parametrize(("time", "step_s", "step"), [(0, 1.0, 0), (5, 1.0, 5), (0.3, 0.1, 3)])
+def test_one_moment_only(tmp_path, time, step_s, step):
+    recording = read(tmp_path, moment(time, body()))
+    assert (recording.step_s, list(only(recording).states)) == (step_s, [step])
+
+
+def test_moments_without_anybody_may_be_left_out(tmp_path):
+    other = body(name="other")
+    recording = read(tmp_path, moment(0, body()), moment(0.1, body()), moment(5, other))
+    assert {one.id: list(one.states) for one in recording.participants} == {
+        "f.0": [0, 1],
+        "other": [50],
+    }
+
+
+def test_who_vanishes_and_comes_back_is_another_one(tmp_path):
+    """SUMO takes vehicles that are stuck out, and puts them back elsewhere."""
+    steps = [moment(0, body()), moment(1, body()), moment(2), moment(3, body(x=90))]
+    recording = read(tmp_path, *steps)
+    assert {one.id: list(one.outlines) for one in recording.participants} == {
+        "f.0": [0, 1],
+        "f.0_2": [3],
+    }
+
+
+def test_who_is_in_no_place_is_not_there(tmp_path):
+    """SUMO writes -2^30 for both x and y then."""
+    nowhere = body(x="-1073741824.00", y="-1073741824.00")
+    recording = read(tmp_path, moment(0, body()), moment(1, nowhere), moment(2, body()))
+    assert [list(one.states) for one in recording.participants] == [[0], [2]]
+
+
+def test_passengers_are_a_part_of_their_vehicle(tmp_path):
+    """Whether they are written inside it or name it; who gets out walks."""
+    inside = body(name="p", element="person", x=99)
+    car = body().replace("/>", f">{inside}</vehicle>")
+    named = body(name="q", element="person", vehicle="f.0")
+    recording = read(tmp_path, moment(0, car, named), moment(1, body(), inside))
+    assert {one.id: list(one.states) for one in recording.participants} == {"f.0": [0, 1], "p": [1]}
+
+
+def test_a_person_may_be_called_like_a_vehicle(tmp_path):
+    walker = body(element="person", kind="DEFAULT_PEDTYPE", y=-7.4)
+    recording = read(tmp_path, moment(0, body(), walker), moment(1, body(), walker))
+    assert [(one.id, one.type, len(one.states)) for one in recording.participants] == [
+        ("f.0", "car", 2),
+        ("person f.0", "pedestrian", 2),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("signals", "lit"),
+    [
+        (0, set()),
+        (1, {"right_indicator"}),
+        (2 + 8, {"left_indicator", "brake_light"}),
+        (4, {"hazard_lights"}),
+        (16 + 2048, {"blue_light"}),
+        (512, {"doors"}),
+    ],
+)
+def test_lamps(tmp_path, signals, lit):
+    one = only(read(tmp_path, moment(0, body(signals=signals)), moment(1, body())))
+    assert one.lamps == {0: lit}
+
+
+def test_states_and_outlines_are_mappings(tmp_path):
+    one = only(read(tmp_path, moment(0, body()), moment(1, body(x=30))))
+    for mapping in (one.states, one.outlines):
+        assert (list(mapping), len(mapping), 2 in mapping, 1 in mapping) == ([0, 1], 2, False, True)
+        with pytest.raises(KeyError):
+            mapping[2]
+
+
+@given(
+    st.floats(-100, 100),
+    st.floats(-100, 100),
+    st.floats(-pi, pi),
+    st.floats(1, 20),
+    st.floats(1, 3),
+)
+def test_rectangles_are_rectangles(x, y, heading, length, width):
+    (corners,) = rectangles(np.array([[x, y]]), np.array([heading]), length, width)
+    assert corners.mean(axis=0) == pytest.approx((x, y), abs=1e-9)
+    ahead = np.array([np.cos(heading), np.sin(heading)])
+    along = (corners - (x, y)) @ ahead
+    across = (corners - (x, y)) @ np.array([-ahead[1], ahead[0]])
+    assert along.max() == pytest.approx(length / 2)
+    assert along.min() == pytest.approx(-length / 2)
+    assert across.max() == pytest.approx(width / 2)
+    assert across.min() == pytest.approx(-width / 2)
+    assert len({(round(a), round(b)) for a, b in zip(along, across, strict=True)}) <= 8
