@@ -89,12 +89,25 @@ class Light:
         raise AssertionError("a remainder is smaller than what it is the remainder of")
 
 
+@dataclass(frozen=True, slots=True)
+class ObservedLight:
+    """What a traffic light was seen to show, by time step; steps without a colour are missing."""
+
+    __repr__ = short_repr
+
+    colours: Mapping[int, str]
+
+    def colour_at(self, step: int) -> str:
+        """Its colour at a time step, empty where that is not known."""
+        return self.colours.get(step, "")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lanelet:
     """A piece of a lane, with its bounds in the direction of travel.
 
     ``left_of`` and ``right_of`` are the lanelets beside it that lead the same way. ``signs`` are
-    the names of those that hold here; ``lights`` are those that have a programme,
+    the names of those that hold here; ``lights`` are those that have a programme or were seen,
     ``lights_to`` that for each lanelet that follows, where it has its own. Marks are those
     of its bounds, ``stop_line`` (two ends) the one that the map has drawn, None where the file does
     not say. ``junction`` is the one that it lies in. Of the ways through that, ``foes`` are those
@@ -114,8 +127,8 @@ class Lanelet:
     types: frozenset[str]
     signs: frozenset[str]
     limit_mps: float | None
-    lights: tuple[Light, ...] = ()
-    lights_to: Mapping[str, Light] = field(default_factory=dict)
+    lights: tuple[Light | ObservedLight, ...] = ()
+    lights_to: Mapping[str, Light | ObservedLight] = field(default_factory=dict)
     left_mark: LaneMark | None = None
     right_mark: LaneMark | None = None
     stop_line: Points | None = None

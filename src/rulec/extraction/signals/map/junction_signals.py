@@ -8,7 +8,7 @@ from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.map.priority_signals import own_passages
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import Light
+from rulec.recordings.recording import Light, ObservedLight
 
 STOP_SIGNS = frozenset({"STOP", "STOP_4_WAY"})
 _LINE_REACH_M = 40.0
@@ -191,7 +191,7 @@ def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags, 
     return colours, crosses, changed
 
 
-def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light, ...]:
+def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light | ObservedLight, ...]:
     """The lights for ego's way on, as far as the map tells them apart."""
     lanelet = context.road.lanelet(piece, lane)
     if lanelet.lights_to and piece + 1 < len(context.road.rows):
@@ -201,7 +201,7 @@ def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light, ..
     return lanelet.lights
 
 
-def _colour(context: DriveContext, lights: tuple[Light, ...], state: int) -> str:
+def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], state: int) -> str:
     step = context.first_step + state
     shown = {_COLOURS.get(light.colour_at(step), "") for light in lights}
     return shown.pop() if len(shown) == 1 else ""

@@ -220,8 +220,8 @@ def _lights(scene: DriveScene, state: int, view: _View, placing: Placing) -> Ite
                 (x + 8 * np.cos(turn), y + 8 * np.sin(turn))
                 for turn in np.linspace(0, 2 * np.pi, 16, endpoint=False).tolist()
             ]
-            yield Area((tuple(ring),), style, f"light: {colour}")
-            letters = "RY" if colour == "redYellow" else colour[:1].upper()
+            yield Area((tuple(ring),), style, f"light: {colour or 'not known'}")
+            letters = "RY" if colour == "redYellow" else colour[:1].upper() or "?"
             yield LabelText(letters, (x, y), "middle", "ink")
             placing.taken.append((x - 8, y - 8, x + 8, y + 8))
 
