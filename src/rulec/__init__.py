@@ -89,6 +89,7 @@ if TYPE_CHECKING:
     from rulec.recordings.recording import Recording as Recording
     from rulec.recordings.recording import TrackState as TrackState
     from rulec.recordings.recording_format import RecordingSource as RecordingSource
+    from rulec.report.recordings.format_listing import ListedFormat as ListedFormat
     from rulec.report.text.listing import Listed as Listed
     from rulec.rulebook.batch.batch_check import Checked as Checked
     from rulec.rulebook.rulebook_model import Example as Example
@@ -115,7 +116,7 @@ _HOME = {
     "rulec.api.session": "Session",
     "rulec.api.verbs": "alternative_counts analyze audit audit_source check compile "
     "compile_rulebook coverage diff doc draw draw_drive envelope envelopes explain "
-    "find_maneuvers format judge_recording lineage list load_rulebook load_scenario "
+    "find_maneuvers format formats judge_recording lineage list load_rulebook load_scenario "
     "load_vocabulary navigation_graph new_rulebook parse_rulebook read_recording read_traces "
     "rule_probabilities show test traces tree verify verify_cells verify_columns verify_many "
     "verify_recording write_compiled write_traces",
@@ -147,6 +148,7 @@ _HOME = {
     "rulec.planning.ranking.cheapest": "Maneuver",
     "rulec.planning.ranking.homotopy": "HomotopyClasses Variant",
     "rulec.planning.ranking.penalties": "PenaltyRank",
+    "rulec.report.recordings.format_listing": "ListedFormat",
     "rulec.report.text.listing": "Listed",
     "rulec.rulebook.batch.batch_check": "Checked",
     "rulec.rulebook.rulebook_model": "Example Rule Rulebook Variable",

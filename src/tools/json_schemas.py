@@ -14,6 +14,7 @@ from rulec.monitoring.online.snapshot import SavedMonitor
 from rulec.report.findings.diagnostics_json import CodeData, FindingData
 from rulec.report.maneuvers.envelope_table import EnvelopeLine
 from rulec.report.maneuvers.maneuver_json import ManeuversDocument
+from rulec.report.recordings.format_listing import FormatsDocument
 from rulec.report.rulebooks.audit_report import AuditDocument
 from rulec.report.rulebooks.diff_json import DiffDocument, TraceData
 from rulec.report.rulebooks.lineage_tree import ForestDocument, LineageDocument
@@ -32,6 +33,7 @@ SCHEMAS: Mapping[str, tuple[Any, ...]] = {
     "diff": (DiffDocument,),
     "envelope": (EnvelopeLine,),
     "findings": (list[FindingData],),
+    "formats": (FormatsDocument,),
     "list": (ListingDocument,),
     "maneuvers": (ManeuversDocument,),
     "matrix": (MatrixDocument,),

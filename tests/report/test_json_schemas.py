@@ -38,6 +38,7 @@ DOCUMENTS = [
     ("codes", ["explain", "R0101", "--output-format", "json"]),
     ("diff", ["diff", "de", "fr", "--rule", "*overtak*", "--output-format", "json"]),
     ("matrix", ["diff", "--all", "de", "fr", "--rule", "*overtak*", "--output-format", "json"]),
+    ("formats", ["formats", "--json"]),
     ("list", ["list", "--json"]),
     ("list", ["list", "codes", "--json"]),
     ("maneuvers", ["maneuvers", "s1", "-r", "esterle2019", "--json", "--list", "2"]),

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rulec.recordings.recording import Recording
     from rulec.report.pictures.drawing.picture_formats import Format as PictureFormat
     from rulec.report.pictures.drawing.styles import Theme
+    from rulec.report.recordings.format_listing import ListedFormat
     from rulec.trace import Trace
     from rulec.trace.trace_columns import TraceCells, TraceColumns
 
@@ -109,6 +110,12 @@ class TraceVerbs(SessionSettings):
 
         roads = None if map_path is None else Path(map_path)
         return read_recording(RecordingSource(Path(path), roads, form, scenario_id))
+
+    def formats(self) -> tuple[ListedFormat, ...]:
+        """The formats of recorded traffic and of maps, with the words that each can tell."""
+        from rulec.report.recordings.format_listing import listed_formats, words_in_order
+
+        return listed_formats(words_in_order())
 
     def verify_recording(
         self,

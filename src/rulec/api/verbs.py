@@ -63,6 +63,7 @@ envelopes = _USUAL.envelopes
 explain = _USUAL.explain
 find_maneuvers = _USUAL.find_maneuvers
 format = _USUAL.format
+formats = _USUAL.formats
 judge_recording = _USUAL.judge_recording
 lineage = _USUAL.lineage
 list = _USUAL.list

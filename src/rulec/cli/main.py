@@ -26,6 +26,7 @@ VERBS = {
     "envelopes": "Write the bounds of the cheapest satisfying maneuvers as a table.",
     "explain": "Explain a code of a message.",
     "fmt": "Format rulebooks and vocabularies.",
+    "formats": "List the formats of recorded traffic and of maps, and what each can tell.",
     "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",
     "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
     "monitor": "Judge a running trace by a rulebook, state by state.",

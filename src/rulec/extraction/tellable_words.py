@@ -48,6 +48,7 @@ _SUMO_ONLY = frozenset(
 
 TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "commonroad": _EITHER | _COMMONROAD_ONLY,
+    "commonroad-protobuf": _EITHER | _COMMONROAD_ONLY,
     "sumo": _EITHER | _SUMO_ONLY,
 }
 """Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""

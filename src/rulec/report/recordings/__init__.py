@@ -1,0 +1,1 @@
+"""Formats of recorded traffic, as lists and tables."""

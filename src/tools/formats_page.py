@@ -1,0 +1,37 @@
+"""The tables of formats in the documentation, made from the tables of the code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import rulec
+from rulec.report.recordings import format_listing
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "formats.md"
+BEGIN = "<!-- formats: `.ci/task regenerate` writes this table -->\n"
+END = "<!-- end of formats -->\n"
+
+_HEAD = """\
+# What each format can tell
+
+Which words of the vocabulary [`road`](vocabulary.md) some file of each [format](formats.md) can
+tell, so that a rulebook may be judged by them. A particular file may lack signs, lamps or weather:
+`rulec audit R --source FILE` says what it does tell, and which rules can be judged on that;
+[Recorded traffic](recordings.md#words) says how each word is found. `.ci/task regenerate` writes
+this page, as `rulec formats --words --output-format markdown` does its table.
+
+"""
+
+
+def formats_page() -> str:
+    """Render ``docs/formats.md`` as it is, with the table of formats as it would be now."""
+    before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
+    _, _, after = rest.partition(END)
+    table = format_listing.as_markdown(rulec.formats(), (), words=False)
+    return f"{before}{BEGIN}\n{table}\n\n{END}{after}"
+
+
+def format_words_page() -> str:
+    """Render ``docs/format_words.md``, the table of words and formats."""
+    order = format_listing.words_in_order()
+    return f"{_HEAD}{format_listing.words_as_markdown(rulec.formats(), order)}\n"
