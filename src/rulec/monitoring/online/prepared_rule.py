@@ -23,6 +23,7 @@ from rulec.monitoring.online.four_valued import (
     MonitorEdge,
     linked_edges,
 )
+from rulec.monitoring.online.letter_walk import LetterWalk, WalkedRead
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads, local_reads
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
@@ -102,63 +103,60 @@ class PreparedRule:
         LookupError if one is missing or wrong, or if it takes a look at the whole state.
         """
         own = digits[: len(self.inputs)]
-        place: tuple[int, ...] = ()
         cubes, is_exact = _NO_CUBES
         if self.entangled is not None and self.entangled.numbers:
-            place = (self._place(self.entangled, digits[len(own) :]),)
-            cubes, is_exact = self.entangled.found[place[0]]
-        letter_class: LetterClass | None
+            values = digits[len(own) :]
+            cubes, is_exact = self.entangled.found[self._place(self.entangled, values)]
+            is_exact = is_exact and not self._has_unknown_constant(values)
         is_known = UNKNOWN_TYPES.isdisjoint(map(type, own))
-        if is_known and len(cubes) == 1 and not any(x & (x - 1) for x in cubes[0]):
-            letter = sum(
-                [weight_of(digit) for (_, weight_of), digit in zip(self.inputs, own, strict=True)]
+        if not is_known or len(cubes) != 1 or any(x & (x - 1) for x in cubes[0]):
+            return self._walk.classes(own, cubes, is_exact=is_exact)
+        letter = sum(
+            [weight_of(digit) for (_, weight_of), digit in zip(self.inputs, own, strict=True)]
+        )
+        if cubes[0] and self.entangled is not None:
+            strides = [self._strides[n] for n in self.entangled.numbers]
+            letter += sum(
+                [x * (y.bit_length() - 1) for x, y in zip(strides, cubes[0], strict=True)]
             )
-            if place and self.entangled is not None:
-                strides = [self._strides[n] for n in self.entangled.numbers]
-                letter += sum(
-                    [x * (y.bit_length() - 1) for x, y in zip(strides, cubes[0], strict=True)]
-                )
-            letter_class = self.letters[letter]
-        else:
-            masks = [known[digit] for known, digit in zip(self._masks, own, strict=True)]
-            letter_class = self.uncertain.letter_class(self._classes((*masks, *place)))
-        if letter_class is None or letter_class == IMPOSSIBLE:
+        letter_class = self.letters[letter]
+        if letter_class == IMPOSSIBLE:
             raise LookupError
-        if self.constants:
-            unknown = [
-                name
-                for read, digit in zip(self.all_inputs, digits, strict=True)
-                if type(digit) in UNKNOWN_TYPES
-                for name in read.names
-            ]
-            is_exact = is_exact and self.constants.isdisjoint(unknown)
         return letter_class, is_exact
 
-    def _classes(self, key: tuple[int, ...]) -> int:
-        """The classes, as bits, of letters. Raises LookupError if others decide these, too."""
-        classes = self.uncertain.classes
-        if self.entangled is not None:
-            return classes.of_rule(self.rule, self.entangled).classes_of(key)
-        if any(key[n] & (key[n] - 1) for n in self._perhaps_entangled):
-            raise LookupError
-        return classes.of((key,))
+    def _has_unknown_constant(self, values: Sequence[Any]) -> bool:
+        return bool(self.constants) and any(
+            type(value) in UNKNOWN_TYPES and not self.constants.isdisjoint(read.names)
+            for read, value in zip(self.values, values, strict=True)
+        )
 
     @cached_property
-    def _perhaps_entangled(self) -> Sequence[int]:
+    def _walk(self) -> LetterWalk:
+        reads = self.rule.machine.reads
+        walked = [
+            WalkedRead(
+                place,
+                _Masks(reads[place], weight_of),
+                self.entangled is not None or place not in self._perhaps_entangled,
+                not self.constants.isdisjoint(own.names),
+            )
+            for place, (own, weight_of) in zip(self.alone, self.inputs, strict=True)
+        ]
+        others = () if self.entangled is None else self.entangled.numbers
+        steps = self.uncertain
+        return LetterWalk(steps.classes.diagram, walked, others, steps.letter_class)
+
+    @cached_property
+    def _perhaps_entangled(self) -> frozenset[int]:
         """The places of reads that count, and of those that share a name with others or facts."""
         names = [set(names_of_read(read)) for read in self.rule.machine.reads]
         facts = [names_in(axiom.formula) for axiom in self.axioms]
-        return [
+        return frozenset(
             n
             for n, own in enumerate(names)
             if self.inputs[n][0].name is None
             or any(not own.isdisjoint(other) for other in (*names[:n], *names[n + 1 :], *facts))
-        ]
-
-    @cached_property
-    def _masks(self) -> Sequence[_Masks]:
-        reads = self.rule.machine.reads
-        return [_Masks(reads[n], own) for n, (_, own) in zip(self.alone, self.inputs, strict=True)]
+        )
 
     def _place(self, entangled: EntangledReads, encoded: Sequence[Any]) -> int:
         for allowed, value in zip(self._allowed, encoded, strict=True):

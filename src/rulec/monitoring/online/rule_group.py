@@ -164,6 +164,8 @@ class RuleGroup:
         takes a look at the whole state.
         """
         classes = tuple([table[pick(digits)] for table, pick in self._tables])
+        if not self.cache_size.is_inexact and not any(table.inexact for table, _ in self._tables):
+            return self.letter(classes)
         inexact = frozenset(
             number
             for number, (table, pick) in enumerate(self._tables)

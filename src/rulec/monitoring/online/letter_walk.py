@@ -1,0 +1,146 @@
+"""Letters of which some reads are not known, by walks through a rule's letter diagram.
+
+A node is a set of the diagram's nodes: all that the digits so far may lead to. Nodes and the ways
+between them are made as they are met, so that a letter that is new costs a look-up for each read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rulec.automata.mealy_monitor import IMPOSSIBLE
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
+
+if TYPE_CHECKING:
+    from rulec.monitoring.online.four_valued import LetterClass
+    from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
+    from rulec.monitoring.uncertainty.state_letters.read_digits import Cube
+
+MOST_NODES = 1 << 14
+"""Nodes of a rule that are kept before all are forgotten."""
+
+
+class WalkedRead(NamedTuple):
+    """A read with a digit of its own: its ``place`` among the rule's reads.
+
+    ``masks`` are the possible digits, as bits, of a digit or a value that is partly known.
+    ``decided_alone``: nothing but it decides which of them it has. ``is_constant``: it has the same
+    one in each state.
+    """
+
+    place: int
+    masks: Any
+    decided_alone: bool
+    is_constant: bool
+
+
+class _Node(dict[Any, "_Node"]):
+    """What some digits may lead to; behind the last one ``classes``, and if no more than that."""
+
+    __slots__ = ("classes", "cubes", "is_exact", "level", "sets", "walk")
+
+    def __init__(
+        self,
+        walk: LetterWalk,
+        level: int,
+        cubes: Sequence[Cube],
+        sets: tuple[int, ...],
+        *,
+        is_exact: bool,
+    ) -> None:
+        self.walk, self.level, self.cubes, self.sets = walk, level, cubes, sets
+        self.is_exact = is_exact
+        self.classes: LetterClass | None = None
+
+    def __missing__(self, digit: Any) -> _Node:
+        node = self.walk.step(self, digit)
+        if type(digit) is not Interval:
+            self[digit] = node
+        return node
+
+
+class LetterWalk:
+    """The walks through one rule's diagram.
+
+    ``reads`` have digits of their own; the others have for each of the cubes that a walk begins
+    with the digits, as bits, that stand there. ``class_of`` is the class, or several, that bits
+    stand for.
+    """
+
+    def __init__(
+        self,
+        diagram: LetterDiagram,
+        reads: Sequence[WalkedRead],
+        others: Sequence[int],
+        class_of: Callable[[int], LetterClass | None],
+    ) -> None:
+        self._diagram = diagram
+        self._reads = {read.place: read for read in reads}
+        self._others = {place: n for n, place in enumerate(others)}
+        self._class_of = class_of
+        # The last read is the diagram's first level.
+        self._order = range(len(reads) + len(others) - 1, -1, -1)
+        self._nodes: dict[Hashable, _Node] = {}
+
+    def classes(
+        self, digits: Sequence[Any], cubes: Sequence[Cube], *, is_exact: bool
+    ) -> tuple[LetterClass, bool]:
+        """The classes of the letters with these digits, and whether no more are said than are.
+
+        ``digits`` are in the order of the reads. Raises LookupError if one is wrong, if facts
+        exclude all these letters, or if more than the rule's own objects decides about them.
+        """
+        if len(self._nodes) >= MOST_NODES:
+            self._nodes.clear()
+        node = self._begun(cubes, is_exact)
+        for digit in reversed(digits):
+            node = node[digit]
+        if node.classes is None:
+            raise LookupError
+        return node.classes, node.is_exact
+
+    def step(self, node: _Node, digit: Any) -> _Node:
+        """The node behind a digit of the next read that has its own. Raises as ``classes``."""
+        place = self._order[node.level]
+        read = self._reads[place]
+        mask = read.masks[digit]
+        if mask & (mask - 1) and not read.decided_alone:
+            raise LookupError
+        is_exact = node.is_exact and not (read.is_constant and type(digit) in UNKNOWN_TYPES)
+        sets = tuple([self._diagram.step(place, here, mask) for here in node.sets])
+        return self._node(node.level + 1, node.cubes, sets, is_exact)
+
+    def _begun(self, cubes: Sequence[Cube], is_exact: bool) -> _Node:
+        key = cubes, is_exact
+        known = self._nodes.get(key)
+        if known is None:
+            start = (self._diagram.start,) * len(cubes)
+            known = self._nodes[key] = self._node(0, cubes, start, is_exact)
+        return known
+
+    def _node(
+        self, level: int, cubes: Sequence[Cube], sets: tuple[int, ...], is_exact: bool
+    ) -> _Node:
+        """The node behind all reads without digits of their own that come next."""
+        while level < len(self._order) and (place := self._order[level]) in self._others:
+            own = self._others[place]
+            sets = tuple(
+                [
+                    self._diagram.step(place, here, cube[own])
+                    for here, cube in zip(sets, cubes, strict=True)
+                ]
+            )
+            level += 1
+        is_last = level == len(self._order)
+        if is_last:
+            whole = 0
+            for here in sets:
+                whole |= here
+            sets, cubes = (whole,), ()
+        key = level, cubes, sets, is_exact
+        if key not in self._nodes:
+            node = self._nodes[key] = _Node(self, level, cubes, sets, is_exact=is_exact)
+            if is_last and (found := self._class_of(sets[0] >> 1)) != IMPOSSIBLE:
+                node.classes = found
+        return self._nodes[key]
