@@ -41,6 +41,13 @@ def _commonroad(path: Path, step_s: float) -> RoadMap:
     return read_commonroad_map(path, step_s)
 
 
+def _lanelet2(path: Path, _: float) -> RoadMap:
+    # As above.
+    from rulec.recordings.lanelet2.lanelet2_map import read_lanelet2
+
+    return read_lanelet2(path)
+
+
 MAP_FORMATS = (
     MapFormat("sumo", "nets of SUMO's", "*.net.xml", lambda glance: glance.root == "net", _sumo),
     MapFormat(
@@ -50,6 +57,7 @@ MAP_FORMATS = (
         lambda glance: glance.root == "commonRoad",
         _commonroad,
     ),
+    MapFormat("lanelet2", "Lanelet2 maps", "*.osm", lambda glance: glance.root == "osm", _lanelet2),
 )
 
 

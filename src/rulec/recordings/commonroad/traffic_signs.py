@@ -116,13 +116,14 @@ def read_sign(tree: Tree, country: str) -> tuple[SignElement, ...]:
 
 def _element(tree: Tree, country: str) -> SignElement:
     named = tree.first("signName")
-    name = _name(tree.child("trafficSignID").word, country) if named is None else named.word
+    name = sign_name(tree.child("trafficSignID").word, country) if named is None else named.word
     value = tree.first("additionalValue")
     limit = speed_limit(value) if name == MAX_SPEED and value is not None else None
     return SignElement(name, limit)
 
 
-def _name(number: str, country: str) -> str:
+def sign_name(number: str, country: str) -> str:
+    """The name of a sign by the id of a country (ISO 3166), ``UNKNOWN`` if it has none here."""
     names = _COUNTRIES.get(country, _GERMANY)
     return MAX_SPEED if number == _GERMAN_MAX_SPEED else names.get(number, UNKNOWN)
 

@@ -1,0 +1,95 @@
+"""The bounds of lanelets as Lanelet2 lays them: which way a line leads, and the middle of both."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.recordings.recording import Points
+
+_CLOSEST_M = 1e-6
+_FEWEST_POINTS = 2
+
+
+class Aligned(NamedTuple):
+    """Bounds in the direction of travel, and whether each is a line of the file turned round."""
+
+    left: Points
+    right: Points
+    left_turned: bool
+    right_turned: bool
+
+
+def aligned(left: Points, right: Points) -> Aligned:
+    """Two lines as the bounds of a lanelet, by Lanelet2's rule (``geometry::align``).
+
+    The left one leads the way on which the middle of the right one is right of it; then the right
+    one so that the middle of the left one is left of it.
+    """
+    left_turned = bool(_left_of(left, _middle(right)) >= 0)
+    left = left[::-1] if left_turned else left
+    right_turned = bool(_left_of(right, _middle(left)) <= 0)
+    return Aligned(left, right[::-1] if right_turned else right, left_turned, right_turned)
+
+
+def _middle(line: Points) -> NDArray[float64]:
+    middle: NDArray[float64] = line[len(line) // 2]
+    return middle if len(line) > _FEWEST_POINTS else line[[0, -1]].mean(axis=0)
+
+
+def _left_of(line: Points, place: NDArray[float64]) -> float:
+    """How far left of a line a place is: above 0 on its left.
+
+    Where a corner is nearest, both its sides count alike.
+    """
+    steps = np.diff(line, axis=0)
+    squared = np.maximum((steps**2).sum(axis=1), _CLOSEST_M**2)
+    part = np.clip(((place - line[:-1]) * steps).sum(axis=1) / squared, 0.0, 1.0)
+    to = place - (line[:-1] + part[:, None] * steps)
+    distance = np.hypot(*to.T)
+    nearest = int(distance.argmin())
+    ahead = steps[nearest] / np.sqrt(squared[nearest])
+    if part[nearest] == 1.0 and nearest + 1 < len(steps):
+        ahead = ahead + steps[nearest + 1] / np.sqrt(squared[nearest + 1])
+    elif part[nearest] == 0.0 and nearest > 0:
+        ahead = ahead + steps[nearest - 1] / np.sqrt(squared[nearest - 1])
+    return float(ahead[0] * to[nearest, 1] - ahead[1] * to[nearest, 0])
+
+
+def distinct(line: Points) -> Points | None:
+    """A line without points that repeat; None if that leaves no line."""
+    if len(line) < _FEWEST_POINTS:
+        return None
+    kept = line[np.append(True, np.hypot(*np.diff(line, axis=0).T) > _CLOSEST_M)]
+    return kept if len(kept) >= _FEWEST_POINTS else None
+
+
+def middle_line(left: Points, right: Points) -> Points:
+    """The line between two bounds: at the same part of either's length, at each point of both."""
+    parts = [_parts(line) for line in (left, right)]
+    every = np.unique(np.concatenate(parts))
+    shortest = min(_length(left), _length(right))
+    apart = np.diff(every) * shortest > _CLOSEST_M
+    kept = every[np.concatenate(([True], apart[:-1], [True]))]
+    kept[-1] = 1.0
+    both = [_at(line, own, kept) for line, own in zip((left, right), parts, strict=True)]
+    line = distinct((both[0] + both[1]) / 2)
+    # Bounds that lead to each other's beginning have no middle
+    return left if line is None else line
+
+
+def _length(line: Points) -> float:
+    return float(np.hypot(*np.diff(line, axis=0).T).sum())
+
+
+def _parts(line: Points) -> NDArray[float64]:
+    along = np.append(0.0, np.hypot(*np.diff(line, axis=0).T).cumsum())
+    parts: NDArray[float64] = along / along[-1]
+    return parts
+
+
+def _at(line: Points, own: NDArray[float64], parts: NDArray[float64]) -> Points:
+    return np.stack([np.interp(parts, own, line[:, axis]) for axis in (0, 1)], axis=1)

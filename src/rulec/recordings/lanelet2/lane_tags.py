@@ -1,0 +1,149 @@
+"""What the tags of Lanelet2 say of lanelets and their bounds, in the words of recordings.
+
+By LaneletAndAreaTagging and LinestringTagging in the folder lanelet2_core/doc of
+https://github.com/fzi-forschungszentrum-informatik/Lanelet2; `road_shoulder` and `pedestrian_lane`
+are Autoware's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import isfinite
+from types import MappingProxyType
+
+from rulec.recordings.recording import LaneMark
+
+_Tags = Mapping[str, str]
+
+_SUBTYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "highway": ("highway",),
+        "bus_lane": ("busLane",),
+        "bicycle_lane": ("bicycleLane",),
+        "emergency_lane": ("shoulder",),
+        "road_shoulder": ("shoulder",),
+        "exit": ("driveWay",),
+        "crosswalk": ("crosswalk",),
+        **dict.fromkeys(("walkway", "shared_walkway", "stairs", "pedestrian_lane"), ("sidewalk",)),
+        "rail": ("restricted_area", "rail"),
+    }
+)
+"""Of a lanelet -> its types; all others are plain lanes."""
+
+_BY_SUBTYPE = frozenset({"crosswalk", "rail", "emergency_lane", "road_shoulder"})
+"""What these are does not depend on who may use them."""
+
+_PLACES = {"urban": "urban", "city": "urban", "nonurban": "rural"}
+"""``city`` is INTERACTION's word."""
+
+_BUSES = {"vehicle:bus", "vehicle:taxi", "vehicle:emergency"}
+_TRUE, _FALSE = ("yes", "true", "1"), ("no", "false", "0")
+
+
+def lane_types(tags: _Tags) -> frozenset[str]:
+    """The types of a lanelet; those that it says to be in a junction by its turn, too."""
+    subtype = tags.get("subtype", "")
+    types = set(_SUBTYPES.get(subtype, ()))
+    allowed = _participants(tags)
+    if allowed is not None and subtype not in _BY_SUBTYPE:
+        types = types - {"busLane", "bicycleLane", "sidewalk"} | set(_for_whom(allowed))
+    types.update(filter(None, [_PLACES.get(tags.get("location", ""))]))
+    if tags.get("turn_direction") or tags.get("intersection_area"):
+        types.add("intersection")
+    return frozenset(types)
+
+
+def _participants(tags: _Tags) -> set[str] | None:
+    """Who may use a lanelet, None if its subtype says it; if any are named, nobody else may."""
+    prefix = "participant:"
+    named = {key.removeprefix(prefix): word for key, word in tags.items() if prefix in key}
+    return {who for who, word in named.items() if word in _TRUE} if named else None
+
+
+def _for_whom(allowed: set[str]) -> Iterator[str]:
+    motorized = {who for who in allowed if who.partition(":")[0] == "vehicle"}
+    if motorized and motorized <= _BUSES:
+        yield "busLane" if "vehicle:bus" in motorized else "restricted_area"
+    elif not motorized and "pedestrian" in allowed:
+        yield "sidewalk"
+    elif not motorized and "bicycle" in allowed:
+        yield "bicycleLane"
+    elif not motorized:
+        yield "restricted_area"
+
+
+def leads_both_ways(tags: _Tags) -> bool:
+    """True if vehicles, or whoever uses a lanelet, may go either way on it."""
+    keys: tuple[str, ...] = ("one_way:vehicle:car", "one_way:vehicle", "one_way")
+    if "bicycle_lane" in tags.get("subtype", ""):
+        keys = ("one_way:bicycle", "one_way")
+    return next((tags[key] for key in keys if key in tags), "yes") in _FALSE
+
+
+_UNITS = {"": 1 / 3.6, "km/h": 1 / 3.6, "kmh": 1 / 3.6, "kph": 1 / 3.6, "mph": 1609.344 / 3600}
+_UNITS |= {"m/s": 1.0, "mps": 1.0}
+
+
+def speed_limit(tags: _Tags) -> float | None:
+    """The limit (m/s) that a lanelet's own tags say for cars; None for none, or what is advised."""
+    keys = ("speed_limit:vehicle:car", "speed_limit:vehicle", "speed_limit")
+    if tags.get("speed_limit_mandatory", "yes") in _FALSE:
+        return None
+    return next((velocity(tags[key]) for key in keys if key in tags), None)
+
+
+def velocity(text: str) -> float | None:
+    """A speed (m/s) with its unit, km/h if it has none; None if it is none."""
+    number = text.rstrip("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ/ ")
+    unit = _UNITS.get(text[len(number) :].strip().lower())
+    try:
+        value = float(number)
+    except ValueError:
+        return None
+    return value * unit if unit is not None and isfinite(value) and value >= 0 else None
+
+
+_LINES = ("line_thin", "line_thick")
+_MARKS: Mapping[str, tuple[LaneMark, LaneMark]] = MappingProxyType(
+    {
+        "solid": ("solid", "solid"),
+        "solid_solid": ("double_solid", "double_solid"),
+        "dashed": ("broken", "broken"),
+        "dashed_dashed": ("broken", "broken"),
+        "dashed_solid": ("broken", "solid"),
+        "solid_dashed": ("solid", "broken"),
+    }
+)
+"""Of a line -> its part on the left and on the right: who is left of `dashed_solid` may cross."""
+
+
+def mark(tags: _Tags, *, turned: bool, on_left: bool) -> LaneMark | None:
+    """The mark at a bound's left or right, in the direction of travel; None if it is not told.
+
+    ``turned``: the bound is the line of the file turned round. Kerbs and borders are no marks. Tags
+    that say another thing of changing lanes than the line does leave it open, those of a line
+    without a kind say it, as of SUMO's lanes: solid is what may not be crossed.
+    """
+    if tags.get("type") == "virtual":
+        return "none"
+    if tags.get("type") not in _LINES:
+        return None
+    left = on_left != turned
+    own = _MARKS.get(tags.get("subtype", ""))
+    told = own and own[0 if left else 1]
+    may = _may_cross(tags, from_left=left)
+    if may is None:
+        return told
+    by_tag: LaneMark = "broken" if may else "solid"
+    if told is None:
+        return None if tags.get("subtype") else by_tag
+    return told if (told == "broken") == may else None
+
+
+def _may_cross(tags: _Tags, *, from_left: bool) -> bool | None:
+    """May a line be crossed from one of its sides? None if no tag says so."""
+    own = "lane_change:right" if from_left else "lane_change:left"
+    for key in ("lane_change", own):
+        if tags.get(key) in (*_TRUE, *_FALSE):
+            return tags[key] in _TRUE
+    return None

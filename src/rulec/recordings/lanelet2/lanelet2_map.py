@@ -1,0 +1,95 @@
+"""A Lanelet2 map, read as the roads of a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from rulec.recordings.lanelet2.first_ways import first_ways
+from rulec.recordings.lanelet2.map_frame import places_of
+from rulec.recordings.lanelet2.map_lanelets import MapLanelet, map_lanelets
+from rulec.recordings.lanelet2.osm_file import LANELET2, read_osm
+from rulec.recordings.lanelet2.regulations import LaneRules, Surveyed, regulations, remarks_on
+from rulec.recordings.lanelet2.topology import country_in, side_of, topology
+from rulec.recordings.recording import Lanelet, ObservedLight
+from rulec.recordings.road_map import RoadMap
+
+_NAMED = 3
+
+
+def read_lanelet2(path: Path) -> RoadMap:
+    """Read a Lanelet2 map.
+
+    Raises RulecError R0610 for a file that cannot be read as one, R0701 if it cannot be opened.
+    """
+    file = read_osm(path)
+    if not any(x.tags.get("type") == "lanelet" for x in file.relations.values()):
+        raise LANELET2.refused(
+            path,
+            "it has no lanelets; it may be plain OpenStreetMap, which has roads without lanes",
+            help_text="give a Lanelet2 map, whose relations of the type `lanelet` have a left and "
+            "a right bound",
+        )
+    places = places_of(file)
+    left_out: list[str] = []
+    entries = map_lanelets(file, places.points, left_out)
+    if not entries:
+        raise file.refused("none of its lanelets has a left and a right bound")
+    survey = Surveyed(file, places.points, entries, topology(file, entries))
+    rules = regulations(survey)
+    first = first_ways(survey, rules)
+    country = country_in(entries.values())
+    side = side_of(entries, country)
+    remarks = [places.remark, *_left_out(left_out), *remarks_on(rules.values())]
+    if side is None:
+        remarks.append("the map does not tell the side on which traffic keeps")
+    return RoadMap(
+        form="Lanelet2 map",
+        lanelets={
+            name: _lanelet(entry, survey, rules[name], first.get(name))
+            for name, entry in entries.items()
+        },
+        side=side,
+        country=country,
+        remarks=tuple(filter(None, remarks)),
+    )
+
+
+def _lanelet(
+    entry: MapLanelet, survey: Surveyed, rules: LaneRules, first: frozenset[str] | None
+) -> Lanelet:
+    around = survey.topology
+    own = () if entry.limit_mps is None else (entry.limit_mps,)
+    limits = rules.limits if entry.is_lane and rules.limits else own
+    return Lanelet(
+        id=entry.id,
+        left=entry.left,
+        right=entry.right,
+        centre=entry.centre,
+        successors=around.successors[entry.id],
+        predecessors=around.predecessors[entry.id],
+        left_of=around.left_of.get(entry.id),
+        right_of=around.right_of.get(entry.id),
+        types=entry.types | ({"directed"} if rules.directed else frozenset()),
+        signs=frozenset(rules.signs),
+        limit_mps=min(limits, default=None),
+        lights=tuple(rules.lights),
+        lights_to=_single(rules.lights_to),
+        left_mark=entry.left_mark,
+        right_mark=entry.right_mark,
+        stop_line=rules.stop_line,
+        junction=entry.junction,
+        first=first,
+    )
+
+
+def _single(lights: Mapping[str, list[ObservedLight]]) -> dict[str, ObservedLight]:
+    """The lights for a way on, where each has one; several are all for it."""
+    return {onward: own[0] for onward, own in lights.items() if len(own) == 1}
+
+
+def _left_out(names: list[str]) -> Iterator[str]:
+    if names:
+        more = f", and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+        some = ", ".join(f"`{name}`" for name in names[:_NAMED])
+        yield f"lanelets without a left and a right bound are left out: {some}{more}"

@@ -1,0 +1,211 @@
+"""An OpenStreetMap file as Lanelet2 uses it: nodes, ways, relations, and the tags that count."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from math import nan
+from pathlib import Path
+from typing import NamedTuple
+
+from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.safe_xml import scan
+from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat, short
+
+LANELET2 = XmlFormat(
+    "a Lanelet2 map",
+    "osm",
+    "Lanelet2's format is described at https://github.com/fzi-forschungszentrum-informatik/Lanelet2",
+)
+
+MOST_NODES = 1_000_000
+MOST_WAYS = 500_000
+"""And as many relations."""
+
+MOST_REFERENCES = 5_000_000
+"""Of ways to nodes, and of relations to their members; all together some 500 MB of memory."""
+
+_MOST_TAGS = 50
+_LONGEST_TAG = 200
+_LONGEST_ID = 20
+_KEPT = """
+type subtype location region one_way turn_direction speed_limit speed_limit_mandatory
+intersection_area lane_change lane_change:left lane_change:right sign_type dynamic
+"""
+_KEPT_KEYS = frozenset(_KEPT.split())
+_KEPT_PREFIXES = ("participant:", "one_way:", "speed_limit:")
+
+
+class Member(NamedTuple):
+    """A member of a relation: its kind (node, way, relation), id, and role."""
+
+    kind: str
+    id: str
+    role: str
+
+
+@dataclass(slots=True)
+class OsmWay:
+    """A line through nodes (their numbers in the file's order), and the line that it begins in."""
+
+    # Not frozen: its nodes and tags come one after the other
+    id: str
+    place: int
+    refs: list[str] = field(default_factory=list)
+    tags: dict[str, str] = field(default_factory=dict)
+    nodes: tuple[int, ...] = ()
+
+
+@dataclass(slots=True)
+class OsmRelation:
+    """A lanelet or a rule with what it refers to, and the line that it begins in."""
+
+    # As above
+    id: str
+    place: int
+    members: list[Member] = field(default_factory=list)
+    tags: dict[str, str] = field(default_factory=dict)
+
+    def refs(self, role: str, kind: str) -> Iterator[str]:
+        """The ids of the members of a kind in a role."""
+        return (x.id for x in self.members if x.role == role and x.kind == kind)
+
+
+@dataclass(slots=True)
+class OsmNode:
+    """A place: degrees, and metres where the file has those; NaN where it has none."""
+
+    # As above
+    place: int
+    lat: float
+    lon: float
+    local_x: float = nan
+    local_y: float = nan
+
+
+@dataclass(slots=True)
+class OsmFile:
+    """What a file holds, by id; nodes also in its order."""
+
+    path: Path
+    numbers: dict[str, int] = field(default_factory=dict)
+    nodes: list[OsmNode] = field(default_factory=list)
+    ways: dict[str, OsmWay] = field(default_factory=dict)
+    relations: dict[str, OsmRelation] = field(default_factory=dict)
+
+    def refused(self, why: str, place: int | None = None, expected: str = "") -> RulecError:
+        """The error (R0610) for a line."""
+        expected = expected and f"expected {expected}"
+        return LANELET2.refused(self.path, why, place, expected=expected)
+
+
+@dataclass(slots=True)
+class _Scan:
+    """The state of a scan: how deep in the file it is, and which element is open."""
+
+    file: OsmFile
+    depth: int = 0
+    open: OsmNode | OsmWay | OsmRelation | None = None
+    references: int = 0
+
+    def begin(self, element: XmlElement) -> None:
+        if self.depth == 1:
+            self.open = self._opened(element)
+        elif self.depth == 2 and self.open is not None:
+            self._add(element, self.open)
+        self.depth += 1
+
+    def end(self, _: str) -> None:
+        self.depth -= 1
+
+    def _opened(self, element: XmlElement) -> OsmNode | OsmWay | OsmRelation | None:
+        # Editors keep what has been deleted until it is uploaded
+        if element.get("action") == "delete" or element.get("visible") == "false":
+            return None
+        place, file = element.parser.CurrentLineNumber, self.file
+        match element.name:
+            case "node":
+                node = OsmNode(place, _degrees(element, "lat", 90), _degrees(element, "lon", 360))
+                name = _id(element, "id")
+                if name in file.numbers:
+                    raise element.wrong(f"there are two nodes `{name}`")
+                if len(file.nodes) == MOST_NODES:
+                    raise element.wrong(f"there are more than {MOST_NODES:,} nodes")
+                file.numbers[name] = len(file.nodes)
+                file.nodes.append(node)
+                return node
+            case "way":
+                return _entered(file.ways, OsmWay(_id(element, "id"), place), element)
+            case "relation":
+                return _entered(file.relations, OsmRelation(_id(element, "id"), place), element)
+        return None
+
+    def _add(self, element: XmlElement, owner: OsmNode | OsmWay | OsmRelation) -> None:
+        match owner, element.name:
+            case OsmNode(), "tag":
+                if (key := element.get("k")) in ("local_x", "local_y") and element.get("v"):
+                    setattr(owner, key, element.as_number(key, element.get("v")))
+            case OsmWay() | OsmRelation(), "tag":
+                key, value = element.get("k"), element.get("v")
+                kept = key in _KEPT_KEYS or key.startswith(_KEPT_PREFIXES)
+                if kept and len(owner.tags) < _MOST_TAGS and len(key) + len(value) < _LONGEST_TAG:
+                    owner.tags[key] = value.strip()
+            case OsmWay(), "nd":
+                self._count(element)
+                owner.refs.append(_id(element, "ref"))
+            case OsmRelation(), "member":
+                self._count(element)
+                member = Member(element.get("type"), _id(element, "ref"), element.get("role"))
+                owner.members.append(member)
+
+    def _count(self, element: XmlElement) -> None:
+        self.references += 1
+        if self.references > MOST_REFERENCES:
+            raise element.wrong(f"there are more than {MOST_REFERENCES:,} references in it")
+
+
+def read_osm(path: Path) -> OsmFile:
+    """Read a file; ways refer to nodes by number, those that refer to a missing one to none at all.
+
+    Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
+    """
+    file = OsmFile(path)
+    state = _Scan(file)
+    scan(path, LANELET2, state.begin, end=state.end)
+    for way in file.ways.values():
+        if all(ref in file.numbers for ref in way.refs):
+            way.nodes = tuple([file.numbers[ref] for ref in way.refs])
+        way.refs.clear()
+    return file
+
+
+def _id(element: XmlElement, key: str) -> str:
+    """A whole number, which may be negative: editors number new elements so."""
+    text = element.text(key)
+    digits = text.removeprefix("-")
+    if not (digits.isascii() and digits.isdigit() and len(text) <= _LONGEST_ID):
+        raise element.wrong(f"`{key}` of a `{element.name}` is `{short(text)}`", "a whole number")
+    return text
+
+
+def _degrees(element: XmlElement, key: str, most: float) -> float:
+    # Maps that have only metres leave them empty
+    if not element.get(key):
+        return nan
+    value = element.number(key)
+    if abs(value) > most:
+        raise element.wrong(f"`{key}` of a node is {value:g}", f"degrees, at most {most:g}")
+    return value
+
+
+def _entered(
+    known: dict[str, OsmWay] | dict[str, OsmRelation],
+    entry: OsmWay | OsmRelation,
+    element: XmlElement,
+) -> OsmWay | OsmRelation:
+    if entry.id in known:
+        raise element.wrong(f"there are two elements `{element.name}` with the id `{entry.id}`")
+    if len(known) == MOST_WAYS:
+        raise element.wrong(f"there are more than {MOST_WAYS:,} elements `{element.name}`")
+    known[entry.id] = entry  # type: ignore[assignment]
+    return entry

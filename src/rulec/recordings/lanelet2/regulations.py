@@ -1,0 +1,254 @@
+"""What regulatory elements say of lanelets: lights, signs, limits, and lines to stop at.
+
+Lanelet2 lets the lanelet before a line refer to a light or sign, Autoware the one behind it. Here
+they are for the lanelets that end at the line, as in all recordings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+
+from rulec.recordings.lanelet2.lane_tags import velocity
+from rulec.recordings.lanelet2.map_lanelets import MapLanelet, lanes
+from rulec.recordings.lanelet2.osm_file import OsmFile, OsmRelation
+from rulec.recordings.lanelet2.signs import Sign, sign_of
+from rulec.recordings.lanelet2.topology import Topology
+from rulec.recordings.recording import ObservedLight, Points
+
+MOST_MEMBERS = 1_000
+"""Of one regulatory element."""
+
+_MOST_CROSSED = 1_000_000
+_AT_END_M = 1.0
+_ON_LINE_M = 0.5
+
+_GIVES_WAY = frozenset({"YIELD", "STOP", "STOP_4_WAY"})
+_GOES_FIRST = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
+_YES = ("yes", "true", "1")
+
+
+@dataclass(slots=True)
+class LaneRules:
+    """What holds for a lanelet. Lights are in the order of the file."""
+
+    # Not frozen: rules come one after the other
+    signs: set[str] = field(default_factory=set)
+    limits: list[float] = field(default_factory=list)
+    lights: list[ObservedLight] = field(default_factory=list)
+    lights_to: dict[str, list[ObservedLight]] = field(default_factory=dict)
+    stop_line: Points | None = None
+    directed: bool = False
+
+    def add_light(self, light: ObservedLight, onward: str) -> None:
+        """Add a light, which may be only for those who go on to a lanelet."""
+        if not any(light is known for known in self.lights):
+            self.lights.append(light)
+        if onward:
+            self.lights_to.setdefault(onward, []).append(light)
+
+
+@dataclass(frozen=True, slots=True)
+class Surveyed:
+    """A file's lanelets, and how they lie; ``points`` are the places of its nodes."""
+
+    file: OsmFile
+    points: Points
+    entries: dict[str, MapLanelet]
+    topology: Topology
+
+    def line(self, way: str) -> Points | None:
+        """The ends of a line of the file, None if it has none."""
+        nodes = self.file.ways[way].nodes if way in self.file.ways else ()
+        return self.points[[nodes[0], nodes[-1]]] if len(set(nodes)) > 1 else None
+
+
+def regulations(survey: Surveyed) -> dict[str, LaneRules]:
+    """Lanelet -> its rules. Raises RulecError R0610 for an element of too many members."""
+    rules = {name: LaneRules() for name in survey.entries}
+    for element in regulatory_elements(survey.file):
+        if element.tags.get("subtype") == "all_way_stop":
+            _all_way_stop(survey, element, rules)
+    elements = {x.id: _Element(survey, x) for x in regulatory_elements(survey.file)}
+    for entry in survey.entries.values():
+        for name in entry.rules:
+            if name in elements and elements[name].element.tags.get("dynamic") not in _YES:
+                elements[name].apply(entry, rules)
+    for element in regulatory_elements(survey.file):
+        if element.tags.get("subtype") == "right_of_way":
+            _right_of_way_signs(survey, element, rules)
+    _drawn_stop_lines(survey, rules)
+    return rules
+
+
+def regulatory_elements(file: OsmFile) -> Iterator[OsmRelation]:
+    """Those of a file. Raises RulecError R0610 for one of too many members."""
+    for relation in file.relations.values():
+        if relation.tags.get("type") == "regulatory_element":
+            if len(relation.members) > MOST_MEMBERS:
+                why = f"a regulatory element has more than {MOST_MEMBERS:,} members"
+                raise file.refused(why, relation.place)
+            yield relation
+
+
+class _Element:
+    """A regulatory element that lanelets refer to; its light is one, whoever refers to it."""
+
+    def __init__(self, survey: Surveyed, element: OsmRelation) -> None:
+        self.survey = survey
+        self.element = element
+        self.light = ObservedLight({})
+        self.lines = [x for x in map(survey.line, element.refs("ref_line", "way")) if x is not None]
+        self.signs = _signs(survey.file, element)
+
+    def apply(self, entry: MapLanelet, rules: Mapping[str, LaneRules]) -> None:
+        """Note the rule for the lanelets that it holds for."""
+        match self.element.tags.get("subtype", ""):
+            case "traffic_light" if not entry.is_lane:
+                rules[entry.id].directed = True
+            case "traffic_light":
+                line = nearest_line(entry, self.lines)
+                for name, onward in approaches(self.survey, entry, line):
+                    rules[name].add_light(self.light, onward)
+                    _draw(rules[name], line)
+            case "traffic_sign" | "speed_limit":
+                self._add_signs(entry, rules)
+
+    def _add_signs(self, entry: MapLanelet, rules: Mapping[str, LaneRules]) -> None:
+        limits = [sign.limit_mps for sign in self.signs if sign.limit_mps is not None]
+        rules[entry.id].limits += limits
+        names = {sign.name for sign in self.signs}
+        rules[entry.id].signs |= names - _GIVES_WAY
+        if names & _GIVES_WAY:
+            line = nearest_line(entry, self.lines)
+            for name, _ in approaches(self.survey, entry, line):
+                rules[name].signs |= names & _GIVES_WAY
+                _draw(rules[name], line)
+
+
+def _signs(file: OsmFile, element: OsmRelation) -> tuple[Sign, ...]:
+    kinds = [element.tags["sign_type"]] if "sign_type" in element.tags else []
+    ways = [file.ways[name] for name in element.refs("refers", "way") if name in file.ways]
+    kinds += [way.tags.get("subtype", "") for way in ways if way.tags.get("type") == "traffic_sign"]
+    found = [sign_of(kind) for kind in dict.fromkeys(kinds) if kind]
+    if element.tags.get("subtype") == "speed_limit":
+        # Velocities of signs that are called so, as Lanelet2 reads them, too
+        found = [
+            Sign(sign.name, velocity(kind)) if sign.limit_mps is None else sign
+            for sign, kind in zip(found, dict.fromkeys(filter(None, kinds)), strict=True)
+        ]
+    return tuple(found)
+
+
+def _draw(rules: LaneRules, line: Points | None) -> None:
+    if rules.stop_line is None:
+        rules.stop_line = line
+
+
+def nearest_line(entry: MapLanelet, lines: list[Points]) -> Points | None:
+    """The line that is nearest to a lanelet's middle, of those that a rule names."""
+    if len(lines) < 2:
+        return lines[0] if lines else None
+    middle = shapely.LineString(entry.centre)
+    return min(lines, key=lambda line: middle.distance(shapely.Point(line.mean(axis=0))))
+
+
+def approaches(
+    survey: Surveyed, entry: MapLanelet, line: Points | None
+) -> Iterator[tuple[str, str]]:
+    """The lanelets that end at a rule's line, and where it is for one way on, the one behind it.
+
+    That is the lanelet itself, which the rule names, or those before it where the line lies where
+    it begins, or nearer to that within a junction.
+    """
+    before = [x for x in survey.topology.predecessors[entry.id] if survey.entries[x].is_lane]
+    if before and _begins_behind(entry, line):
+        yield from ((name, entry.id) for name in before)
+    else:
+        yield entry.id, ""
+
+
+def _begins_behind(entry: MapLanelet, line: Points | None) -> bool:
+    inside = "intersection" in entry.types
+    if line is None:
+        return inside
+    middle = shapely.LineString(entry.centre)
+    along = middle.project(shapely.Point(line.mean(axis=0)))
+    return bool(along < _AT_END_M or (inside and along < middle.length / 2))
+
+
+def _all_way_stop(survey: Surveyed, element: OsmRelation, rules: Mapping[str, LaneRules]) -> None:
+    """Everybody stops, each at the line of its own in the same order, or where its lanelet ends."""
+    names = list(element.refs("yield", "relation"))
+    lines = [survey.line(way) for way in element.refs("ref_line", "way")]
+    if len(lines) != len(names):
+        lines = [None] * len(names)
+    for name, line in zip(names, lines, strict=True):
+        if name in survey.entries:
+            for approach, _ in approaches(survey, survey.entries[name], line):
+                rules[approach].signs.add("STOP_4_WAY")
+                _draw(rules[approach], line)
+
+
+def _right_of_way_signs(
+    survey: Surveyed, element: OsmRelation, rules: Mapping[str, LaneRules]
+) -> None:
+    """Signs that a right of way names stand where one gives way, or goes first.
+
+    Where there are lights it holds only when these are out of order.
+    """
+    signs = {sign.name for sign in _signs(survey.file, element)}
+    lines = [x for x in map(survey.line, element.refs("ref_line", "way")) if x is not None]
+    for role, own in (("yield", _GIVES_WAY), ("right_of_way", _GOES_FIRST)):
+        for name in element.refs(role, "relation"):
+            if name not in survey.entries:
+                continue
+            entry = survey.entries[name]
+            line = nearest_line(entry, lines) if role == "yield" else None
+            for approach, _ in approaches(survey, entry, line):
+                if not rules[approach].lights:
+                    rules[approach].signs |= signs & own
+                    _draw(rules[approach], line)
+
+
+def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
+    """Lines of the map that no rule names are for the lanelets that they cross."""
+    drawn = (way.id for way in survey.file.ways.values() if way.tags.get("type") == "stop_line")
+    lines = [line for line in map(survey.line, drawn) if line is not None]
+    open_lanes = [x for x in lanes(survey.entries) if rules[x.id].stop_line is None]
+    if not lines or not open_lanes:
+        return
+    middles = [shapely.LineString(entry.centre) for entry in open_lanes]
+    tree, count = shapely.STRtree(middles), 0
+    reached: dict[str, tuple[float, Points]] = {}
+    for line in lines:
+        found = tree.query(shapely.LineString(line), predicate="dwithin", distance=_ON_LINE_M)
+        count += len(found)
+        if count > _MOST_CROSSED:
+            raise survey.file.refused("too many of its lanelets lie on each other")
+        for number in found.tolist():
+            entry, middle = open_lanes[number], middles[number]
+            along = middle.project(shapely.Point(line.mean(axis=0)))
+            known = reached.get(entry.id, (0.0, line))[0]
+            if along > max(_AT_END_M, known) and _crosses(middle, along, line):
+                reached[entry.id] = along, line
+    for name, (_, line) in reached.items():
+        rules[name].stop_line = line
+
+
+def _crosses(middle: shapely.LineString, along: float, line: Points) -> bool:
+    """True if a line lies across a lanelet, rather than along it."""
+    ends = [middle.interpolate(max(along + way, 0.0)) for way in (-0.5, 0.5)]
+    ahead = np.array([ends[1].x - ends[0].x, ends[1].y - ends[0].y])
+    across = line[1] - line[0]
+    return bool(abs(ahead @ across) < 0.7 * np.hypot(*ahead) * np.hypot(*across))
+
+
+def remarks_on(rules: Iterable[LaneRules]) -> Iterator[str]:
+    """What the map leaves open of its lights."""
+    lights = {id(light) for own in rules for light in own.lights}
+    if lights:
+        yield f"what its {len(lights)} traffic lights show is not in the map"

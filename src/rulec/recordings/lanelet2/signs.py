@@ -1,0 +1,50 @@
+"""Traffic signs of Lanelet2 maps by the names that recordings have."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, UNKNOWN, sign_name
+from rulec.recordings.lanelet2.lane_tags import velocity
+from rulec.recordings.lanelet2.region_codes import sign_parts
+
+AUTOWARE_SIGNS = {"stop_sign": "STOP", "yield_sign": "YIELD"}
+"""Subtypes without a country."""
+
+_TABLES = "DEU USA ESP AUS RUS ARG BEL FRA GRC HRV PRI"
+"""Countries of whose signs CommonRoad has the numbers."""
+
+_MORE_SIGNS = {("USA", "R1-2"): "YIELD", ("JPN", "330"): "STOP"}
+
+_GERMAN_LIMIT = re.compile(r"de[ _:-]?274[-_](\d{1,3})$", re.IGNORECASE)
+
+
+class Sign(NamedTuple):
+    """A sign's name, and the limit (m/s) that it says, if any."""
+
+    name: str
+    limit_mps: float | None = None
+
+
+def sign_of(kind: str) -> Sign:
+    """The sign that a subtype or ``sign_type`` calls; those about other things are ``UNKNOWN``.
+
+    `de274-50` is the limit of 50 km/h; `50 km/h` in the place of a sign is one, too.
+    """
+    if kind in AUTOWARE_SIGNS:
+        return Sign(AUTOWARE_SIGNS[kind])
+    if (limit := _GERMAN_LIMIT.match(kind)) is not None and int(limit[1]) > 1:
+        return Sign(MAX_SPEED, int(limit[1]) / 3.6)
+    country, number = sign_parts(kind)
+    if (country, number) in _MORE_SIGNS:
+        return Sign(_MORE_SIGNS[country, number])
+    if country and country not in _TABLES:
+        return Sign(UNKNOWN)
+    if country:
+        spelled = (number, number.replace("_", "-"), number.replace("_", "."))
+        tried = (*spelled, *(word.upper() for word in spelled))
+        names = (sign_name(word, country) for word in tried)
+        return Sign(next((name for name in names if name != UNKNOWN), UNKNOWN))
+    speed = velocity(kind)
+    return Sign(UNKNOWN) if speed is None else Sign(MAX_SPEED, speed)

@@ -1,0 +1,87 @@
+"""What lanelets share: ends with those that follow, bounds with those beside them.
+
+As of Lanelet2's routing graph, by nodes and ways, whatever else lies in the same place.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from rulec.recordings.commonroad.countries import side_in
+from rulec.recordings.lanelet2.map_lanelets import MapLanelet
+from rulec.recordings.lanelet2.osm_file import OsmFile
+from rulec.recordings.lanelet2.region_codes import country_of
+from rulec.recordings.recording import Side
+
+MOST_AT_ONE_PLACE = 100
+"""Lanelets that begin or end at the same two nodes."""
+
+_NOT_FOR_CARS = frozenset({"bicycleLane"})
+
+
+@dataclass(frozen=True, slots=True)
+class Topology:
+    """By lanelet: those that follow, those before it, and the one beside it on either side."""
+
+    successors: Mapping[str, tuple[str, ...]]
+    predecessors: Mapping[str, tuple[str, ...]]
+    left_of: Mapping[str, str]
+    right_of: Mapping[str, str]
+
+
+def topology(file: OsmFile, entries: Mapping[str, MapLanelet]) -> Topology:
+    """How lanelets lie to each other. Raises RulecError R0610 if too many meet at one place."""
+    begin: dict[tuple[int, int], list[str]] = defaultdict(list)
+    end: dict[tuple[int, int], list[str]] = defaultdict(list)
+    for entry in entries.values():
+        begin[entry.start].append(entry.id)
+        end[entry.end].append(entry.id)
+    for group in (*begin.values(), *end.values()):
+        if len(group) > MOST_AT_ONE_PLACE:
+            why = f"more than {MOST_AT_ONE_PLACE} lanelets begin or end at the same nodes"
+            raise file.refused(f"{why}, `{group[0]}` among them")
+    # A lane of no length would follow itself
+    follow = {x.id: _others(x.id, begin.get(x.end, ())) for x in entries.values()}
+    before = {x.id: _others(x.id, end.get(x.start, ())) for x in entries.values()}
+    by_right: dict[tuple[str, bool], str] = {}
+    by_left: dict[tuple[str, bool], str] = {}
+    for entry in entries.values():
+        if entry.is_lane:
+            by_right.setdefault(entry.right_bound, entry.id)
+            by_left.setdefault(entry.left_bound, entry.id)
+    lanes = [entry for entry in entries.values() if entry.is_lane]
+    left_of = {x.id: by_right[x.left_bound] for x in lanes if x.left_bound in by_right}
+    right_of = {x.id: by_left[x.right_bound] for x in lanes if x.right_bound in by_left}
+    return Topology(follow, before, left_of, right_of)
+
+
+def _others(own: str, names: Iterable[str]) -> tuple[str, ...]:
+    return tuple(name for name in names if name != own)
+
+
+def country_in(entries: Iterable[MapLanelet]) -> str:
+    """The country that lanelets say they are in, empty if they do not, or say several."""
+    regions = {entry.region for entry in entries if entry.region}
+    countries = {country_of(region) for region in regions}
+    return countries.pop() if len(countries) == 1 else ""
+
+
+def side_of(entries: Mapping[str, MapLanelet], country: str) -> Side | None:
+    """The side of traffic: the country's, or else that on which lanes lie that share a bound.
+
+    Two lanes that lead opposite ways share their left bounds where traffic keeps right, their right
+    ones where it keeps left. None where there are no such lanes, or both kinds.
+    """
+    told = side_in(country)
+    if told is not None:
+        return told
+    lanes = [x for x in entries.values() if x.is_lane and not x.both_ways]
+    lanes = [x for x in lanes if not x.types & _NOT_FOR_CARS]
+    lefts, rights = {x.left_bound for x in lanes}, {x.right_bound for x in lanes}
+    keeps_right = any((way, not turned) in lefts for way, turned in lefts)
+    keeps_left = any((way, not turned) in rights for way, turned in rights)
+    if keeps_right == keeps_left:
+        return None
+    return "right" if keeps_right else "left"
