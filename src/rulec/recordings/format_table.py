@@ -8,6 +8,7 @@ from rulec.recordings.recording_format import Glance, RecordingFormat, Recording
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from rulec.recordings.recording import Recording
 
@@ -31,6 +32,24 @@ def _sumo(source: RecordingSource) -> Iterator[Recording]:
     from rulec.recordings.sumo.sumo_recording import read_sumo
 
     yield read_sumo(source.path, source.map_path)
+
+
+def _waymo(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.waymo.waymo_file import read_waymo
+
+    return read_waymo(source.path, source.scenario_id)
+
+
+def _waymo_ids(path: Path) -> Iterator[str]:
+    # As above.
+    from rulec.recordings.waymo.waymo_file import waymo_ids
+
+    return waymo_ids(path)
+
+
+def _is_waymo(glance: Glance) -> bool:
+    return ".tfrecord" in glance.name
 
 
 def _is_protobuf(glance: Glance) -> bool:
@@ -59,5 +78,13 @@ FORMATS = (
         recognises=lambda glance: glance.root == "fcd-export",
         read=_sumo,
         takes_map=True,
+    ),
+    RecordingFormat(
+        name="waymo",
+        title="scenarios of Waymo's Open Motion Dataset",
+        files="*.tfrecord, *.tfrecord-00000-of-01000",
+        recognises=_is_waymo,
+        read=_waymo,
+        names=_waymo_ids,
     ),
 )

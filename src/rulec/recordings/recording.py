@@ -55,7 +55,7 @@ OBSTACLE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "bus": ("bus", *_VEHICLE),
         "motorcycle": ("motorcycle", *_VEHICLE),
         "priorityVehicle": ("emergency_vehicle", *_VEHICLE),
-        "parkedVehicle": _VEHICLE,
+        **dict.fromkeys(("vehicle", "parkedVehicle"), _VEHICLE),
         "bicycle": ("cyclist", *_RIDER),
         "pedestrian": ("pedestrian", "vulnerable_user", "road_user", "obstacle"),
         "train": ("train", "rail_vehicle", "rail_borne", "road_user", "obstacle"),
@@ -91,11 +91,15 @@ class Light:
 
 @dataclass(frozen=True, slots=True)
 class ObservedLight:
-    """What a traffic light was seen to show, by time step; steps without a colour are missing."""
+    """What a traffic light was seen to show, by time step; steps without a colour are missing.
+
+    ``seen``: there is one. Else the file does not tell whether there is.
+    """
 
     __repr__ = short_repr
 
     colours: Mapping[int, str]
+    seen: bool = True
 
     def colour_at(self, step: int) -> str:
         """Its colour at a time step, empty where that is not known."""

@@ -51,12 +51,13 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     if source.scenario_id is None:
         yield from form.read(source)
         return
-    names = []
-    for recording in form.read(source):
-        if recording.name == source.scenario_id:
-            yield recording
-            return
-        names.append(recording.name)
+    names = list(form.names(source.path)) if form.names is not None else []
+    if form.names is None or source.scenario_id in names:
+        for recording in form.read(source):
+            if recording.name == source.scenario_id:
+                yield recording
+                return
+            names.append(recording.name)
     raise NOT_IN_RECORDING.error(
         SourceLocation(str(source.path)),
         f"there is no scenario `{source.scenario_id}` in the file",

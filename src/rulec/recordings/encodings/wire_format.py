@@ -105,11 +105,12 @@ class WireFormat:
 
 @dataclass(slots=True)
 class WireFile:
-    """A file's bytes. Its methods raise RulecError R0610."""
+    """A file's bytes, or those of a part that begins at a byte. Its methods raise RulecError R0610."""
 
     data: bytes
     path: Path
     form: WireFormat
+    begin: int = 0
     _n_values: int = 0
 
     def fields(self, table: Table) -> Iterator[WireField]:
@@ -119,7 +120,7 @@ class WireFile:
     def wrong(self, why: str, place: int, expected: str = "") -> RulecError:
         """The error for a byte."""
         expected = expected and f"expected {expected}"
-        return self.form.refused(self.path, why, place, expected=expected)
+        return self.form.refused(self.path, why, self.begin + place, expected=expected)
 
     def _fields(self, table: Table, place: int, end: int, depth: int) -> Iterator[WireField]:
         if depth > DEEPEST:

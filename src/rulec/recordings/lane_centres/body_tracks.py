@@ -1,0 +1,58 @@
+"""Tracks of boxes as participants."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy import float64, int64
+from numpy.typing import NDArray
+
+from rulec.recordings.recording import Participant
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+
+_CAR_LENGTHS_M = 3.4, 6.0
+_CAR_WIDTHS_M = 1.4, 2.5
+
+
+class BoxTrack(NamedTuple):
+    """A track of boxes, a row each: centre and velocity are x and y, sizes length and width."""
+
+    steps: NDArray[int64]
+    centres: NDArray[float64]
+    headings: NDArray[float64]
+    velocities: NDArray[float64]
+    sizes: NDArray[float64]
+
+
+def participant(name: str, kind: str, boxes: BoxTrack, step_s: float) -> Participant:
+    """A participant with a rigid body, whose size is the median of its boxes'.
+
+    A ``vehicle`` that is as large as a car is taken for one.
+    """
+    length, width = np.median(boxes.sizes, axis=0).tolist()
+    if (
+        kind == "vehicle"
+        and _is_within(length, _CAR_LENGTHS_M)
+        and _is_within(width, _CAR_WIDTHS_M)
+    ):
+        kind = "car"
+    along = np.stack((np.cos(boxes.headings), np.sin(boxes.headings)), axis=1)
+    speeds = (boxes.velocities * along).sum(axis=1)
+    taken_s = np.diff(boxes.steps, prepend=boxes.steps[0] - 1) * step_s
+    gained = np.diff(speeds, prepend=speeds[0]) / taken_s
+    rows = np.column_stack((boxes.centres, boxes.headings, speeds, gained))
+    track = Track(boxes.steps, rows, length, width)
+    return Participant(
+        id=name,
+        type=kind,
+        standing=False,
+        states=TrackStates(track),
+        outlines=TrackOutlines(track),
+        shows=frozenset(),
+    )
+
+
+def _is_within(value: float, bounds: tuple[float, float]) -> bool:
+    low, high = bounds
+    return low <= value <= high

@@ -1,0 +1,235 @@
+"""Lanelets from lanes that are given by their centres, and from what is beside and on them."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+import shapely
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.recordings.lane_centres.junction_lanes import junction_lanes
+from rulec.recordings.lane_centres.lane_pieces import (
+    LanePiece,
+    mark_of,
+    neighbours_of_pieces,
+    pieces_of_lanes,
+)
+from rulec.recordings.lane_centres.lane_widths import HalfWidths, across, half_widths
+from rulec.recordings.lane_centres.road_features import (
+    BoundaryPart,
+    CentreLane,
+    LaneLight,
+    LaneSide,
+    NeighbourPart,
+    RoadFeatures,
+)
+from rulec.recordings.recording import Lanelet, ObservedLight, Points
+
+_CLOSEST_M = 0.01
+_FAR_M = 10.0
+_STOP = frozenset({"STOP"})
+
+
+def centre_lanelets(features: RoadFeatures, *, has_lights: bool) -> dict[str, Lanelet]:
+    """The lanelets of a road, by id: its lanes, cut to pieces, and its crosswalks.
+
+    ``has_lights``: the file tells of lights that were seen, so that at other junctions there may be
+    some that nobody saw.
+    """
+    features = replace(features, lanes=_sound_lanes(features.lanes))
+    lanes = features.lanes
+    pieces = pieces_of_lanes(lanes)
+    left_of = neighbours_of_pieces(lanes, pieces)
+    right_of = {left: right for right, left in left_of.items()}
+    widths, inside = half_widths(features), junction_lanes(features)
+    lanelets: dict[str, Lanelet] = {}
+    for name, own in pieces.items():
+        lane = lanes[name]
+        bounds = _bounds(lane, widths[name])
+        before = [pieces[other][-1].id for other in lane.follows if other in pieces]
+        after = [pieces[other][0].id for other in lane.leads_to if other in pieces]
+        for number, piece in enumerate(own):
+            part = slice(piece.start, piece.end + 1)
+            lanelets[piece.id] = Lanelet(
+                id=piece.id,
+                left=bounds[0][part],
+                right=bounds[1][part],
+                centre=lane.centre[part, :2],
+                successors=tuple(after) if number == len(own) - 1 else (own[number + 1].id,),
+                predecessors=(own[number - 1].id,) if number else tuple(before),
+                left_of=left_of.get(piece.id),
+                right_of=right_of.get(piece.id),
+                types=lane.types | ({"intersection"} if name in inside else frozenset()),
+                signs=frozenset(),
+                limit_mps=lane.limit_mps,
+                left_mark=mark_of(lane.left, piece),
+                right_mark=mark_of(lane.right, piece),
+            )
+    lanelets.update(_regulated(lanelets, features, pieces, has_lights=has_lights))
+    for name, polygon in features.crosswalks.items():
+        lanelets[f"crosswalk {name}"] = _crosswalk(f"crosswalk {name}", polygon)
+    return lanelets
+
+
+def _sound_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
+    """The lanes of some length, each point apart from the one before, led through the others."""
+    kept = {name: _kept(lane.centre) for name, lane in lanes.items()}
+    there = {name for name, points in kept.items() if len(points) > 1}
+
+    def reached(name: str, onward: bool, passed: frozenset[str]) -> Iterator[str]:
+        for other in lanes[name].leads_to if onward else lanes[name].follows:
+            if other in there:
+                yield other
+            elif other in lanes and other not in passed:
+                yield from reached(other, onward, passed | {other})
+
+    found = {}
+    for name in lanes:
+        if name in there:
+            lane, points = lanes[name], kept[name]
+            before, after = (
+                tuple(dict.fromkeys(reached(name, onward, frozenset({name}))))
+                for onward in (False, True)
+            )
+            found[name] = replace(
+                lane,
+                centre=lane.centre[points],
+                follows=before,
+                leads_to=after,
+                left=_renumbered(lane.left, points, kept),
+                right=_renumbered(lane.right, points, kept),
+            )
+    return found
+
+
+def _kept(centre: NDArray[float64]) -> list[int]:
+    points = [0]
+    for index in range(1, len(centre)):
+        if np.hypot(*(centre[index, :2] - centre[points[-1], :2])) > _CLOSEST_M:
+            points.append(index)
+    return points
+
+
+def _renumbered(side: LaneSide, points: list[int], kept: Mapping[str, list[int]]) -> LaneSide:
+    def now(index: int, of: list[int]) -> int:
+        return max(int(np.searchsorted(of, index, side="right")) - 1, 0)
+
+    return LaneSide(
+        boundaries=tuple(
+            BoundaryPart(now(part.start, points), now(part.end, points), part.line, part.mark)
+            for part in side.boundaries
+        ),
+        neighbours=tuple(
+            NeighbourPart(
+                part.lane,
+                now(part.start, points),
+                now(part.end, points),
+                now(part.other_start, kept[part.lane]),
+                now(part.other_end, kept[part.lane]),
+            )
+            for part in side.neighbours
+            if part.lane in kept and len(kept[part.lane]) > 1
+        ),
+    )
+
+
+def _bounds(lane: CentreLane, widths: HalfWidths) -> tuple[Points, Points]:
+    centre = lane.centre[:, :2]
+    sideways = across(centre)
+    return (
+        centre + sideways * widths.left[:, None],
+        centre - sideways * widths.right[:, None],
+    )
+
+
+def _regulated(
+    lanelets: Mapping[str, Lanelet],
+    features: RoadFeatures,
+    pieces: Mapping[str, tuple[LanePiece, ...]],
+    *,
+    has_lights: bool,
+) -> Iterator[tuple[str, Lanelet]]:
+    """The lanelets that lead to lanes with lights or stop signs, with these.
+
+    The files have both at the lane behind the line; here they are at the one before it. Where there
+    is none before, it stays at its own.
+    """
+    behind: dict[str, list[str]] = defaultdict(list)
+    for name, own in pieces.items():
+        for before in lanelets[own[0].id].predecessors:
+            behind[before].append(name)
+        if not lanelets[own[0].id].predecessors and name in features.stop_lanes:
+            first = lanelets[own[0].id]
+            line = np.stack((first.left[0], first.right[0]))
+            yield first.id, replace(first, signs=first.signs | _STOP, stop_line=line)
+    for before, names in behind.items():
+        lanelet = lanelets[before]
+        if "intersection" in lanelet.types:
+            continue
+        stops = [name for name in names if name in features.stop_lanes]
+        seen = {name: features.lights[name] for name in names if name in features.lights}
+        lights = {name: ObservedLight(light.colours) for name, light in seen.items()}
+        if has_lights and not stops:
+            inside = [x for x in names if "intersection" in lanelets[pieces[x][0].id].types]
+            lights = {x: lights.get(x, ObservedLight({}, seen=False)) for x in inside}
+        if stops or lights:
+            yield (
+                before,
+                replace(
+                    lanelet,
+                    signs=_STOP if stops else frozenset(),
+                    lights=tuple(lights.values()),
+                    lights_to={pieces[name][0].id: light for name, light in lights.items()},
+                    stop_line=_stop_line(lanelet, list(seen.values())),
+                ),
+            )
+
+
+def _stop_line(lanelet: Lanelet, lights: list[LaneLight]) -> Points | None:
+    """The line across a lanelet at the place where its lights stop traffic, if that is at its end.
+
+    A stop sign has no line in the files: its line is at the lanelet's end, where the lane that it
+    is for begins.
+    """
+    places = [light.stop_point for light in lights if light.stop_point is not None]
+    end = lanelet.centre[-1]
+    near = [place for place in places if np.hypot(*(place - end)) <= _FAR_M]
+    if not near:
+        return None
+    aside = (lanelet.left[-1] - lanelet.right[-1]) / 2
+    return np.stack((near[0] + aside, near[0] - aside))
+
+
+def _crosswalk(name: str, polygon: Points) -> Lanelet:
+    """A crosswalk as a lanelet along which people walk: the longer way of its outline."""
+    corners = polygon
+    if len(corners) > 2 and (corners[0] == corners[-1]).all():
+        corners = corners[:-1]
+    if len(corners) != 4:
+        box = shapely.minimum_rotated_rectangle(shapely.MultiPoint(polygon))
+        corners = shapely.get_coordinates(box)[:4]
+    sides = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
+    if sides[0] + sides[2] < sides[1] + sides[3]:
+        corners = np.roll(corners, -1, axis=0)
+    one, other = corners[:2], corners[:1:-1]
+    middle = (one + other) / 2
+    ahead, aside = middle[1] - middle[0], one[0] - other[0]
+    if ahead[0] * aside[1] - ahead[1] * aside[0] < 0:
+        one, other = other, one
+    return Lanelet(
+        id=name,
+        left=one,
+        right=other,
+        centre=middle,
+        successors=(),
+        predecessors=(),
+        left_of=None,
+        right_of=None,
+        types=frozenset({"crosswalk"}),
+        signs=frozenset(),
+        limit_mps=None,
+    )

@@ -1,0 +1,46 @@
+"""Times that a sensor has measured, on an even grid of time steps."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy import float64, int64
+from numpy.typing import NDArray
+
+from rulec.recordings.recording import MOST_STEPS, SPARSEST
+
+MOST_OFF = 0.25
+"""Times may be off their step by such a part of it."""
+
+_MILLISECONDS = 1000.0
+
+
+def even_steps(times_s: NDArray[float64]) -> tuple[float, NDArray[int64]]:
+    """The time step (s), in whole milliseconds, and the number of the step of each time.
+
+    The step is the median of the times between; a single time has one of a tenth of a second.
+    Steps may be missing. Raises ValueError: with what is wrong with the times.
+    """
+    if not len(times_s):
+        raise ValueError("there are no times")
+    if not np.isfinite(times_s).all() or np.abs(times_s).max() > 1e12:
+        raise ValueError("a time is no number of seconds")
+    if len(times_s) == 1:
+        return 0.1, np.zeros(1, dtype=int64)
+    between = np.diff(times_s)
+    if between.min() <= 0:
+        raise ValueError("its times do not ascend")
+    step_s = round(float(np.median(between)) * _MILLISECONDS) / _MILLISECONDS
+    if step_s <= 0:
+        raise ValueError("its times are less than half a millisecond apart")
+    # By the times between, as a clock that is slow or fast loses a step in a long recording
+    counts = np.round(between / step_s)
+    off = np.abs(between / step_s - counts)
+    if off.max() > MOST_OFF or counts.min() < 1:
+        at = int(np.argmax(off))
+        raise ValueError(
+            f"its times are uneven: {between[at]:g} s from one to the next are not so many steps of "
+            f"{step_s:g} s"
+        )
+    if counts.sum() > min(MOST_STEPS, SPARSEST * len(times_s)):
+        raise ValueError(f"its {len(times_s)} times are spread over {counts.sum():.0f} steps")
+    return step_s, np.concatenate(([0], np.cumsum(counts))).astype(int64)

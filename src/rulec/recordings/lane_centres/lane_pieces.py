@@ -1,0 +1,133 @@
+"""Lanes cut where what is beside them begins or ends, so that pieces are beside whole pieces."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.recordings.lane_centres.road_features import CentreLane, LaneSide, NeighbourPart
+from rulec.recordings.recording import LaneMark
+
+SHORTEST_BESIDE_M = 8.0
+"""Lanes that are beside each other for less, as where ways part, are not cut for it."""
+
+SHORTEST_PIECE_M = 5.0
+WHOLE = 0.75
+"""Pieces that are beside each other for so much of both are neighbours."""
+
+
+@dataclass(frozen=True, slots=True)
+class LanePiece:
+    """A part of a lane between two points of its centre."""
+
+    id: str
+    lane: str
+    start: int
+    end: int
+
+
+def pieces_of_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, tuple[LanePiece, ...]]:
+    """The pieces of each lane, from its start on; a whole lane keeps its id."""
+    reach = {name: _along(lane) for name, lane in lanes.items()}
+    cuts: dict[str, set[int]] = defaultdict(set)
+    waiting = [(name, index) for name, lane in lanes.items() for index in _ends(lane, reach[name])]
+    while waiting:
+        name, index = waiting.pop()
+        along, own = reach[name], cuts[name]
+        ends = (0, len(along) - 1, *own)
+        if min(abs(along[index] - along[other]) for other in ends) < SHORTEST_PIECE_M:
+            continue
+        own.add(index)
+        waiting += [pair for pair in _beside(lanes[name], index) if pair[0] in lanes]
+    return {name: tuple(_pieces(name, cuts[name], len(reach[name]))) for name in lanes}
+
+
+def _along(lane: CentreLane) -> NDArray[float64]:
+    steps = np.hypot(*np.diff(lane.centre[:, :2], axis=0).T)
+    return np.concatenate(([0.0], np.cumsum(steps)))
+
+
+def _ends(lane: CentreLane, along: NDArray[float64]) -> Iterator[int]:
+    """Where lanes beside a lane, or kinds of marks, begin and end."""
+    for side in (lane.left, lane.right):
+        for part in side.neighbours:
+            if along[part.end] - along[part.start] >= SHORTEST_BESIDE_M:
+                yield from (part.start, part.end)
+        for before, after in pairwise(sorted(side.boundaries, key=lambda part: part.start)):
+            if before.mark != after.mark:
+                yield after.start
+
+
+def _beside(lane: CentreLane, index: int) -> Iterator[tuple[str, int]]:
+    for part in (*lane.left.neighbours, *lane.right.neighbours):
+        if part.start < index < part.end:
+            yield part.lane, _there(part, index)
+
+
+def _there(part: NeighbourPart, index: int) -> int:
+    """The point of a neighbour's centre that is beside one of the lane's own."""
+    share = (index - part.start) / max(part.end - part.start, 1)
+    return round(part.other_start + share * (part.other_end - part.other_start))
+
+
+def _pieces(name: str, cuts: set[int], count: int) -> Iterator[LanePiece]:
+    ends = [0, *sorted(cuts), count - 1]
+    for number, (start, end) in enumerate(pairwise(ends), 1):
+        yield LanePiece(name if len(ends) == 2 else f"{name}.{number}", name, start, end)
+
+
+def piece_at(pieces: tuple[LanePiece, ...], index: int) -> LanePiece:
+    """The piece of a lane that begins at or before a point of its centre."""
+    return next(piece for piece in reversed(pieces) if piece.start <= index or piece.start == 0)
+
+
+def neighbours_of_pieces(
+    lanes: Mapping[str, CentreLane], pieces: Mapping[str, tuple[LanePiece, ...]]
+) -> dict[str, str]:
+    """Piece -> the one left of it; each is left of one at most."""
+    found: dict[tuple[str, str], float] = {}
+    for name, lane in lanes.items():
+        for side, is_left in ((lane.left, True), (lane.right, False)):
+            for part in side.neighbours:
+                for piece in pieces[name]:
+                    for other, share in _shares(piece, part, pieces.get(part.lane, ())):
+                        pair = (piece.id, other.id) if is_left else (other.id, piece.id)
+                        found[pair] = max(share, found.get(pair, 0.0))
+    left_of: dict[str, str] = {}
+    taken: set[str] = set()
+    for (right, left), _ in sorted(found.items(), key=lambda item: (-item[1], item[0])):
+        if right not in left_of and left not in taken and left_of.get(left) != right:
+            left_of[right] = left
+            taken.add(left)
+    return left_of
+
+
+def _shares(
+    piece: LanePiece, part: NeighbourPart, others: tuple[LanePiece, ...]
+) -> Iterator[tuple[LanePiece, float]]:
+    """The pieces of a neighbour along a piece, and for how much of either they are beside it."""
+    start, end = max(piece.start, part.start), min(piece.end, part.end)
+    own = (end - start) / (piece.end - piece.start)
+    if own < WHOLE:
+        return
+    low, high = sorted((_there(part, start), _there(part, end)))
+    for other in others:
+        both = min(other.end, high) - max(other.start, low)
+        share = both / (other.end - other.start)
+        if share >= WHOLE and both >= WHOLE * (high - low):
+            yield other, min(own, share)
+
+
+def mark_of(side: LaneSide, piece: LanePiece) -> LaneMark | None:
+    """The mark of a piece's side, None unless one kind is there for nearly all of it."""
+    lengths: dict[LaneMark | None, int] = defaultdict(int)
+    for part in side.boundaries:
+        lengths[part.mark] += max(0, min(part.end, piece.end) - max(part.start, piece.start))
+    mark = max(lengths, key=lambda kind: lengths[kind], default=None)
+    return mark if lengths[mark] >= WHOLE * (piece.end - piece.start) else None

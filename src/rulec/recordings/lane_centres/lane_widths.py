@@ -1,0 +1,131 @@
+"""How far the bounds of lanes are from their centres."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.recordings.lane_centres.road_features import CentreLane, LaneSide, RoadFeatures
+from rulec.recordings.recording import Points
+
+Widths = NDArray[float64]
+
+USUAL_HALF_M = 1.8
+"""Half of 12 ft, the usual width of lanes in the USA (AASHTO, A Policy on Geometric Design)."""
+
+NARROWEST_HALF_M, WIDEST_HALF_M = 0.6, 2.5
+"""What is nearer or farther is no bound of this lane: a kerb behind parked cars, for one."""
+
+
+class HalfWidths(NamedTuple):
+    """How far left and right of the points of its centre a lane's bounds are (m)."""
+
+    left: Widths
+    right: Widths
+
+
+def across(centre: Points) -> Points:
+    """The directions to the left at the points of a line of two or more different points."""
+    ahead = np.diff(centre, axis=0)
+    ahead /= np.hypot(*ahead.T)[:, None]
+    both = np.concatenate((ahead[:1], ahead)) + np.concatenate((ahead, ahead[-1:]))
+    both = np.where(np.hypot(*both.T)[:, None] > 1e-6, both, np.concatenate((ahead[:1], ahead)))
+    both /= np.hypot(*both.T)[:, None]
+    turned: Points = np.stack((-both[:, 1], both[:, 0]), axis=1)
+    return turned
+
+
+def half_widths(features: RoadFeatures) -> dict[str, HalfWidths]:
+    """The half widths of all lanes.
+
+    By a lane's own outline, or its boundaries, else half-way to lanes beside it. Between places
+    where they are known they change evenly; where nothing is known of a side they go on from the
+    lane before to the one after, as through junctions, and are usual ones otherwise.
+    """
+    lines = {name: shapely.LineString(points) for name, points in features.lines.items()}
+    centres = {
+        name: shapely.LineString(lane.centre[:, :2]) for name, lane in features.lanes.items()
+    }
+    known = {
+        name: _by_area(lane) if lane.area is not None else _by_sides(lane, lines, centres)
+        for name, lane in features.lanes.items()
+    }
+    return {
+        name: HalfWidths(*(_filled(lane, known, side) for side in (0, 1)))
+        for name, lane in features.lanes.items()
+    }
+
+
+def _by_sides(
+    lane: CentreLane,
+    lines: Mapping[str, shapely.LineString],
+    centres: Mapping[str, shapely.LineString],
+) -> HalfWidths:
+    points = shapely.points(lane.centre[:, :2])
+    return HalfWidths(*(_by_side(points, side, lines, centres) for side in (lane.left, lane.right)))
+
+
+def _by_side(
+    points: NDArray[np.object_],
+    side: LaneSide,
+    lines: Mapping[str, shapely.LineString],
+    centres: Mapping[str, shapely.LineString],
+) -> Widths:
+    found = np.full(len(points), np.nan)
+    for part in side.boundaries:
+        own = slice(part.start, part.end + 1)
+        if part.line in lines:
+            found[own] = _sound(shapely.distance(points[own], lines[part.line]))
+    for beside in side.neighbours:
+        own = slice(beside.start, beside.end + 1)
+        if beside.lane in centres:
+            halves = _sound(shapely.distance(points[own], centres[beside.lane]) / 2)
+            found[own] = np.where(np.isnan(found[own]), halves, found[own])
+    return found
+
+
+def _by_area(lane: CentreLane) -> HalfWidths:
+    """By where straight lines across the lane leave its outline."""
+    centre = lane.centre[:, :2]
+    ring = shapely.LinearRing(lane.area)
+    points, sideways = shapely.points(centre), across(centre) * WIDEST_HALF_M
+    widths = []
+    for towards in (sideways, -sideways):
+        rays = shapely.linestrings(np.stack((centre, centre + towards), axis=1))
+        met = shapely.intersection(rays, ring)
+        widths.append(
+            _sound(np.where(shapely.is_empty(met), np.nan, shapely.distance(points, met)))
+        )
+    return HalfWidths(*widths)
+
+
+def _sound(widths: Widths) -> Widths:
+    sound = (widths >= NARROWEST_HALF_M) & (widths <= WIDEST_HALF_M)
+    return np.where(sound, widths, np.nan)
+
+
+def _filled(lane: CentreLane, known: Mapping[str, HalfWidths], side: int) -> Widths:
+    own = known[lane.id][side]
+    there = ~np.isnan(own)
+    along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(lane.centre[:, :2], axis=0).T))))
+    if there.any():
+        filled: Widths = np.interp(along, along[there], own[there])
+        return filled
+    before = _mean(known[name][side][-1] for name in lane.follows if name in known)
+    after = _mean(known[name][side][0] for name in lane.leads_to if name in known)
+    start = before if before is not None else after
+    end = after if after is not None else before
+    if start is None or end is None:
+        return np.full(len(own), USUAL_HALF_M)
+    between: Widths = start + (end - start) * along / along[-1]
+    return between
+
+
+def _mean(values: Iterable[float]) -> float | None:
+    found = [value for value in values if not np.isnan(value)]
+    return float(np.mean(found)) if found else None

@@ -1,0 +1,1 @@
+"""Waymo's motion data, read as recordings, without TensorFlow."""
