@@ -106,6 +106,11 @@ class ObservedLight:
         return self.colours.get(step, "")
 
 
+def is_there(light: Light | ObservedLight) -> bool:
+    """False if the file does not tell whether there is such a light."""
+    return isinstance(light, Light) or light.seen
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lanelet:
     """A piece of a lane, with its bounds in the direction of travel.

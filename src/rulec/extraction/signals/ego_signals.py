@@ -54,6 +54,8 @@ def ego_signals(context: DriveContext) -> SignalColumns:
             "can_stop_at_once": abs(speed - slow) < error,
             "straddling": unsure,
             "lane": lane != _from_kerb(context, context.ego_lane),
+            # A file may know of vehicles no more than that they are some
+            "ego_type": np.full(count, participant.type == "vehicle"),
         },
         bounds={"speed": speed_bounds(context)},
     )

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from rulec.extraction.tracks.driven_road import junction_lanelets
-from rulec.recordings.recording import Lanelet, Points, Recording
+from rulec.recordings.recording import Lanelet, Points, Recording, is_there
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import lanelet_area
 
@@ -165,7 +165,7 @@ def junctions_of(recording: Recording) -> tuple[Junction, ...]:
     for name, lanelets in members.items():
         ways = tuple(_ways({lanelet.id: lanelet for lanelet in lanelets}))
         regulated = _regulated(recording, lanelets, ways)
-        if regulated is None and told:
+        if regulated is None and told and not _may_be_lit(recording, ways):
             regulated = False
         junctions.append(Junction(name, ways, regulated))
     return tuple(junctions)
@@ -223,8 +223,17 @@ def _regulated(
     if any(lanelet.first is not None for lanelet in lanelets):
         return True
     entries = [entry for way in ways for entry in approaches(recording, way)]
-    signed = any(entry.signs & _REGULATING or entry.lights for entry in (*entries, *lanelets))
+    signed = any(
+        entry.signs & _REGULATING or any(map(is_there, entry.lights))
+        for entry in (*entries, *lanelets)
+    )
     return True if signed else None
+
+
+def _may_be_lit(recording: Recording, ways: tuple[JunctionWay, ...]) -> bool:
+    """True if there may be lights at a junction that nobody saw."""
+    entries = [entry for way in ways for entry in approaches(recording, way)]
+    return any(not is_there(light) for entry in entries for light in entry.lights)
 
 
 def approaches(recording: Recording, way: JunctionWay) -> list[Lanelet]:

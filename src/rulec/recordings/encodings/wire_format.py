@@ -105,7 +105,7 @@ class WireFormat:
 
 @dataclass(slots=True)
 class WireFile:
-    """A file's bytes, or those of a part that begins at a byte. Its methods raise RulecError R0610."""
+    """A file's bytes, or those from its byte ``begin`` on. Its methods raise RulecError R0610."""
 
     data: bytes
     path: Path

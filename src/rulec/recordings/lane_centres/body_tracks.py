@@ -11,6 +11,12 @@ from numpy.typing import NDArray
 from rulec.recordings.recording import Participant
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 
+BRIDGED_S = 0.55
+"""Who is lost from sight for no longer, half a second, is taken to move evenly meanwhile.
+
+At 3 m/s² that is wrong by 0.1 m at most.
+"""
+
 _CAR_LENGTHS_M = 3.4, 6.0
 _CAR_WIDTHS_M = 1.4, 2.5
 
@@ -23,6 +29,40 @@ class BoxTrack(NamedTuple):
     headings: NDArray[float64]
     velocities: NDArray[float64]
     sizes: NDArray[float64]
+
+
+def bridged(boxes: BoxTrack, step_s: float) -> BoxTrack:
+    """A track without gaps of up to ``BRIDGED_S``: places, headings and speeds change evenly."""
+    steps = boxes.steps
+    short = (np.diff(steps) > 1) & ((np.diff(steps) - 1) * step_s <= BRIDGED_S)
+    if not short.any():
+        return boxes
+    starts = np.flatnonzero(short)
+    more = [np.arange(steps[start] + 1, steps[start + 1]) for start in starts.tolist()]
+    every = np.union1d(steps, np.concatenate(more))
+    measured = np.isin(every, steps)
+
+    def filled(values: NDArray[float64]) -> NDArray[float64]:
+        columns = [np.interp(every, steps, column) for column in values.T]
+        table: NDArray[float64] = np.column_stack(columns)
+        # What is measured stays as it is, to the last bit
+        table[measured] = values
+        return table
+
+    headings = filled(np.unwrap(boxes.headings)[:, None])[:, 0]
+    headings = (headings + np.pi) % (2 * np.pi) - np.pi
+    headings[measured] = boxes.headings
+    return BoxTrack(
+        every, filled(boxes.centres), headings, filled(boxes.velocities), filled(boxes.sizes)
+    )
+
+
+def gaps_remark(bridged_states: int) -> tuple[str, ...]:
+    """What a recording says of the states that were bridged."""
+    if not bridged_states:
+        return ()
+    lost = "bodies that are lost for half a second or less are taken to move evenly meanwhile"
+    return (f"{lost}: {bridged_states:,} states",)
 
 
 def participant(name: str, kind: str, boxes: BoxTrack, step_s: float) -> Participant:

@@ -79,7 +79,7 @@ class LaneLight:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoadFeatures:
-    """All of a road: lanes, lines and edges, crosswalks, by id; lanes with stop signs and lights."""
+    """All of a road: lanes, lines and edges, and crosswalks by id; where lights and signs are."""
 
     __repr__ = short_repr
 

@@ -15,7 +15,7 @@ from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.tfrecord import TfRecord, tfrecords
 from rulec.recordings.encodings.wire_format import WireFile, WireFormat
 from rulec.recordings.encodings.xml_element import short
-from rulec.recordings.lane_centres.body_tracks import BoxTrack, participant
+from rulec.recordings.lane_centres.body_tracks import BoxTrack, bridged, gaps_remark, participant
 from rulec.recordings.lane_centres.centre_lanelets import centre_lanelets
 from rulec.recordings.lane_centres.even_steps import even_steps
 from rulec.recordings.lane_centres.road_features import RoadFeatures
@@ -66,7 +66,7 @@ def _read(
 
 
 def waymo_ids(path: Path) -> Iterator[str]:
-    """The ids of the scenarios in a file, without those of broken records. Raises RulecError R0701."""
+    """The ids of the scenarios in a file, but for broken records. Raises RulecError R0701."""
     for record in tfrecords(path, WAYMO):
         if isinstance(record, TfRecord):
             with suppress(RulecError):
@@ -135,14 +135,17 @@ def _scenario(file: WireFile, record: TfRecord) -> Recording:
     if content.sdc is not None and not 0 <= content.sdc < len(ids):
         raise file.wrong(f"`sdc_track_index` is {content.sdc} of {len(ids)} tracks", 0)
     ego = "" if content.sdc is None else content.bodies[content.sdc].id
+    participants = tuple(_participant(body, steps, step_s, file) for body in there)
+    states = sum(len(body.states) for body in participants)
     return Recording(
         name=_id(file, record),
         step_s=step_s,
         lanelets=centre_lanelets(content.features, has_lights=True),
-        participants=tuple(_participant(body, steps, step_s, file) for body in there),
+        participants=participants,
         problems=(),
         form="Waymo scenario",
         side="right",
+        remarks=gaps_remark(states - sum(len(body.numbers) for body in there)),
         country="USA",
         ego=ego,
     )
@@ -172,4 +175,4 @@ def _participant(body: _Body, steps: NDArray[int64], step_s: float, file: WireFi
         raise file.wrong(f"track {body.id} has more states than there are times", body.place)
     rows = body.rows
     boxes = BoxTrack(steps[body.numbers], rows[:, :2], rows[:, 2], rows[:, 3:5], rows[:, 5:])
-    return participant(body.id, body.type, boxes, step_s)
+    return participant(body.id, body.type, bridged(boxes, step_s), step_s)

@@ -16,6 +16,7 @@ from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.recordings.recording import is_there
 from rulec.scenario.recorded.lane_coordinates import crossings_along
 
 _LIGHTS_AT_CROSSING_M = 30.0
@@ -42,7 +43,7 @@ def zone_signals(context: DriveContext) -> SignalColumns:
         # Those of a net have gates that close while a train comes
         world |= {"level_crossing_zone": zone, "enters_level_crossing": enters, "guarded": zone}
         world["tracks_at_kerb"] = _tracks_at_kerb(context)
-    world["crossing_kind"] = _crossing_kinds(context)
+    world["crossing_kind"], unknown["crossing_kind"] = _crossing_kinds(context)
     places = [*context.road.junctions, *context.road.crossings, *rails]
     world["exit_clear"], unknown["exit_clear"] = _exit_clear(context, places)
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
@@ -69,8 +70,11 @@ def _tracks_at_kerb(context: DriveContext) -> Flags:
     return np.array(flags)[context.road.piece(context.ego_extents.s[0])]
 
 
-def _crossing_kinds(context: DriveContext) -> SignalColumn:
-    """The kind of the crossing ahead: ``directed_crossing`` by a light of its own or ego's."""
+def _crossing_kinds(context: DriveContext) -> tuple[SignalColumn, Flags]:
+    """The kind of the crossing ahead: ``directed_crossing`` by a light of its own or ego's.
+
+    It is unknown where there may be a light that nobody saw.
+    """
     road = context.road
     walkers = {
         name: lanelet
@@ -82,7 +86,8 @@ def _crossing_kinds(context: DriveContext) -> SignalColumn:
         start for start, _ in crossings_along(only, road.line, road.lanes, 0.0, road.line.length)
     ]
     # A net says itself which crossings have lights
-    lit = () if "light" in context.recording.complete else _directed_stretches(context)
+    told = "light" in context.recording.complete
+    lit, perhaps = (() if told else _directed_stretches(context, there) for there in (True, False))
     kinds = {
         start: "directed_crossing"
         if any(abs(start - other) < 1.0 for other in directed)
@@ -90,19 +95,28 @@ def _crossing_kinds(context: DriveContext) -> SignalColumn:
         else "zebra"
         for start, _ in road.crossings
     }
+    unsure = {
+        start: kind == "zebra" and any(low <= start <= high for low, high in perhaps)
+        for start, kind in kinds.items()
+    }
     start, _ = next_crossing(context)
-    return np.array([kinds.get(place, "zebra") for place in start.tolist()])
+    at = start.tolist()
+    return (
+        np.array([kinds.get(place, "zebra") for place in at]),
+        np.array([unsure.get(place, False) for place in at], dtype=bool),
+    )
 
 
-def _directed_stretches(context: DriveContext) -> Stretches:
+def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
     """From where to where on ego's road its lights direct those who cross, too.
 
     From shortly before a light's line on, up to the roads behind the junction that it stands at.
+    ``there``: of lights that are surely there, else of all others.
     """
     road, stretches = context.road, []
     for row, end in zip(road.rows, road.borders[1:].tolist(), strict=True):
         lit = [lanelet for lanelet in row if lanelet is not None and lanelet.lights]
-        if lit:
+        if lit and any(is_there(light) for lanelet in lit for light in lanelet.lights) == there:
             drawn = lit[0].stop_line
             place = np.nan
             if drawn is not None:
