@@ -32,6 +32,9 @@ WAYMO = WireFormat(
 MOST_STATES = 2_000_000
 """In a scenario; Waymo's have 200 times 200."""
 
+SIGNS_DRAWN = frozenset({"STOP"})
+"""Maps have all stop signs, and no other ones."""
+
 _STATE = ("center_x", "center_y", "heading", "velocity_x", "velocity_y", "length", "width")
 
 
@@ -147,6 +150,7 @@ def _scenario(file: WireFile, record: TfRecord) -> Recording:
         side="right",
         remarks=gaps_remark(states - sum(len(body.numbers) for body in there)),
         country="USA",
+        complete=SIGNS_DRAWN,
         ego=ego,
     )
 
