@@ -46,10 +46,19 @@ _SUMO_ONLY = frozenset(
     )
 )
 
+_NOT_BY_LANE_CENTRES = frozenset(
+    (
+        *("give_way_sign", "on_priority_road", "turn_on_red_sign", "lane_kind"),
+        *("indicator", "warning_lights"),
+    )
+)
+"""Other signs than to stop, lamps, and kinds of lanes of a motorway."""
+
 TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "commonroad": _EITHER | _COMMONROAD_ONLY,
     "commonroad-protobuf": _EITHER | _COMMONROAD_ONLY,
     "sumo": _EITHER | _SUMO_ONLY,
+    "waymo": _EITHER - _NOT_BY_LANE_CENTRES,
 }
 """Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""
 

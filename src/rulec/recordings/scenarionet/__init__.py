@@ -1,1 +1,0 @@
-"""ScenarioNet's scenarios, read as recordings, without unpickling what might run."""
