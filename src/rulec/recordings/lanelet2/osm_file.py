@@ -33,6 +33,7 @@ type subtype location region one_way turn_direction speed_limit speed_limit_mand
 intersection_area lane_change lane_change:left lane_change:right sign_type dynamic
 """
 _KEPT_KEYS = frozenset(_KEPT.split())
+_PLACE_KEYS = ("local_x", "local_y")
 _KEPT_PREFIXES = ("participant:", "one_way:", "speed_limit:")
 
 
@@ -141,22 +142,24 @@ class _Scan:
         return None
 
     def _add(self, element: XmlElement, owner: OsmNode | OsmWay | OsmRelation) -> None:
-        match owner, element.name:
-            case OsmNode(), "tag":
-                if (key := element.get("k")) in ("local_x", "local_y") and element.get("v"):
-                    setattr(owner, key, element.as_number(key, element.get("v")))
-            case OsmWay() | OsmRelation(), "tag":
-                key, value = element.get("k"), element.get("v")
-                kept = key in _KEPT_KEYS or key.startswith(_KEPT_PREFIXES)
-                if kept and len(owner.tags) < _MOST_TAGS and len(key) + len(value) < _LONGEST_TAG:
-                    owner.tags[key] = value.strip()
-            case OsmWay(), "nd":
-                self._count(element)
-                owner.refs.append(_id(element, "ref"))
-            case OsmRelation(), "member":
-                self._count(element)
-                member = Member(element.get("type"), _id(element, "ref"), element.get("role"))
-                owner.members.append(member)
+        # A large map has a million of these
+        name = element.name
+        if name == "nd" and isinstance(owner, OsmWay):
+            self._count(element)
+            owner.refs.append(_id(element, "ref"))
+        elif name == "member" and isinstance(owner, OsmRelation):
+            self._count(element)
+            member = Member(element.get("type"), _id(element, "ref"), element.get("role"))
+            owner.members.append(member)
+        elif name == "tag":
+            key, value = element.get("k"), element.get("v")
+            if isinstance(owner, OsmNode):
+                if key in _PLACE_KEYS and value:
+                    setattr(owner, key, element.as_number(key, value))
+            elif (key in _KEPT_KEYS or key.startswith(_KEPT_PREFIXES)) and (
+                len(owner.tags) < _MOST_TAGS and len(key) + len(value) < _LONGEST_TAG
+            ):
+                owner.tags[key] = value.strip()
 
     def _count(self, element: XmlElement) -> None:
         self.references += 1

@@ -37,8 +37,8 @@ def sign_of(kind: str) -> Sign:
     if (limit := _GERMAN_LIMIT.match(kind)) is not None and int(limit[1]) > 1:
         return Sign(MAX_SPEED, int(limit[1]) / 3.6)
     country, number = sign_parts(kind)
-    if (country, number) in _MORE_SIGNS:
-        return Sign(_MORE_SIGNS[country, number])
+    if (more := _MORE_SIGNS.get((country, number.upper()))) is not None:
+        return Sign(more)
     if country and country not in _TABLES:
         return Sign(UNKNOWN)
     if country:
