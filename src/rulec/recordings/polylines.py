@@ -5,8 +5,13 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
 
 from rulec.recordings.recording import Points
+
+_SHARPEST = 0.5
+"""Where the line turns back on itself its border would run away; so far it may, at most."""
 
 
 def without_repeats(points: Points, closest_m: float) -> Points:
@@ -25,3 +30,19 @@ def densified(points: Points, every_m: float) -> Points:
         count = max(1, int(np.ceil(np.hypot(*(end - start)) / every_m)))
         parts.append(start + (end - start) * (np.arange(1, count + 1) / count)[:, None])
     return np.concatenate(parts)
+
+
+def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:
+    """The parallel of a line of two or more different points, at a distance to the left.
+
+    ``offset``: that distance, one for the line or one for each point.
+    """
+    ahead = np.diff(points, axis=0)
+    ahead /= np.hypot(*ahead.T)[:, None]
+    across = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
+    before = np.concatenate((across[:1], across))
+    after = np.concatenate((across, across[-1:]))
+    # Both pieces' parallels meet on the line that halves the angle between them
+    stretch = np.maximum(1.0 + (before * after).sum(axis=1), _SHARPEST)
+    line: Points = points + np.reshape(offset, (-1, 1)) * (before + after) / stretch[:, None]
+    return line

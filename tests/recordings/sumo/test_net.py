@@ -5,8 +5,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from rulec.recordings.polylines import parallel_line
 from rulec.recordings.recording import Light
-from rulec.recordings.sumo.lanelets import net_lanelets, parallel_line
+from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.net import read_net
 from rulec.scenario.recorded.reference_line import without_repeats
 from support.builders.sumo_files import ROAD_NET

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from rulec.recordings.polylines import without_repeats
+from rulec.recordings.polylines import parallel_line, without_repeats
 from rulec.recordings.recording import Lanelet, LaneMark, Points
 from rulec.recordings.sumo.lane_kinds import lane_kinds
 from rulec.recordings.sumo.net import NetConnection, NetEdge, NetLane, SumoNet
@@ -41,8 +41,6 @@ _ROUNDED_KMH = 0.02
 _GIVES_WAY = "m"
 _ARMS = 3
 _CLOSEST_M = 0.01
-_SHARPEST = 0.5
-"""Where the line turns back on itself its border would run away; so far it may, at most."""
 
 
 def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
@@ -113,19 +111,6 @@ def _lines(lane: NetLane, shape: Points) -> tuple[Points, Points, Points]:
         right, left = _resampled(right, count), _resampled(left, count)
         return left, right, (left + right) / 2
     return parallel_line(shape, lane.width / 2), parallel_line(shape, -lane.width / 2), shape
-
-
-def parallel_line(points: Points, offset: float) -> Points:
-    """The parallel of a line of two or more different points, at a distance to the left."""
-    ahead = np.diff(points, axis=0)
-    ahead /= np.hypot(*ahead.T)[:, None]
-    across = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
-    before = np.concatenate((across[:1], across))
-    after = np.concatenate((across, across[-1:]))
-    # Both pieces' parallels meet on the line that halves the angle between them
-    stretch = np.maximum(1.0 + (before * after).sum(axis=1), _SHARPEST)
-    line: Points = points + offset * (before + after) / stretch[:, None]
-    return line
 
 
 def _resampled(points: Points, count: int) -> Points:
