@@ -83,12 +83,21 @@ if TYPE_CHECKING:
     from rulec.planning.ranking.homotopy import HomotopyClasses as HomotopyClasses
     from rulec.planning.ranking.homotopy import Variant as Variant
     from rulec.planning.ranking.penalties import PenaltyRank as PenaltyRank
+    from rulec.recordings.building import build_lanelet as build_lanelet
+    from rulec.recordings.building import build_participant as build_participant
+    from rulec.recordings.building import build_recording as build_recording
+    from rulec.recordings.map_files import read_map as read_map
     from rulec.recordings.recording import Lanelet as Lanelet
+    from rulec.recordings.recording import Light as Light
+    from rulec.recordings.recording import ObservedLight as ObservedLight
     from rulec.recordings.recording import Participant as Participant
     from rulec.recordings.recording import PlanningProblem as PlanningProblem
     from rulec.recordings.recording import Recording as Recording
     from rulec.recordings.recording import TrackState as TrackState
+    from rulec.recordings.recording import Weather as Weather
     from rulec.recordings.recording_format import RecordingSource as RecordingSource
+    from rulec.recordings.road_map import RoadMap as RoadMap
+    from rulec.recordings.tracks.track_table import recording_from_columns as recording_from_columns
     from rulec.report.recordings.format_listing import ListedFormat as ListedFormat
     from rulec.report.text.listing import Listed as Listed
     from rulec.rulebook.batch.batch_check import Checked as Checked
@@ -153,8 +162,14 @@ _HOME = {
     "rulec.rulebook.batch.batch_check": "Checked",
     "rulec.rulebook.rulebook_model": "Example Rule Rulebook Variable",
     "rulec.scenario": "Choice Scenario",
-    "rulec.recordings.recording": "Lanelet Participant PlanningProblem Recording TrackState",
+    "rulec.recordings.building": "build_lanelet build_participant build_recording",
+    "rulec.recordings.map_files": "read_map",
+    "rulec.recordings.recording": (
+        "Lanelet Light ObservedLight Participant PlanningProblem Recording TrackState Weather"
+    ),
     "rulec.recordings.recording_format": "RecordingSource",
+    "rulec.recordings.road_map": "RoadMap",
+    "rulec.recordings.tracks.track_table": "recording_from_columns",
     "rulec.trace": "Trace TraceGraph",
     "rulec.trace.trace_columns": "TraceCells TraceColumns layout_of",
     "rulec.vocabulary": "Vocabulary",

@@ -60,6 +60,7 @@ USUAL_ROUNDING = Rounding(0.01, 0.01)
 
 _BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
     {
+        "NGSIM tracks": NGSIM,
         "Waymo scenario": AUTO_LABELS,
         "ScenarioNet scenario": KEYFRAMES,
         "ScenarioNet scenario of Waymo": AUTO_LABELS,

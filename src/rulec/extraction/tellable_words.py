@@ -53,12 +53,22 @@ _NOT_BY_LANE_CENTRES = frozenset(
     )
 )
 """Other signs than to stop, lamps, and kinds of lanes of a motorway."""
+_ON_ANY_MAP = frozenset(
+    (
+        *("no_overtaking_sign", "no_turn_on_red_sign", "conflict_with_rail"),
+        *("enters_level_crossing", "guarded", "level_crossing_zone", "tracks_at_kerb", "tunnel"),
+    )
+)
+"""Tables take nets of SUMO's, too, which have every sign and track."""
 
 TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "commonroad": _EITHER | _COMMONROAD_ONLY,
     "commonroad-protobuf": _EITHER | _COMMONROAD_ONLY,
     "sumo": _EITHER | _SUMO_ONLY,
     "waymo": _EITHER - _NOT_BY_LANE_CENTRES,
+    "tracks": _EITHER | _ON_ANY_MAP | {"boarding", "leaving_stop"},
+    **dict.fromkeys(("levelx", "interaction", "ngsim", "omega-prime"), _EITHER | _ON_ANY_MAP),
+    "highd": _EITHER,
 }
 """Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""
 

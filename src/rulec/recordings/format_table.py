@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rulec.recordings import table_heads as heads
 from rulec.recordings.recording_format import Glance, RecordingFormat, RecordingSource
 
 if TYPE_CHECKING:
@@ -56,6 +57,48 @@ def _is_protobuf(glance: Glance) -> bool:
     return glance.name.endswith(".pb")
 
 
+def _tracks(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.tracks.track_table import read_track_table
+
+    return read_track_table(source)
+
+
+def _highd(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.tracks.levelx import read_highd
+
+    return read_highd(source)
+
+
+def _levelx(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.tracks.levelx import read_levelx
+
+    return read_levelx(source)
+
+
+def _interaction(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.tracks.interaction import read_interaction
+
+    return read_interaction(source)
+
+
+def _ngsim(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.tracks.ngsim import read_ngsim
+
+    return read_ngsim(source)
+
+
+def _omega_prime(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.tracks.omega_prime import read_omega_prime
+
+    return read_omega_prime(source)
+
+
 FORMATS = (
     RecordingFormat(
         name="commonroad",
@@ -86,5 +129,52 @@ FORMATS = (
         recognises=_is_waymo,
         read=_waymo,
         names=_waymo_ids,
+    ),
+    RecordingFormat(
+        name="highd",
+        title="highD",
+        files="*_tracks.csv, with *_tracksMeta.csv and *_recordingMeta.csv",
+        recognises=lambda glance: heads.is_highd_head(heads.head_of(glance)),
+        read=_highd,
+    ),
+    RecordingFormat(
+        name="levelx",
+        title="inD, rounD, exiD and uniD, on their maps",
+        files="*_tracks.csv, with *_tracksMeta.csv and *_recordingMeta.csv",
+        recognises=lambda glance: heads.is_levelx_head(heads.head_of(glance)),
+        read=_levelx,
+        takes_map=True,
+    ),
+    RecordingFormat(
+        name="interaction",
+        title="INTERACTION, on its maps",
+        files="vehicle_tracks_*.csv, pedestrian_tracks_*.csv",
+        recognises=lambda glance: heads.is_interaction_head(heads.head_of(glance)),
+        read=_interaction,
+        takes_map=True,
+    ),
+    RecordingFormat(
+        name="ngsim",
+        title="NGSIM's trajectories, on lanes as a table",
+        files="trajectories-*.txt, *.csv",
+        recognises=lambda glance: heads.is_ngsim_head(heads.head_of(glance)),
+        read=_ngsim,
+        takes_map=True,
+    ),
+    RecordingFormat(
+        name="omega-prime",
+        title="tracks in OMEGA-PRIME's columns, on any map",
+        files="*.csv, *.parquet",
+        recognises=lambda glance: heads.is_omega_prime_head(heads.head_of(glance)),
+        read=_omega_prime,
+        takes_map=True,
+    ),
+    RecordingFormat(
+        name="tracks",
+        title="tracks as a table, on any map",
+        files="*.csv, *.parquet",
+        recognises=lambda glance: heads.is_track_head(heads.head_of(glance)),
+        read=_tracks,
+        takes_map=True,
     ),
 )

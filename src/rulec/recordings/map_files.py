@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rulec.recordings import table_heads as heads
 from rulec.recordings.encodings.xml_element import XmlFormat, short
 from rulec.recordings.recording_format import Glance
 
@@ -48,6 +49,13 @@ def _lanelet2(path: Path, _: float) -> RoadMap:
     return read_lanelet2(path)
 
 
+def _lanes(path: Path, step_s: float) -> RoadMap:  # noqa: ARG001 - lanes have no lights
+    # As above.
+    from rulec.recordings.lanes.lane_table import read_lane_map
+
+    return read_lane_map(path)
+
+
 MAP_FORMATS = (
     MapFormat("sumo", "nets of SUMO's", "*.net.xml", lambda glance: glance.root == "net", _sumo),
     MapFormat(
@@ -58,6 +66,13 @@ MAP_FORMATS = (
         _commonroad,
     ),
     MapFormat("lanelet2", "Lanelet2 maps", "*.osm", lambda glance: glance.root == "osm", _lanelet2),
+    MapFormat(
+        "lanes",
+        "lanes as a table",
+        "*.csv, *.parquet",
+        lambda glance: heads.is_lane_head(heads.head_of(glance)),
+        _lanes,
+    ),
 )
 
 

@@ -83,10 +83,11 @@ END
 """
 NET_MISSING = Code(
     "R0614",
-    title="floating-car data of SUMO's have no net",
-    why="They say where everybody was, but not where the roads are; that is in SUMO's net. Without "
-    "`--map` it is the one that a comment at the head of the data names, or the only file "
-    "`*.net.xml` in the same folder.",
+    title="recorded traffic without roads of its own has no map",
+    why="Floating-car data of SUMO's and tracks as a table say where everybody was, but not where "
+    "the roads are; that is in a map, such as SUMO's net. Without `--map` it is the net that a "
+    "comment at the head of SUMO's data names, or the only file `*.net.xml` in the same folder; "
+    "for a table `NAME.csv` the lanes in `NAME.lanes.csv`, or in `lanes.csv`.",
     bad=_FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
     good=_NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
     kind="command",
@@ -94,10 +95,21 @@ NET_MISSING = Code(
 
 OTHER_NET = Code(
     "R0615",
-    title="floating-car data of SUMO's and the net do not belong together",
-    why="All lanes and edges that the data name are in the net that they were made with, and "
-    "everybody is near its roads. Data with geographic coordinates cannot be used.",
+    title="recorded traffic and the map do not belong together",
+    why="All lanes and edges that SUMO's data name are in the net that they were made with, and "
+    "everybody is near its roads. Tracks as a table are in the frame of their map, x and y in "
+    "metres. Data with geographic coordinates cannot be used.",
     bad=_NET.replace("east", "west") + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
     good=_NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
     kind="command",
+)
+
+NOT_BUILT = Code(
+    "R0617",
+    title="a recording that a program builds makes no sense",
+    why="Lanelets and participants have arrays of the right shapes, finite numbers, ids that occur "
+    "once, and refer to others that are there. All that is wrong is said at once.",
+    bad="import rulec\n\nrulec.build_lanelet('east', [(0, 0)], width=3.5)\n",
+    good="import rulec\n\nrulec.build_lanelet('east', [(0, 0), (100, 0)], width=3.5)\n",
+    kind="python",
 )

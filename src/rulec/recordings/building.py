@@ -1,0 +1,411 @@
+"""Recordings that programs build: lanelets, participants, and whether all of it fits together.
+
+What is wrong with one is a RulecError R0617, all of it at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import cast, get_args
+
+import numpy as np
+from numpy import float64
+from numpy.typing import ArrayLike, NDArray
+
+from rulec.diagnostics import Diagnostic, RulecError, did_you_mean, named
+from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.lanes.lanes_along import (
+    CLOSEST_M,
+    LANE_TYPES,
+    USUAL_WIDTH_M,
+    lanelet_along,
+    linked,
+)
+from rulec.recordings.polylines import without_repeats
+from rulec.recordings.recording import (
+    LONGEST_M,
+    MOST_STEPS,
+    OBSTACLE_TYPES,
+    Lamp,
+    Lanelet,
+    LaneMark,
+    Light,
+    ObservedLight,
+    Participant,
+    Points,
+    Recording,
+    Side,
+)
+from rulec.recordings.recording_messages import NOT_BUILT
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.tracks import derived_motion as motion
+from rulec.recordings.tracks.road_user_types import usual_size
+
+_OFF_STEP = 0.02
+_MOST_SHOWN = 20
+
+COMPLETE = frozenset(
+    {"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout", "lanes"}
+    | {"officer", "arrivals"}
+)
+"""Kinds of things that a recording can be said to have all of."""
+
+
+class _Checks:
+    """What is wrong with a thing that is built, all of which is said together."""
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+        self.found: list[Diagnostic] = []
+
+    def wrong(self, why: str, expected: str = "", help_text: str = "") -> None:
+        said = f"{self.what}: {why}"
+        self.found.append(NOT_BUILT.at(None, said, expected=expected, help=help_text))
+
+    def raise_found(self) -> None:
+        if self.found:
+            raise RulecError(self.found[:_MOST_SHOWN])
+
+    def numbers(self, name: str, values: ArrayLike, count: int | None = None) -> NDArray[float64]:
+        """Finite numbers in a row, as many as there have to be; zeros where that is not so."""
+        try:
+            found = np.array(values, dtype=float)
+        except (TypeError, ValueError):
+            found = np.full(0, np.nan)
+            self.wrong(f"`{name}` holds something that is no number", "expected a row of numbers")
+            return np.zeros(count or 1)
+        if found.ndim == 0 and count is not None:
+            found = np.full(count, found)
+        if found.ndim != 1 or (count is not None and len(found) != count):
+            size = "one number" if found.ndim == 0 else f"an array of shape {found.shape}"
+            many = "" if count is None else f"{count:,} "
+            self.wrong(f"`{name}` is {size}", f"expected a row of {many}numbers")
+            return np.zeros(count or 1)
+        self._bounded(name, found)
+        return found
+
+    def points(self, name: str, values: ArrayLike) -> Points:
+        """Two points or more; a line of two where that is not so."""
+        line = np.array([[0.0, 0.0], [1.0, 0.0]])
+        try:
+            found = np.array(values, dtype=float)
+        except (TypeError, ValueError):
+            self.wrong(f"`{name}` holds something that is no number", "expected points (x, y)")
+            return line
+        if found.ndim != 2 or found.shape[1] != 2 or len(found) < 2:
+            shape = f"an array of shape {found.shape}"
+            self.wrong(f"`{name}` is {shape}", "expected two points (x, y) or more in order")
+            return line
+        if not self._bounded(name, found):
+            return line
+        kept = without_repeats(found, CLOSEST_M)
+        if len(kept) < 2:
+            self.wrong(f"`{name}` has one place only", "expected two different points or more")
+            return line
+        length = float(np.hypot(*np.diff(kept, axis=0).T).sum())
+        if length > LONGEST_M:
+            self.wrong(f"`{name}` is {length:,.0f} m long", f"expected {LONGEST_M:,.0f} m at most")
+        return kept
+
+    def _bounded(self, name: str, found: NDArray[float64]) -> bool:
+        bad = ~(np.abs(found) < LARGEST)
+        if bad.any():
+            at = tuple(int(axis[0]) for axis in np.nonzero(bad))
+            place = ", ".join(map(str, at))
+            why = f"`{name}[{place}]` is {found[at]:g}"
+            self.wrong(why, f"expected a number below {LARGEST:.0e}")
+        return not bad.any()
+
+    def positive(self, name: str, value: float) -> float:
+        if not isinstance(value, int | float | np.number) or not 0 < value < LARGEST:
+            self.wrong(f"`{name}` is {value!r:.40}", "expected a number above 0")
+            return 1.0
+        return float(value)
+
+    def one_of(self, name: str, value: str, known: Collection[str]) -> None:
+        if value not in known:
+            some = named(sorted(known))
+            self.wrong(
+                f"`{name}` is `{value!s:.40}`", f"expected {some}", did_you_mean(str(value), known)
+            )
+
+
+def build_lanelet(
+    identifier: str | int,
+    centre: ArrayLike,
+    width: ArrayLike = USUAL_WIDTH_M,
+    *,
+    successors: Iterable[str | int] = (),
+    predecessors: Iterable[str | int] = (),
+    left_of: str | int | None = None,
+    right_of: str | int | None = None,
+    types: Iterable[str] = (),
+    signs: Iterable[str] = (),
+    limit_mps: float | None = None,
+    left_mark: LaneMark | None = None,
+    right_mark: LaneMark | None = None,
+    stop_line: ArrayLike | None = None,
+    lights: Iterable[Light | ObservedLight] = (),
+    junction: str = "",
+    foes: Iterable[str | int] | None = None,
+    first: Iterable[str | int] | None = None,
+) -> Lanelet:
+    """A lanelet along the points of its centre line (m), in the direction of travel.
+
+    ``width`` (m) is that of all, or one for each point. ``left_of`` and ``right_of`` are the ids of
+    the lanelets to its left and right that lead the same way; ``stop_line`` has two ends. All else
+    is as in a ``Lanelet``. Raises RulecError R0617, with all that is wrong.
+    """
+    name = str(identifier)
+    checks = _Checks(f"lanelet `{name:.40}`")
+    if not name:
+        checks.wrong("its id is empty")
+    points = checks.points("centre", centre)
+    widths = _widths(checks, width, centre, points)
+    kinds, drawn = frozenset(types), None
+    for kind in sorted(kinds - LANE_TYPES):
+        checks.one_of("types", kind, LANE_TYPES)
+    for side, mark in (("left_mark", left_mark), ("right_mark", right_mark)):
+        if mark is not None:
+            checks.one_of(side, mark, get_args(LaneMark))
+    if limit_mps is not None:
+        checks.positive("limit_mps", limit_mps)
+    if stop_line is not None:
+        drawn = checks.points("stop_line", stop_line)
+    checks.raise_found()
+    return lanelet_along(
+        name,
+        points,
+        widths,
+        successors=tuple(map(str, successors)),
+        predecessors=tuple(map(str, predecessors)),
+        left_of=None if left_of is None else str(left_of),
+        right_of=None if right_of is None else str(right_of),
+        types=kinds | ({"intersection"} if junction else set()),
+        signs=frozenset(signs),
+        limit_mps=limit_mps,
+        left_mark=left_mark,
+        right_mark=right_mark,
+        stop_line=drawn,
+        lights=tuple(lights),
+        junction=junction,
+        foes=None if foes is None else frozenset(map(str, foes)),
+        first=None if first is None else frozenset(map(str, first)),
+    )
+
+
+def _widths(
+    checks: _Checks, width: ArrayLike, centre: ArrayLike, kept: Points
+) -> NDArray[float64] | float:
+    if np.ndim(width) == 0:
+        return checks.positive("width", cast("float", width))
+    if checks.found:
+        return 1.0
+    given = np.array(centre, dtype=float)
+    widths = checks.numbers("width", width, len(given))
+    if not (widths > 0).all():
+        checks.wrong(f"`width[{int(np.argmin(widths))}]` is {widths.min():g}", "expected above 0")
+    first = [int(np.argmax((given == point).all(axis=1))) for point in kept]
+    found: NDArray[float64] = widths[first]
+    return found
+
+
+def build_participant(
+    identifier: str | int,
+    kind: str,
+    t: ArrayLike,
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    step_s: float,
+    heading: ArrayLike | None = None,
+    speed: ArrayLike | None = None,
+    acceleration: ArrayLike | None = None,
+    length: float | None = None,
+    width: float | None = None,
+    standing: bool = False,
+    lamps: Mapping[Lamp, Sequence[bool]] | None = None,
+) -> Participant:
+    """A participant from its track: times (s), the places of its middle (m), one step apart.
+
+    ``kind`` is CommonRoad's type of obstacles, such as ``car``. Headings are radians,
+    counter-clockwise from the x axis, speeds m/s along them: what is not given is taken from
+    places, sizes (m) are then usual ones. ``standing``: it is there all the time where it is first.
+    ``lamps``: for each that is known of, whether it is lit at each time. Raises RulecError R0617,
+    with all that is wrong.
+    """
+    name = str(identifier)
+    checks = _Checks(f"participant `{name:.40}`")
+    if not name:
+        checks.wrong("its id is empty")
+    checks.one_of("kind", kind, OBSTACLE_TYPES)
+    step_s = checks.positive("step_s", step_s)
+    times = checks.numbers("t", t)
+    count = len(times)
+    if not count:
+        checks.wrong("it has no states", "expected one time or more")
+    places = np.column_stack((checks.numbers("x", x, count), checks.numbers("y", y, count)))
+    given = {"heading": heading, "speed": speed, "acceleration": acceleration}
+    stated = {
+        what: checks.numbers(what, values, count)
+        for what, values in given.items()
+        if values is not None
+    }
+    usual = usual_size(kind)
+    size = [
+        checks.positive(what, value) if value is not None else usual[at]
+        for at, (what, value) in enumerate((("length", length), ("width", width)))
+    ]
+    steps = _steps(checks, times, step_s)
+    lit = _lit(checks, lamps or {}, steps)
+    checks.raise_found()
+    if "heading" not in stated:
+        derived = motion.headings_of(places)
+        stated["heading"] = np.zeros(count) if derived is None else derived
+    turned = motion.wrapped(stated["heading"])
+    moved = motion.along(motion.velocities_of(places, step_s), turned)
+    speeds = stated.get("speed", moved)
+    gained = stated.get("acceleration", motion.accelerations_of(speeds, step_s))
+    track = Track(steps, np.column_stack((places, turned, speeds, gained)), size[0], size[1])
+    return Participant(
+        id=name,
+        type=kind,
+        standing=standing,
+        states=TrackStates(track),
+        outlines=TrackOutlines(track),
+        lamps=lit,
+        shows=frozenset(lamps or ()),
+    )
+
+
+def _steps(checks: _Checks, times: NDArray[float64], step_s: float) -> NDArray[np.int64]:
+    steps = np.round(times / step_s).astype(np.int64)
+    off = np.abs(times - steps * step_s) > _OFF_STEP * step_s
+    gaps = np.diff(steps) != 1
+    if off.any():
+        at = int(np.argmax(off))
+        why = f"`t[{at}]` is {times[at]:g}, which is no whole number of steps of {step_s:g} s"
+        checks.wrong(why, help_text="resample it to even steps")
+    elif gaps.any():
+        at = int(np.argmax(gaps))
+        why = f"`t[{at + 1}]` is {times[at + 1]:g}, and `t[{at}]` {times[at]:g}"
+        way_out = "build another participant for when it comes back"
+        checks.wrong(why, f"expected one step of {step_s:g} s from each to the next", way_out)
+    if len(steps) > MOST_STEPS:
+        checks.wrong(f"it has {len(steps):,} states", f"expected {MOST_STEPS:,} at most")
+    return steps
+
+
+def _lit(
+    checks: _Checks, lamps: Mapping[Lamp, Sequence[bool]], steps: NDArray[np.int64]
+) -> dict[int, frozenset[Lamp]]:
+    for name, values in lamps.items():
+        checks.one_of("lamps", name, get_args(Lamp))
+        if len(values) != len(steps):
+            checks.wrong(
+                f"`lamps[{name!r}]` has {len(values):,} values", f"expected {len(steps):,}"
+            )
+            return {}
+    if not lamps:
+        return {}
+    return {
+        int(step): frozenset(name for name, values in lamps.items() if values[at])
+        for at, step in enumerate(steps.tolist())
+    }
+
+
+def build_recording(
+    lanelets: Iterable[Lanelet],
+    participants: Iterable[Participant],
+    *,
+    step_s: float,
+    name: str = "recording",
+    side: Side | None = None,
+    ego: str | int = "",
+    country: str = "",
+    complete: Collection[str] = (),
+) -> Recording:
+    """A recording of lanelets and participants, one time step being ``step_s`` seconds.
+
+    Predecessors follow from successors, and the reverse; so do neighbours. ``side`` is the one on
+    which traffic keeps, None if that is not known; ``complete`` names kinds of things that the
+    lanelets have all of, such as ``STOP`` for signs. Raises RulecError R0617, with all that is
+    wrong: shapes of arrays, numbers that are none, ids that are double or lead nowhere.
+    """
+    lanes, bodies = tuple(lanelets), tuple(participants)
+    checks = _Checks("the recording")
+    step_s = checks.positive("step_s", step_s)
+    if side is not None:
+        checks.one_of("side", side, get_args(Side))
+    for kind in sorted(set(complete) - COMPLETE):
+        checks.one_of("complete", kind, COMPLETE)
+    for what, ids in (
+        ("lanelets", [one.id for one in lanes]),
+        ("participants", [one.id for one in bodies]),
+    ):
+        if not ids:
+            checks.wrong(f"it has no {what}")
+        twice = (
+            sorted({one for one in ids if ids.count(one) > 1}) if len(set(ids)) < len(ids) else []
+        )
+        if twice:
+            checks.wrong(f"there are two {what} {named(twice)}", help_text="give each its own id")
+    known = {one.id: one for one in lanes}
+    for lanelet in lanes:
+        _check_lanelet(lanelet, known, checks)
+    for body in bodies:
+        _check_participant(body, checks)
+    if ego != "":
+        checks.one_of("ego", str(ego), [one.id for one in bodies])
+    checks.raise_found()
+    return Recording(
+        name=name,
+        step_s=step_s,
+        lanelets=linked(known),
+        participants=bodies,
+        problems=(),
+        form="recording",
+        side=side,
+        country=country,
+        complete=frozenset(complete),
+        ego=str(ego),
+    )
+
+
+def _check_lanelet(lanelet: Lanelet, known: Mapping[str, Lanelet], to: _Checks) -> None:
+    checks = _Checks(f"lanelet `{lanelet.id:.40}`")
+    for side in ("left", "right", "centre"):
+        checks.points(side, getattr(lanelet, side))
+    for what, ids in _references(lanelet):
+        for one in ids:
+            if one not in known:
+                why = f"`{what}` has `{one!s:.40}`, which is no lanelet of the recording"
+                checks.wrong(why, help_text=did_you_mean(str(one), known))
+    to.found += checks.found
+
+
+def _references(lanelet: Lanelet) -> Iterator[tuple[str, Iterable[str]]]:
+    yield "successors", lanelet.successors
+    yield "predecessors", lanelet.predecessors
+    yield "left_of", () if lanelet.left_of is None else (lanelet.left_of,)
+    yield "right_of", () if lanelet.right_of is None else (lanelet.right_of,)
+    yield "foes", sorted(lanelet.foes or ())
+    yield "first", sorted(lanelet.first or ())
+    yield "lights_to", lanelet.lights_to
+
+
+def _check_participant(body: Participant, to: _Checks) -> None:
+    checks = _Checks(f"participant `{body.id:.40}`")
+    checks.one_of("type", body.type, OBSTACLE_TYPES)
+    if not body.states:
+        checks.wrong("it has no states")
+    if missing := sorted(set(body.states) - set(body.outlines)):
+        checks.wrong(f"it has no outline at step {missing[0]}")
+    for step, state in body.states.items():
+        values = (state.x, state.y, state.heading, state.speed, state.acceleration)
+        if not all(abs(value) < LARGEST for value in values):
+            checks.wrong(f"at step {step} it is {state}", "expected finite numbers")
+            break
+    if body.standing and len(body.states) != 1:
+        checks.wrong(f"it stands, and has {len(body.states):,} states", "expected one")
+    to.found += checks.found

@@ -1,0 +1,44 @@
+"""The first line of a CSV: names of columns, and what stands between them."""
+
+from __future__ import annotations
+
+import zlib
+
+PARQUET = (".parquet", ".pq")
+"""How names of tables that are no CSV end."""
+
+PACKED = b"\x1f\x8b"
+LONGEST_LINE = 1 << 16
+_SEPARATORS = ",;\t"
+
+
+def names_in(head: bytes) -> tuple[str, ...]:
+    """The names in the first line of a CSV, in small letters; none if that is no text."""
+    if head.startswith(PACKED):
+        try:
+            head = zlib.decompressobj(zlib.MAX_WBITS | 16).decompress(head, LONGEST_LINE)
+        except zlib.error:
+            return ()
+    line = head.removeprefix(b"\xef\xbb\xbf").partition(b"\n")[0]
+    if b"\0" in line or line.lstrip()[:1] in (b"{", b"[", b"<"):
+        return ()
+    text = line.decode("utf-8", errors="replace").strip()
+    mark = separator_of(text)
+    cells = text.split() if mark == " " else text.split(mark)
+    return tuple(cell.strip().strip('"').casefold() for cell in cells)
+
+
+def separator_of(head: str) -> str:
+    """What stands between the names of columns; a blank where there is nothing else."""
+    counts = {mark: head.count(mark) for mark in _SEPARATORS}
+    most = max(_SEPARATORS, key=lambda mark: counts[mark])
+    return most if counts[most] else " "
+
+
+def is_number(text: str) -> bool:
+    """True if a text spells a number."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

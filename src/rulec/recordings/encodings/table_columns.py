@@ -1,0 +1,212 @@
+"""Columns of a table: numbers and texts as arrays, and what is wrong in a row of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy import bool_, float64, int64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import RulecError, nearest_name
+from rulec.recordings.encodings.xml_element import LARGEST, short
+from rulec.value_display import short_repr
+
+MOST_ROWS = 20_000_000
+"""All of NGSIM in one table has 12 million."""
+
+MOST_COLUMNS = 1000
+
+Floats = NDArray[float64]
+Refused = Callable[..., RulecError]
+"""Makes the error for a table: ``why``, the row's place or None, ``expected``, ``help_text``."""
+
+
+class Texts(NamedTuple):
+    """A column of texts: for each row a code, the place of its text among the ``names``."""
+
+    codes: NDArray[int64]
+    names: tuple[str, ...]
+
+    def groups(self) -> Iterator[tuple[str, NDArray[np.intp]]]:
+        """Each text that occurs, with the places of its rows."""
+        order = np.argsort(self.codes, kind="stable")
+        starts = np.flatnonzero(np.diff(self.codes[order], prepend=-1))
+        for start, end in zip(starts, [*starts[1:].tolist(), len(order)], strict=True):
+            yield self.names[int(self.codes[order[start]])], order[start:end]
+
+    def having(self, name: str) -> NDArray[bool_]:
+        """Flags of the rows with a text."""
+        code = self.names.index(name) if name in self.names else -1
+        flags: NDArray[bool_] = self.codes == code
+        return flags
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Columns:
+    """Columns that were read, by the names in the table's head; what is empty is NaN, or ``""``.
+
+    ``rows`` are the places of the rows, lines of a file for one.
+    """
+
+    __repr__ = short_repr
+
+    refused: Refused
+    numbers: Mapping[str, Floats]
+    texts: Mapping[str, Texts]
+    rows: NDArray[int64]
+
+    def wrong(self, row: int, why: str, expected: str = "", help_text: str = "") -> RulecError:
+        """The error for a row, counted from 0."""
+        place = int(self.rows[row])
+        return self.refused(why, place, expected=expected, help_text=help_text)
+
+    def part(self, chosen: NDArray[np.intp]) -> Columns:
+        """Some of the rows."""
+        return Columns(
+            self.refused,
+            {name: column[chosen] for name, column in self.numbers.items()},
+            {name: Texts(text.codes[chosen], text.names) for name, text in self.texts.items()},
+            self.rows[chosen],
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnTable:
+    """A table that can be read: the names of its columns, and the reader of some of them.
+
+    ``read`` takes the names of columns of numbers and of those of texts.
+    """
+
+    __repr__ = short_repr
+
+    names: tuple[str, ...]
+    refused: Refused
+    read: Callable[[Sequence[str], Sequence[str]], Columns]
+
+
+class ColumnKind(NamedTuple):
+    """A column that a table may have, and how it may be called: a name -> its unit in ours."""
+
+    name: str
+    also: Mapping[str, float]
+    is_text: bool = False
+    required: bool = False
+
+
+class NamedColumns(NamedTuple):
+    """Columns of a table by our names for them, in our units; names that nobody reads."""
+
+    columns: Columns
+    numbers: Mapping[str, Floats]
+    texts: Mapping[str, Texts]
+    unread: tuple[str, ...]
+
+    def number(self, name: str) -> Floats | None:
+        """A column of numbers, or None if the table has none."""
+        return self.numbers.get(name)
+
+    def part(self, chosen: NDArray[np.intp]) -> NamedColumns:
+        """Some of the rows."""
+        return NamedColumns(
+            self.columns.part(chosen),
+            {name: column[chosen] for name, column in self.numbers.items()},
+            {name: Texts(text.codes[chosen], text.names) for name, text in self.texts.items()},
+            self.unread,
+        )
+
+
+def named_columns(table: ColumnTable, kinds: Sequence[ColumnKind]) -> NamedColumns:
+    """Read the columns that we know, whatever they are called.
+
+    Raises RulecError for a required one that is missing or has empty cells, and for one that is
+    there twice.
+    """
+    ours = {alias: kind for kind in kinds for alias in (kind.name, *kind.also)}
+    found: dict[str, str] = {}
+    unread = []
+    for name in table.names:
+        kind = ours.get(name.strip().casefold())
+        if kind is None:
+            unread.append(name)
+        elif kind.name in found:
+            both = f"`{short(found[kind.name])}` and `{short(name)}`"
+            why = f"its columns {both} are both `{kind.name}`"
+            raise table.refused(why, help_text="keep one of them, or rename the other")
+        else:
+            found[kind.name] = name
+    for kind in kinds:
+        if kind.required and kind.name not in found:
+            raise _missing(table, kind, unread, [k.name for k in kinds if k.required])
+    by_name = {kind.name: kind for kind in kinds}
+    texts = [name for ours_, name in found.items() if by_name[ours_].is_text]
+    numbers = [name for ours_, name in found.items() if not by_name[ours_].is_text]
+    columns = table.read(numbers, texts)
+    read: dict[str, Floats] = {}
+    for own, name in found.items():
+        kind = by_name[own]
+        if not kind.is_text:
+            read[own] = columns.numbers[name] * kind.also.get(name.strip().casefold(), 1.0)
+        if kind.required:
+            _check_full(columns, name, kind)
+    return NamedColumns(
+        columns,
+        read,
+        {own: columns.texts[name] for own, name in found.items() if by_name[own].is_text},
+        tuple(unread),
+    )
+
+
+def unread_remark(unread: Iterable[str], kinds: Sequence[ColumnKind]) -> str:
+    """What to say of columns that are not read but are called almost as one that would be."""
+    known = [kind.name for kind in kinds]
+    near = [(short(name), nearest_name(name.strip(), known)) for name in unread]
+    meant = [f"`{name}` (is it `{known_name}`?)" for name, known_name in near if known_name]
+    return f"columns that are not read: {', '.join(meant)}" if meant else ""
+
+
+def _missing(
+    table: ColumnTable, kind: ColumnKind, unread: Sequence[str], required: Sequence[str]
+) -> RulecError:
+    near = nearest_name(kind.name, [name.strip() for name in unread])
+    why = f"it has no column `{kind.name}`" + (f", but `{short(near)}`" if near else "")
+    also = [name for name in kind.also if name != kind.name][:4]
+    way_out = (
+        f"if that is the one, call it `{kind.name}`"
+        if near
+        else f"name a column `{kind.name}`"
+        + (f" (also {', '.join(f'`{name}`' for name in also)})" if also else "")
+    )
+    expected = f"expected the columns {', '.join(f'`{name}`' for name in required)}"
+    return table.refused(why, expected=expected, help_text=way_out)
+
+
+def _check_full(columns: Columns, name: str, kind: ColumnKind) -> None:
+    texts, numbers = columns.texts, columns.numbers
+    empty = texts[name].having("") if kind.is_text else np.isnan(numbers[name])
+    if empty.any():
+        row = int(np.argmax(empty))
+        raise columns.wrong(row, f"its column `{short(name)}` is empty here", "expected a value")
+
+
+def checked_numbers(values: Sequence[str], largest: float = LARGEST) -> tuple[Floats, int | None]:
+    """The numbers that texts spell, NaN for empty ones; the place of the first that is none."""
+    try:
+        found = np.fromiter(map(float, values), float, len(values))
+    except ValueError:
+        found = np.fromiter(map(_number, values), float, len(values))
+    bad = ~(np.abs(found) < largest) & ~np.isnan(found)
+    return found, int(np.argmax(bad)) if bad.any() else None
+
+
+def _number(text: str) -> float:
+    """A number, NaN for what is empty, infinity for what is no number."""
+    try:
+        return float(text)
+    except ValueError:
+        return np.nan if text.strip().casefold() in _EMPTY else np.inf
+
+
+_EMPTY = ("", "na", "n/a", "null", "none", "-")

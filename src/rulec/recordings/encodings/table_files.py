@@ -1,0 +1,283 @@
+"""Tables from files, CSV or Parquet, and from columns in memory."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import io
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy import int64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import RulecError
+from rulec.files import opened
+from rulec.recordings.encodings.csv_head import LONGEST_LINE, PACKED, PARQUET, separator_of
+from rulec.recordings.encodings.table_columns import (
+    MOST_COLUMNS,
+    MOST_ROWS,
+    Columns,
+    ColumnTable,
+    Texts,
+    checked_numbers,
+)
+from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.recording_messages import NOT_A_RECORDING
+from rulec.trace.formats.arrow.parquet_columns import parquet_columns, parquet_names
+
+LARGEST_NUMBER = 1e19
+"""Nanoseconds since 1970 have nineteen digits."""
+
+_ROWS_AT_ONCE = 1 << 16
+
+
+def open_table(path: Path, form: XmlFormat, names: Sequence[str] = ()) -> ColumnTable:
+    """The table in a file; ``names`` are those of its columns if its first row has none.
+
+    Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read, R0706 if
+    Parquet cannot be read here.
+    """
+
+    def refused(
+        why: str, place: int | None = None, *, expected: str = "", help_text: str = ""
+    ) -> RulecError:
+        return form.refused(path, why, place, expected=expected, help_text=help_text)
+
+    if path.suffix.lower() in PARQUET:
+        found = parquet_names(path, refused)
+
+        def read_parquet(numbers: Sequence[str], texts: Sequence[str]) -> Columns:
+            wanted = [*numbers, *texts]
+            values = parquet_columns(path, wanted, refused, MOST_ROWS)
+            return columns_of(values, numbers, texts, refused)
+
+        return ColumnTable(_checked_names(found, refused), refused, read_parquet)
+    with _lines(path, form, refused) as stream:
+        head = stream.readline(LONGEST_LINE)
+    if not head.strip():
+        raise refused("it is empty" if not head else "its first line is empty", 1)
+    mark = separator_of(head)
+    first = _cells(head, mark, refused)
+    given = tuple(names) or _checked_names(tuple(first), refused)
+
+    def read_csv(numbers: Sequence[str], texts: Sequence[str]) -> Columns:
+        with _lines(path, form, refused) as stream:
+            if not names:
+                stream.readline(LONGEST_LINE)
+            reader = csv.reader(stream, delimiter=mark) if mark != " " else _Blanks(stream)
+            return _read(reader, given, (numbers, texts), refused, 1 if names else 2)
+
+    return ColumnTable(given, refused, read_csv)
+
+
+def _cells(head: str, mark: str, refused: Any) -> list[str]:
+    try:
+        return next(csv.reader([head], delimiter=mark)) if mark != " " else head.split()
+    except csv.Error as reason:
+        raise refused(f"its first line is no list of names ({reason})", 1) from None
+
+
+def _checked_names(names: tuple[str, ...], refused: Any) -> tuple[str, ...]:
+    if len(names) > MOST_COLUMNS:
+        raise refused(f"it has {len(names):,} columns, more than {MOST_COLUMNS:,}", 1)
+    kept = [name for name in names if name]
+    twice = next((name for name in kept if kept.count(name) > 1), None)
+    if twice is not None:
+        raise refused(f"it has two columns `{short(twice)}`", 1)
+    return names
+
+
+class _Blanks:
+    """Rows of cells with blanks in between."""
+
+    def __init__(self, stream: io.TextIOWrapper) -> None:
+        self.stream = stream
+
+    def __iter__(self) -> Iterator[list[str]]:
+        return map(str.split, self.stream)
+
+
+@contextmanager
+def _lines(path: Path, form: XmlFormat, refused: Any) -> Iterator[io.TextIOWrapper]:
+    """The lines of a text that may be packed, read within limits."""
+    with opened(path) as stream:
+        packed = stream.read(2) == PACKED
+        stream.seek(0)
+        raw = gzip.GzipFile(fileobj=stream) if packed else stream
+        bounded = io.BufferedReader(_Bounded(raw, form.largest_bytes, refused), 1 << 20)
+        try:
+            yield io.TextIOWrapper(bounded, encoding="utf-8-sig", newline="")
+        except UnicodeDecodeError:
+            raise refused("it is no text in UTF-8", help_text="save it in UTF-8") from None
+        except (OSError, EOFError, zlib.error) as reason:
+            raise refused(f"it cannot be unpacked ({reason})") from None
+
+
+class _Bounded(io.RawIOBase):
+    """A stream that ends in an error beyond a size."""
+
+    def __init__(self, stream: Any, most: int, refused: Any) -> None:
+        self._stream, self._left, self._most, self._refused = stream, most, most, refused
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        data = self._stream.read(len(buffer))
+        self._left -= len(data)
+        if self._left < 0:
+            raise self._refused(f"it is too large: at most {self._most:,} bytes are read")
+        buffer[: len(data)] = data
+        return len(data)
+
+
+def _read(
+    reader: Any,
+    names: Sequence[str],
+    wanted: tuple[Sequence[str], Sequence[str]],
+    refused: Any,
+    line: int,
+) -> Columns:
+    """The wanted columns of numbers and of texts, block by block."""
+    numbers, texts = wanted
+    at = {name: place for place, name in enumerate(names)}
+    found: dict[str, list[NDArray[Any]]] = {name: [] for name in (*numbers, *texts)}
+    codes: dict[str, dict[str, int]] = {name: {} for name in texts}
+    lines: list[NDArray[int64]] = []
+    rows, count = iter(reader), 0
+    while True:
+        try:
+            block = list(islice(rows, _ROWS_AT_ONCE))
+        except csv.Error as reason:
+            raise refused(f"after line {line:,} it is no CSV ({reason})", line) from None
+        if not block:
+            break
+        own = np.arange(line, line + len(block))
+        line += len(block)
+        if not all(block):
+            own = own[[bool(row) for row in block]]
+            block = [row for row in block if row]
+        count += len(block)
+        if count > MOST_ROWS:
+            raise refused(f"it has more than {MOST_ROWS:,} rows", line)
+        _check_lengths(block, names, own, refused)
+        cells = list(zip(*block, strict=True))
+        lines.append(own)
+        for name in numbers if block else ():
+            values, bad = checked_numbers(cells[at[name]], LARGEST_NUMBER)
+            if bad is not None:
+                raise _no_number(name, cells[at[name]][bad], int(own[bad]), refused)
+            found[name].append(values)
+        for name in texts if block else ():
+            known = codes[name]
+            column = (known.setdefault(cell, len(known)) for cell in cells[at[name]])
+            found[name].append(np.fromiter(column, int64, len(block)))
+    if not count:
+        raise refused("it has a head, but no rows", line)
+    whole = {name: np.concatenate(parts) for name, parts in found.items()}
+    return Columns(
+        refused,
+        {name: whole[name] for name in numbers},
+        {name: _stripped(whole[name], codes[name]) for name in texts},
+        np.concatenate(lines),
+    )
+
+
+def _check_lengths(
+    block: Sequence[Sequence[str]], names: Sequence[str], lines: NDArray[int64], refused: Any
+) -> None:
+    if set(map(len, block)) <= {len(names)}:
+        return
+    at = next(place for place, row in enumerate(block) if len(row) != len(names))
+    why = f"its row has {len(block[at])} cells, its head {len(names)} names"
+    raise refused(why, int(lines[at]), help_text="cells with commas in them stand in quotes")
+
+
+def _no_number(name: str, cell: str, line: int, refused: Any) -> RulecError:
+    comma = "write decimal points, not commas" if cell.replace(",", "").isdigit() else ""
+    why = f"its column `{short(name)}` holds `{short(cell)}`"
+    error: RulecError = refused(why, line, expected="expected a number", help_text=comma)
+    return error
+
+
+def _stripped(codes: NDArray[int64], known: Mapping[str, int]) -> Texts:
+    """The texts without blanks around them; those that are one then have one code."""
+    names: dict[str, int] = {}
+    again = [names.setdefault(name.strip(), len(names)) for name in known]
+    return Texts(np.array(again, dtype=int64)[codes], tuple(names))
+
+
+def table_of(columns: Mapping[str, Any], words: str) -> ColumnTable:
+    """The table of columns in memory: sequences of equal length, a data frame's for one.
+
+    ``words`` say what is read from it. Raises RulecError R0610.
+    """
+
+    def refused(
+        why: str, place: int | None = None, *, expected: str = "", help_text: str = ""
+    ) -> RulecError:
+        where = "" if place is None else f"row {place}: "
+        message = f"the columns cannot be read as {words}: {where}{why}"
+        return NOT_A_RECORDING.error(None, message, expected=expected, help=help_text)
+
+    names = _checked_names(tuple(map(str, columns)), refused)
+
+    def read(numbers: Sequence[str], texts: Sequence[str]) -> Columns:
+        wanted = {name: np.asarray(columns[name]) for name in (*numbers, *texts)}
+        return columns_of(wanted, numbers, texts, refused)
+
+    return ColumnTable(names, refused, read)
+
+
+def columns_of(
+    values: Mapping[str, NDArray[Any]], numbers: Sequence[str], texts: Sequence[str], refused: Any
+) -> Columns:
+    """Columns from arrays, which have to be of one length; rows count from 0."""
+    for name, column in values.items():
+        if column.ndim != 1:
+            raise refused(f"its column `{short(name)}` is no row of values")
+    lengths = {len(column) for column in values.values()}
+    if len(lengths) != 1:
+        raise refused(f"its columns are of {len(lengths)} different lengths")
+    (count,) = lengths
+    if not 0 < count <= MOST_ROWS:
+        raise refused("it has no rows" if not count else f"it has more than {MOST_ROWS:,} rows")
+    return Columns(
+        refused,
+        {name: _floats(name, values[name], refused) for name in numbers},
+        {name: _texts(values[name]) for name in texts},
+        np.arange(count),
+    )
+
+
+def _floats(name: str, column: NDArray[Any], refused: Any) -> NDArray[np.float64]:
+    if column.dtype.kind in "biuf":
+        found = column.astype(float)
+        bad = ~(np.abs(found) < LARGEST_NUMBER) & ~np.isnan(found)
+        place = int(np.argmax(bad)) if bad.any() else None
+    else:
+        found, place = checked_numbers(
+            ["" if cell is None else str(cell) for cell in column.tolist()], LARGEST_NUMBER
+        )
+    if place is not None:
+        raise _no_number(name, str(column[place]), place, refused)
+    return found
+
+
+def _texts(column: NDArray[Any]) -> Texts:
+    codes: dict[str, int] = {}
+    names = (codes.setdefault(_text(cell), len(codes)) for cell in column.tolist())
+    return _stripped(np.fromiter(names, int64, len(column)), codes)
+
+
+def _text(cell: object) -> str:
+    """A cell as text: ids that are numbers, which a gap made floats, have no decimals."""
+    if cell is None or (isinstance(cell, float) and cell != cell):
+        return ""
+    return str(int(cell)) if isinstance(cell, float) and cell.is_integer() else str(cell)

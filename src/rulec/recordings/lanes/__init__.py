@@ -1,0 +1,1 @@
+"""Lanes from centre lines, and from tables of them."""

@@ -1,0 +1,245 @@
+"""Lanes as a table: points of their centre lines in order, and what else is known of each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, cast, get_args
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import RulecError, did_you_mean
+from rulec.recordings.encodings.table_columns import (
+    ColumnKind,
+    ColumnTable,
+    NamedColumns,
+    named_columns,
+    unread_remark,
+)
+from rulec.recordings.encodings.table_files import open_table, table_of
+from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
+from rulec.recordings.lanes.lanes_along import (
+    CLOSEST_M,
+    LANE_TYPES,
+    USUAL_WIDTH_M,
+    lanelet_along,
+    linked,
+    with_ends_that_meet,
+)
+from rulec.recordings.polylines import without_repeats
+from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points, Side
+from rulec.recordings.road_map import RoadMap
+
+LANES = XmlFormat(
+    "lanes as a table",
+    "",
+    "it has a row for each point of a lane's centre line, with the columns `lane`, `x`, `y`",
+    200_000_000,
+)
+MOST_LANES = 100_000
+WIDEST_M = 50.0
+_KMH, _MPH = 1 / 3.6, 0.44704
+
+LANE_COLUMNS = (
+    ColumnKind("lane", {"lane_id": 1, "lanelet": 1, "lanelet_id": 1}, True, True),
+    ColumnKind("x", {"x_m": 1}, required=True),
+    ColumnKind("y", {"y_m": 1}, required=True),
+    ColumnKind("width", {"width_m": 1}),
+    ColumnKind("limit_mps", {"limit_kmh": _KMH, "limit_mph": _MPH}),
+    ColumnKind("stop_line", {}),
+    *(
+        ColumnKind(name, dict.fromkeys(also.split(), 1.0), True)
+        for name, also in (
+            ("left_mark", ""),
+            ("right_mark", ""),
+            ("type", "types"),
+            ("signs", "sign"),
+            ("successors", "successor next"),
+            ("predecessors", "predecessor previous"),
+            ("left_lane", "left_of left_neighbour left_neighbor"),
+            ("right_lane", "right_of right_neighbour right_neighbor"),
+            ("junction", "junction_id"),
+            ("foes", ""),
+            ("first", ""),
+            ("side", "traffic_side"),
+        )
+    ),
+)
+
+
+def read_lane_map(path: Path) -> RoadMap:
+    """The roads in a file. Raises RulecError R0610, R0701, R0706."""
+    return road_map_of(open_table(path, LANES))
+
+
+def lane_map(columns: Mapping[str, Any]) -> RoadMap:
+    """The roads in columns in memory. Raises RulecError R0610."""
+    return road_map_of(table_of(columns, "lanes"))
+
+
+def road_map_of(table: ColumnTable) -> RoadMap:
+    """The roads in a table. Raises RulecError for what makes no sense in it."""
+    named = named_columns(table, LANE_COLUMNS)
+    return _LaneTable(named).road_map()
+
+
+class _LaneTable:
+    """A table of lanes that is being read."""
+
+    def __init__(self, named: NamedColumns) -> None:
+        self.named = named
+        self.columns = named.columns
+        self.lane = named.texts["lane"]
+        for name in ("x", "y", "width", "limit_mps"):
+            self._check_size(name)
+        if len(self.lane.names) > MOST_LANES:
+            raise self.columns.refused(f"it has more than {MOST_LANES:,} lanes")
+
+    def _check_size(self, name: str) -> None:
+        values = self.named.number(name)
+        if values is None:
+            return
+        low, high = {"width": (0.0, WIDEST_M), "limit_mps": (0.0, 200.0)}.get(
+            name, (-LARGEST, LARGEST)
+        )
+        bad = ~((values > low) & (values < high)) & ~np.isnan(values)
+        if bad.any():
+            row = int(np.argmax(bad))
+            why = f"its `{name}` is {values[row]:g}"
+            expected = f"expected a number between {low:g} and {high:g}"
+            raise self.columns.wrong(row, why, expected)
+
+    def road_map(self) -> RoadMap:
+        order = np.argsort(self.lane.codes, kind="stable")
+        codes = self.lane.codes[order]
+        starts = np.flatnonzero(np.diff(codes, prepend=-1))
+        ends = [*starts[1:].tolist(), len(order)]
+        lanelets = {}
+        for start, end in zip(starts.tolist(), ends, strict=True):
+            lanelet = self._lanelet(order[start:end])
+            lanelets[lanelet.id] = lanelet
+        self._check_references(lanelets)
+        remarks = [unread_remark(self.named.unread, LANE_COLUMNS)]
+        if self.named.number("width") is None:
+            remarks.append(f"lanes are taken to be {USUAL_WIDTH_M:g} m wide")
+        if "successors" in self.named.texts or "predecessors" in self.named.texts:
+            lanelets = linked(lanelets)
+        else:
+            lanelets = with_ends_that_meet(lanelets)
+            if any(lanelet.successors for lanelet in lanelets.values()):
+                remarks.append("lanes whose ends meet are taken to follow each other")
+        side = self._one_of("side", np.arange(len(order)), get_args(Side))
+        return RoadMap(
+            form="lanes as a table",
+            lanelets=lanelets,
+            side=cast("Side | None", side),
+            remarks=tuple(filter(None, remarks)),
+        )
+
+    def _lanelet(self, own: NDArray[np.intp]) -> Lanelet:
+        name = self.lane.names[int(self.lane.codes[own[0]])]
+        centre, width = self._line(name, own)
+        types = self._words("type", own)
+        for kind in types:
+            if kind not in LANE_TYPES:
+                why = f"lane `{short(name)}` is of type `{short(kind)}`"
+                help_text = did_you_mean(kind, LANE_TYPES) or "leave it out"
+                raise self.columns.wrong(int(own[0]), why, "expected a type of lanes", help_text)
+        junction = self._text("junction", own)
+        stop = self.named.number("stop_line")
+        left_mark, right_mark = (
+            self._one_of(side, own, get_args(LaneMark)) for side in ("left_mark", "right_mark")
+        )
+        limit = self.named.number("limit_mps")
+        limits = [] if limit is None else limit[own][~np.isnan(limit[own])].tolist()
+        return lanelet_along(
+            name,
+            centre,
+            width,
+            types=frozenset((*types, *(["intersection"] if junction else []))),
+            signs=frozenset(word.upper() for word in self._words("signs", own)),
+            limit_mps=limits[0] if limits else None,
+            left_mark=cast("LaneMark | None", left_mark),
+            right_mark=cast("LaneMark | None", right_mark),
+            successors=self._words("successors", own),
+            predecessors=self._words("predecessors", own),
+            left_of=self._text("left_lane", own) or None,
+            right_of=self._text("right_lane", own) or None,
+            junction=junction,
+            foes=frozenset(self._words("foes", own)) if "foes" in self.named.texts else None,
+            first=frozenset(self._words("first", own)) if "first" in self.named.texts else None,
+            stops_at_end=stop is not None and bool((stop[own] == 1).any()),
+        )
+
+    def _line(self, name: str, own: NDArray[np.intp]) -> tuple[Points, NDArray[float64]]:
+        numbers = self.named.numbers
+        points = np.column_stack((numbers["x"][own], numbers["y"][own]))
+        kept = without_repeats(points, CLOSEST_M)
+        if len(kept) < 2:
+            why = f"lane `{short(name)}` has one place only"
+            raise self.columns.wrong(int(own[0]), why, "expected two points or more in order")
+        length = np.hypot(*np.diff(kept, axis=0).T).sum()
+        if length > LONGEST_M:
+            why = f"lane `{short(name)}` is {length:,.0f} m long"
+            expected = f"expected {LONGEST_M:,.0f} m at most"
+            raise self.columns.wrong(int(own[0]), why, expected)
+        width = numbers.get("width")
+        stated = np.full(len(own), np.nan) if width is None else width[own]
+        known = np.flatnonzero(~np.isnan(stated))
+        if not len(known):
+            return kept, np.full(len(kept), USUAL_WIDTH_M)
+        filled = np.interp(np.arange(len(own)), known, stated[known])
+        first = np.array([int(np.argmax((points == point).all(axis=1))) for point in kept])
+        return kept, filled[first]
+
+    def _text(self, name: str, own: NDArray[np.intp]) -> str:
+        """What some row of a lane says in a column of texts; the others repeat it or are empty."""
+        texts = self.named.texts.get(name)
+        if texts is None:
+            return ""
+        said = [code for code in dict.fromkeys(texts.codes[own].tolist()) if texts.names[code]]
+        if len(said) > 1:
+            row = int(own[np.argmax(texts.codes[own] == said[1])])
+            both = " and ".join(f"`{short(texts.names[code])}`" for code in said[:2])
+            lane = short(self.lane.names[int(self.lane.codes[own[0]])])
+            why = f"its `{name}` is another than in the rows above of lane `{lane}`: {both}"
+            way_out = "separate several with blanks; where something changes, begin another lane"
+            raise self.columns.wrong(row, why, help_text=way_out)
+        return texts.names[said[0]] if said else ""
+
+    def _words(self, name: str, own: NDArray[np.intp]) -> tuple[str, ...]:
+        return tuple(self._text(name, own).split())
+
+    def _one_of(self, name: str, own: NDArray[np.intp], known: Sequence[str]) -> str | None:
+        text = self._text(name, own)
+        if text and text not in known:
+            texts = self.named.texts[name]
+            row = int(own[np.argmax(texts.having(text)[own])])
+            raise self._unknown(row, f"its `{name}` is `{short(text)}`", text, known)
+        return text or None
+
+    def _unknown(self, row: int, why: str, text: str, known: Sequence[str]) -> RulecError:
+        expected = f"expected {', '.join(f'`{word}`' for word in known)}, or nothing"
+        return self.columns.wrong(row, why, expected, did_you_mean(text, known))
+
+    def _check_references(self, lanelets: Mapping[str, Lanelet]) -> None:
+        for lanelet in lanelets.values():
+            for what, names in (
+                ("successors", lanelet.successors),
+                ("predecessors", lanelet.predecessors),
+                ("left_lane", (lanelet.left_of,) if lanelet.left_of else ()),
+                ("right_lane", (lanelet.right_of,) if lanelet.right_of else ()),
+                ("foes", tuple(lanelet.foes or ())),
+                ("first", tuple(lanelet.first or ())),
+            ):
+                for name in names:
+                    if name not in lanelets:
+                        row = int(np.argmax(self.lane.having(lanelet.id)))
+                        why = (
+                            f"`{what}` of lane `{short(lanelet.id)}` has `{short(name)}`, "
+                            "which is no lane"
+                        )
+                        help_text = did_you_mean(name, lanelets)
+                        raise self.columns.wrong(row, why, "expected ids of lanes", help_text)

@@ -1,0 +1,115 @@
+"""Lanelets along centre lines, and how they follow each other where nobody says so."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.recordings.polylines import parallel_line
+from rulec.recordings.recording import Lanelet, Points
+
+USUAL_WIDTH_M = 3.5
+"""The width of a lane of which nothing is said, which is that of most rural roads and motorways."""
+
+CLOSEST_M = 0.01
+
+MEETING_M = 0.5
+_LIKE = np.cos(np.radians(45))
+
+LANE_TYPES = frozenset(
+    (
+        *("urban", "country", "rural", "highway", "interstate", "ordinary", "driveWay"),
+        *("mainCarriageWay", "accessRamp", "exitRamp", "shoulder", "busLane", "busStop"),
+        *("bicycleLane", "sidewalk", "crosswalk", "directed", "intersection", "unregulated"),
+        *("roundabout", "level_crossing", "rail", "tunnel", "parking", "border"),
+        *("restricted_area", "unknown"),
+    )
+)
+"""Types of lanelets that rules are about, or that maps have besides."""
+
+
+def lanelet_along(
+    name: str,
+    centre: Points,
+    width: NDArray[float64] | float,
+    *,
+    stops_at_end: bool = False,
+    **more: Any,
+) -> Lanelet:
+    """A lanelet along different points, with its width (m) in all or at each of them.
+
+    ``stops_at_end``: there is a stop line across its end. ``more``: fields of a ``Lanelet``.
+    """
+    left, right = (parallel_line(centre, way * np.asarray(width) / 2) for way in (1, -1))
+    if stops_at_end:
+        more["stop_line"] = np.stack((left[-1], right[-1]))
+    nothing: dict[str, Any] = {
+        "successors": (),
+        "predecessors": (),
+        "left_of": None,
+        "right_of": None,
+        "types": frozenset(),
+        "signs": frozenset(),
+        "limit_mps": None,
+    }
+    return Lanelet(id=name, left=left, right=right, centre=centre, **(nothing | more))
+
+
+def linked(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
+    """The lanelets, with predecessors for all successors and the reverse; neighbours, too."""
+    after: dict[str, list[str]] = defaultdict(list)
+    before: dict[str, list[str]] = defaultdict(list)
+    left, right = {}, {}
+    for one in lanelets.values():
+        after[one.id] += one.successors
+        before[one.id] += one.predecessors
+        for name in one.successors:
+            before[name].append(one.id)
+        for name in one.predecessors:
+            after[name].append(one.id)
+        if one.left_of is not None:
+            right[one.left_of] = one.id
+        if one.right_of is not None:
+            left[one.right_of] = one.id
+    return {
+        one.id: replace(
+            one,
+            successors=tuple(dict.fromkeys(after[one.id])),
+            predecessors=tuple(dict.fromkeys(before[one.id])),
+            left_of=one.left_of if one.left_of is not None else left.get(one.id),
+            right_of=one.right_of if one.right_of is not None else right.get(one.id),
+        )
+        for one in lanelets.values()
+    }
+
+
+def with_ends_that_meet(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
+    """The lanelets; those follow each other whose centre lines meet, and lead the same way there.
+
+    They meet where one's end is within ``MEETING_M`` of the other's beginning.
+    """
+    names = list(lanelets)
+    lines = [lanelets[name].centre for name in names]
+    begins, ends = (shapely.points([line[at] for line in lines]) for at in (0, -1))
+    pairs = shapely.STRtree(begins).query(ends, predicate="dwithin", distance=MEETING_M)
+    after: dict[str, list[str]] = defaultdict(list)
+    for own, other in pairs.T.tolist():
+        ahead, onward = (_direction(lines[own], -1), _direction(lines[other], 0))
+        if own != other and float(ahead @ onward) >= _LIKE:
+            after[names[own]].append(names[other])
+    return linked(
+        {name: replace(one, successors=tuple(after[name])) for name, one in lanelets.items()}
+    )
+
+
+def _direction(line: Points, at: int) -> NDArray[float64]:
+    step: NDArray[float64] = line[-1] - line[-2] if at else line[1] - line[0]
+    direction: NDArray[float64] = step / np.hypot(*step)
+    return direction

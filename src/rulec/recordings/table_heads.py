@@ -1,0 +1,84 @@
+"""The names of columns that a file shows at first sight, and whose they are.
+
+NumPy is not needed for that: traces are CSV, too, and start without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.csv_head import PARQUET, is_number, names_in
+from rulec.recordings.recording_format import RECORDING, Glance
+
+_TABLES = (".csv", ".tsv", ".txt", *PARQUET)
+_HEADLESS_NGSIM = (18, 24)
+_TRACK = {"track", "track_id", "trackid", "id", "object_id", "vehicle_id"}
+_TIME = {f"{name}{unit}" for name in ("t", "time") for unit in ("", "_s", "_ms", "_us", "_ns")}
+_TIME |= {"timestamp_ms", "timestamp_us", "timestamp_ns"}
+_LANE = {"lane", "lane_id", "lanelet", "lanelet_id"}
+
+
+def head_of(glance: Glance) -> tuple[str, ...]:
+    """The names of a table's columns in small letters; none if it seems to be no table."""
+    if not glance.name.endswith(_TABLES):
+        return ()
+    if not glance.name.endswith(PARQUET):
+        return names_in(glance.head)
+    # As above: NumPy, and Arrow
+    from rulec.trace.formats.arrow.parquet_columns import parquet_names
+
+    try:
+        names = parquet_names(glance.path, lambda why, **_: RECORDING.refused(glance.path, why))
+    except RulecError:
+        # Whoever reads it next says what is wrong
+        return ()
+    return tuple(name.casefold() for name in names)
+
+
+def is_track_head(names: Sequence[str]) -> bool:
+    """True if the names of columns are those of tracks, perhaps with a slip in one of them."""
+    given = {*names}
+    if "trace" in given:
+        return False
+    x, y = ({name, f"{name}_m", f"front_{name}"} & given for name in "xy")
+    found = sum(map(bool, (x, y, _TRACK & given, _TIME & given)))
+    return found >= 3 or bool(x and y and {"speed", "heading"} & given)
+
+
+def is_lane_head(names: Sequence[str]) -> bool:
+    """True if the names of columns are those of lanes."""
+    given = {*names}
+    x, y = ({name, f"{name}_m"} & given for name in "xy")
+    return bool(_LANE & given and x and y) and not (_TIME | {"trace"}) & given
+
+
+def is_highd_head(names: Sequence[str]) -> bool:
+    """True if the names of columns are those of a file of highD's."""
+    tracks = {"frame", "id", "x", "y", "xvelocity", "laneid", "precedingid"}
+    meta = {"id", "initialframe", "drivingdirection"}
+    return any(ours <= {*names} for ours in (tracks, meta, {"upperlanemarkings", "framerate"}))
+
+
+def is_levelx_head(names: Sequence[str]) -> bool:
+    """True if the names of columns are those of a file of inD, rounD, exiD or uniD."""
+    tracks = {"trackid", "frame", "xcenter", "ycenter"}
+    meta = {"trackid", "initialframe", "class"}
+    return any(ours <= {*names} for ours in (tracks, meta, {"orthopxtometer", "framerate"}))
+
+
+def is_interaction_head(names: Sequence[str]) -> bool:
+    """True if the names of columns are those of INTERACTION."""
+    return {"track_id", "frame_id", "timestamp_ms", "agent_type", "x", "y", "vx", "vy"} <= {*names}
+
+
+def is_ngsim_head(names: Sequence[str]) -> bool:
+    """True if a first line is NGSIM's: names of columns, or as many numbers as there are."""
+    if {"vehicle_id", "global_time", "local_x", "local_y"} <= {*names}:
+        return True
+    return len(names) in _HEADLESS_NGSIM and all(map(is_number, names))
+
+
+def is_omega_prime_head(names: Sequence[str]) -> bool:
+    """True if the names of columns are OMEGA-PRIME's."""
+    return {"total_nanos", "idx", "x", "y", "yaw"} <= {*names}

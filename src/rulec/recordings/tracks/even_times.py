@@ -1,0 +1,119 @@
+"""Times of rows as steps of an even grid, whatever they were rounded to."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy import float64, int64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.table_columns import Columns
+from rulec.recordings.recording import MOST_STEPS, SPARSEST
+
+_UNEVEN = 0.02
+"""So much of a step a time may be off its place, besides its rounding: clocks are no better."""
+
+_RATES = 1000
+_MOST_DECIMALS = 9
+_HAIR = 1e-3
+
+
+class EvenTimes(NamedTuple):
+    """The time step (s) and the step of each row; when step 0 is, if not at time 0 (s)."""
+
+    step_s: float
+    steps: NDArray[int64]
+    start_s: float = 0.0
+
+
+def even_times(times: NDArray[float64], columns: Columns) -> EvenTimes:
+    """Times (s) as steps: the shortest time from one moment to the next is one, or a part of it.
+
+    Moments may be missing. What the step is close to is taken for it: one of 1 to 1000 a second,
+    or a thousand of those in 1001 s, as video has; else whole milliseconds. Steps count from time
+    0, from the first moment if that is on no step or too far away. Raises RulecError for times on
+    no even grid, or too far apart.
+    """
+    start = float(times.min())
+    # Floats have sixteen digits: of seconds since 1970 some seven remain for decimals
+    unit = max(_unit(times - start), 4 * float(np.spacing(np.abs(times).max())))
+    moments = np.unique(np.round((times - start) / unit)) * unit
+    if len(moments) == 1:
+        return EvenTimes(1.0, np.zeros(len(times), dtype=int64), start)
+    step = _fitted(moments, unit)
+    spread = moments[-1] / step
+    if spread > min(MOST_STEPS, SPARSEST * len(moments)):
+        why = f"its {len(moments):,} moments, {step:.4g} s apart, spread over {moments[-1]:,.0f} s"
+        way_out = "look for a time that is wrong, for another unit (`t_ms`, `t_ns`), or take a part"
+        raise columns.refused(why, help_text=way_out)
+    steps = np.round((times - start) / step).astype(int64)
+    if np.abs(times - start - steps * step).max() > _UNEVEN * step + unit:
+        raise _uneven(times, float(np.median(np.diff(moments))), unit, columns)
+    first = start / step
+    if abs(first) <= MOST_STEPS and abs(first - round(first)) * step <= _UNEVEN * step + unit:
+        return EvenTimes(step, steps + round(first))
+    return EvenTimes(step, steps, start)
+
+
+def _uneven(times: NDArray[float64], step: float, unit: float, columns: Columns) -> RulecError:
+    """The error for times that are not so many steps apart; it names the first that is off."""
+    since = times - times.min()
+    off = np.abs(since - np.round(since / step) * step) > _UNEVEN * step + unit
+    row = int(np.argmin(np.where(off, times, np.inf)))
+    why = (
+        f"its times are uneven: {times[row]:.10g} s is no whole number of steps of {step:.4g} s, "
+        f"as most are, after {times.min():.10g} s"
+    )
+    way_out = "resample the tracks to an even time step, such as 0.1 s"
+    return columns.wrong(row, why, help_text=way_out)
+
+
+def _unit(values: NDArray[float64]) -> float:
+    """The unit of the last decimal that the values have."""
+    for decimals in range(_MOST_DECIMALS):
+        scaled = values * 10.0**decimals
+        if np.abs(scaled - np.round(scaled)).max() < _HAIR:
+            return float(10.0**-decimals)
+    return float(10.0**-_MOST_DECIMALS)
+
+
+def _fitted(moments: NDArray[float64], unit: float) -> float:
+    """The step that explains moments, the first of which is 0, best; a usual one if it does."""
+    step = float(np.median(np.diff(moments)))
+    if np.diff(moments).min() < 0.6 * step:
+        step = float(np.diff(moments).min())
+    # A step from few moments is known badly: it gets better with each twice as many
+    count = 2
+    while True:
+        part = moments[:count]
+        numbers = np.maximum(np.round(part / step), 0)
+        if (numbers @ numbers) > 0:
+            step = float((numbers @ part) / (numbers @ numbers))
+        if count >= len(moments):
+            break
+        count *= 2
+    error = (unit + _UNEVEN / 2 * step) / max(round(moments[-1] / step), 1)
+    for frames in (1.0, 1000 / 1001):
+        rate = round(1 / step / frames)
+        if 1 <= rate <= _RATES and abs(1 / (rate * frames) - step) <= error:
+            return 1 / (rate * frames)
+    whole = round(step, 3)
+    return whole if whole > 0 and abs(whole - step) <= error else step
+
+
+def framed_times(frames: NDArray[float64], rate: float, columns: Columns) -> EvenTimes:
+    """Numbers of frames, so many a second, as steps. Raises RulecError for those that are none."""
+    off = frames != np.round(frames)
+    if off.any():
+        row = int(np.argmax(off))
+        raise columns.wrong(row, f"its frame is {frames[row]:g}", "expected a whole number")
+    spread = float(np.ptp(frames))
+    count = len(np.unique(frames))
+    if spread > min(MOST_STEPS, SPARSEST * count):
+        raise columns.refused(f"its {count:,} frames are spread over {spread:,.0f}")
+    start = float(frames.min())
+    if abs(start) > MOST_STEPS:
+        return EvenTimes(1 / rate, (frames - start).astype(int64), start / rate)
+    return EvenTimes(1 / rate, frames.astype(int64))

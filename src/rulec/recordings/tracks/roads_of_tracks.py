@@ -1,0 +1,124 @@
+"""The roads that a table of tracks belongs to, and both together as a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import SourceLocation
+from rulec.recordings.adjacency import with_neighbours
+from rulec.recordings.map_files import read_map
+from rulec.recordings.recording import Lanelet, Recording
+from rulec.recordings.recording_messages import NET_MISSING, OTHER_NET
+from rulec.recordings.road_map import RoadMap
+from rulec.recordings.tracks.headings_on_lanes import heading_on
+from rulec.recordings.tracks.track_rows import TrackRows, read_tracks
+
+NEAR_M = 50.0
+"""Somebody in the table is no farther from the box around the roads than this."""
+
+_LANES = (".lanes.csv", ".lanes.parquet")
+
+
+def lanes_beside(path: Path) -> list[Path]:
+    """The tables of lanes that belong to a table of tracks by their names."""
+    stem = path.name.removesuffix(".gz").rpartition(".")[0]
+    return [*(path.with_name(stem + end) for end in _LANES), path.with_name("lanes.csv")]
+
+
+def roads_of(path: Path, map_path: Path | None, step_s: float, beside: Sequence[Path]) -> RoadMap:
+    """The map given, or the first of those beside that there is.
+
+    Raises RulecError R0614 if there is none, else as ``read_map``.
+    """
+    found = map_path or next((file for file in beside if file.is_file()), None)
+    if found is None:
+        names = " or ".join(f"`{file.name}`" for file in beside[:2])
+        raise NET_MISSING.error(
+            SourceLocation(str(path)),
+            f"`{path.name}` has tracks, but no roads",
+            help="give a map with --map: OpenDRIVE, Lanelet2, a net of SUMO's, or a table with the "
+            f"columns `lane`, `x`, `y`{f'; {names} beside it would be found' if names else ''}",
+        )
+    return read_map(found, step_s)
+
+
+def track_recording(
+    name: str,
+    tables: Sequence[TrackRows],
+    roads: RoadMap,
+    *,
+    form: str,
+    remarks: Iterable[str] = (),
+    path: Path | None = None,
+) -> Recording:
+    """The recording of the rows of one or more tables, in the same time steps, on roads.
+
+    Raises RulecError R0610 for a row that makes no sense, R0615 if all are far from the roads.
+    """
+    _check_near(path, tables, roads.lanelets.values())
+    heading_at = heading_on(roads.lanelets.values())
+    found = [read_tracks(rows, heading_at) for rows in tables]
+    said = [remark for part in found for remark in part.remarks]
+    recording = Recording(
+        name=name,
+        step_s=tables[0].times.step_s,
+        lanelets=roads.lanelets,
+        participants=tuple(one for part in found for one in part.participants),
+        problems=(),
+        form=form,
+        side=roads.side,
+        remarks=tuple(dict.fromkeys(filter(None, (*remarks, *said, *roads.remarks)))),
+        country=roads.country,
+        complete=roads.complete,
+        ego=next((part.ego for part in found if part.ego), ""),
+    )
+    told = any(one.left_of or one.right_of for one in roads.lanelets.values())
+    return recording if told else with_neighbours(recording)
+
+
+def shifted_to_roads(rows: TrackRows, roads: RoadMap, offset: tuple[float, float]) -> TrackRows:
+    """The rows, moved by the offset of their frame if only that brings them to the roads."""
+    if _reach(rows, roads.lanelets.values()) <= NEAR_M or offset == (0.0, 0.0):
+        return rows
+    moved = replace(rows, x=rows.x + offset[0], y=rows.y + offset[1])
+    return moved if _reach(moved, roads.lanelets.values()) <= NEAR_M else rows
+
+
+def _box(lanelets: Iterable[Lanelet]) -> tuple[NDArray[float64], NDArray[float64]]:
+    points = [lanelet.centre for lanelet in lanelets]
+    low = np.min([line.min(axis=0) for line in points], axis=0)
+    return low, np.max([line.max(axis=0) for line in points], axis=0)
+
+
+def _reach(rows: TrackRows, lanelets: Iterable[Lanelet]) -> float:
+    """How far the one who is nearest is from the box around the roads (m)."""
+    low, high = _box(lanelets)
+    places = np.column_stack((rows.x, rows.y))
+    beyond = np.maximum(np.maximum(low - places, places - high), 0.0)
+    return float(np.hypot(*beyond.T).min())
+
+
+def _check_near(
+    path: Path | None, tables: Sequence[TrackRows], lanelets: Iterable[Lanelet]
+) -> None:
+    lanes = list(lanelets)
+    if not lanes:
+        where = None if path is None else SourceLocation(str(path))
+        raise OTHER_NET.error(where, "the map has no lanes", help="give another map with --map")
+    if min(_reach(rows, lanes) for rows in tables) <= NEAR_M:
+        return
+    low, high = _box(lanes)
+    rows = tables[0]
+    raise OTHER_NET.error(
+        None if path is None else SourceLocation(str(path)),
+        f"nobody is near the roads: tracks are at x {rows.x.min():.1f} to {rows.x.max():.1f}, "
+        f"y {rows.y.min():.1f} to {rows.y.max():.1f}, the map at x {low[0]:.1f} to {high[0]:.1f}, "
+        f"y {low[1]:.1f} to {high[1]:.1f}",
+        help="tracks and map are in one frame, in metres: move the tracks, or give their map",
+    )

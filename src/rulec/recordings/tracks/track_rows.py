@@ -1,0 +1,312 @@
+"""Rows of tracks, of whatever table, as participants of a recording."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import RulecError, did_you_mean
+from rulec.recordings.encodings.table_columns import Columns, Texts
+from rulec.recordings.encodings.xml_element import LARGEST, short
+from rulec.recordings.recording import Lamp, Participant, id_order
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.tracks import derived_motion as motion
+from rulec.recordings.tracks.even_times import EvenTimes
+from rulec.recordings.tracks.headings_on_lanes import HeadingAt
+from rulec.recordings.tracks.road_user_types import TYPES, USUAL_TYPE, type_of, usual_size
+
+Floats = NDArray[float64]
+
+LONGEST_BODY_M = 100.0
+_NAMED = 3
+_MOVING_MPS = 2.0
+_TURNED = np.pi / 4
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TrackRows:
+    """Who was where when: arrays with one value a row, in the map's frame (m, rad, m/s, m/s²).
+
+    NaN where the table has no value; None if it has no such column. ``columns`` know the rows'
+    places in the table. ``front``: x and y are the middle of the front, not of the body. Speeds
+    without a sign are taken to lead where the track does. ``lamps``: 1 where one is lit, 0 where
+    it is not.
+    """
+
+    columns: Columns
+    track: Texts
+    times: EvenTimes
+    x: Floats
+    y: Floats
+    heading: Floats | None = None
+    speed: Floats | None = None
+    velocity: tuple[Floats, Floats] | None = None
+    acceleration: Floats | None = None
+    type: Texts | None = None
+    length: Floats | None = None
+    width: Floats | None = None
+    standing: Floats | None = None
+    ego: Floats | None = None
+    front: bool = False
+    lamps: Mapping[Lamp, Floats] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class ReadTracks:
+    """The participants of a table, who of them is ego, and what was taken to be so."""
+
+    participants: tuple[Participant, ...]
+    ego: str
+    remarks: tuple[str, ...]
+
+
+def read_tracks(rows: TrackRows, heading_at: HeadingAt) -> ReadTracks:
+    """The participants of rows; who vanishes and comes back is another one then.
+
+    ``heading_at`` says how somebody is turned who does not move. Raises RulecError for a row that
+    makes no sense.
+    """
+    _check(rows)
+    return _Reading(rows, heading_at).result()
+
+
+class _Reading:
+    """The reading of one table, with counts of what it has left open."""
+
+    def __init__(self, rows: TrackRows, heading_at: HeadingAt) -> None:
+        self.rows = rows
+        self.heading_at = heading_at
+        self.taken: Counter[str] = Counter()
+        self.types = _types(rows)
+        self.ego = ""
+
+    def result(self) -> ReadTracks:
+        rows = self.rows
+        order = np.lexsort((rows.times.steps, rows.track.codes))
+        codes, steps = rows.track.codes[order], rows.times.steps[order]
+        starts = np.flatnonzero(np.diff(codes, prepend=-1))
+        found: list[Participant] = []
+        for start, end in zip(starts, [*starts[1:].tolist(), len(order)], strict=True):
+            name = rows.track.names[int(codes[start])]
+            own = order[start:end]
+            twice = np.diff(steps[start:end]) == 0
+            if twice.any():
+                raise self._twice(name, own, int(np.argmax(twice)))
+            found += self._participants(name, own)
+        found.sort(key=lambda one: id_order(one.id))
+        return ReadTracks(tuple(found), self.ego, tuple(self._remarks()))
+
+    def _twice(self, name: str, own: NDArray[np.intp], at: int) -> RulecError:
+        first, second = sorted(own[at : at + 2].tolist())
+        rows = self.rows
+        when = rows.times.steps[second] * rows.times.step_s + rows.times.start_s
+        why = f"track `{short(name)}` is twice at {when:.6g} s"
+        earlier = int(rows.columns.rows[first])
+        way_out = f"it is there in row {earlier:,}, too; keep one, or give them different tracks"
+        return rows.columns.wrong(second, why, help_text=way_out)
+
+    def _participants(self, name: str, own: NDArray[np.intp]) -> Iterator[Participant]:
+        """Those of a track: one for each part of it without gaps."""
+        rows = self.rows
+        kind = USUAL_TYPE if rows.type is None else self.types[int(rows.type.codes[own[0]])]
+        length, width = self._size(kind, own)
+        if rows.ego is not None and (rows.ego[own] == 1).any():
+            if self.ego:
+                why = f"`{short(self.ego)}` and `{short(name)}` are both ego"
+                raise rows.columns.wrong(int(own[0]), why, "expected one track with 1 in `ego`")
+            self.ego = name
+        standing = rows.standing is not None and bool((rows.standing[own] == 1).any())
+        steps = rows.times.steps[own]
+        gaps = np.diff(steps)
+        if len(gaps) > 1 and np.median(gaps) > 1:
+            step_s = rows.times.step_s
+            why = (
+                f"track `{short(name)}` has a row every {np.median(gaps) * step_s:.4g} s, while "
+                f"times of the table are {step_s:.4g} s apart"
+            )
+            way_out = "give every track a row at each time step, or take out the times between"
+            raise rows.columns.wrong(int(own[1]), why, help_text=way_out)
+        if standing:
+            own, gaps = own[:1], gaps[:0]
+        ends = [*(np.flatnonzero(gaps > 1) + 1).tolist(), len(own)]
+        start = 0
+        for number, end in enumerate(ends, 1):
+            part = own[start:end]
+            track = self._track(kind, part, length, width)
+            yield Participant(
+                id=name if number == 1 else f"{name}_{number}",
+                type=kind,
+                standing=standing,
+                states=TrackStates(track),
+                outlines=TrackOutlines(track),
+                lamps=self._lamps(part),
+                shows=frozenset(rows.lamps),
+            )
+            start = end
+
+    def _size(self, kind: str, own: NDArray[np.intp]) -> tuple[float, float]:
+        """Length and width: those in the middle of what is stated, else the usual ones."""
+        size = []
+        for what, column, usual in zip(
+            ("length", "width"), (self.rows.length, self.rows.width), usual_size(kind), strict=True
+        ):
+            stated = np.zeros(0) if column is None else column[own]
+            stated = stated[stated > 0]
+            if not len(stated):
+                self.taken[f"{what} of a {kind} {usual:g} m"] += 1
+            size.append(float(np.median(stated)) if len(stated) else usual)
+        return size[0], size[1]
+
+    def _track(self, kind: str, own: NDArray[np.intp], length: float, width: float) -> Track:
+        rows, step_s = self.rows, self.rows.times.step_s
+        places = np.column_stack((rows.x[own], rows.y[own]))
+        heading = self._heading(kind, own, places)
+        if rows.front:
+            ahead = np.column_stack((np.cos(heading), np.sin(heading)))
+            places = places - length / 2 * ahead
+        moved = motion.along(motion.velocities_of(places, step_s), heading)
+        speed = _filled(self._speed(own, heading, moved), moved)
+        gained = motion.accelerations_of(speed, step_s)
+        acceleration = gained if rows.acceleration is None else rows.acceleration[own]
+        states = np.column_stack((places, heading, speed, _filled(acceleration, gained)))
+        return Track(rows.times.steps[own], states, length, width)
+
+    def _heading(self, kind: str, own: NDArray[np.intp], places: NDArray[float64]) -> Floats:
+        stated = None if self.rows.heading is None else self.rows.heading[own]
+        if stated is not None and not np.isnan(stated).any():
+            return motion.wrapped(stated)
+        derived = self._by_velocity(own)
+        if derived is None:
+            derived = motion.headings_of(places)
+        if derived is None:
+            if stated is None or np.isnan(stated).all():
+                self.taken[f"heading of a {kind} that does not move that of the lane"] += 1
+            derived = np.full(len(own), self.heading_at(*places[0].tolist()))
+        return motion.wrapped(derived if stated is None else _filled(stated, derived))
+
+    def _by_velocity(self, own: NDArray[np.intp]) -> Floats | None:
+        """The direction of velocities, which who is slow keeps; None if nobody is fast enough."""
+        if self.rows.velocity is None:
+            return None
+        vx, vy = (component[own] for component in self.rows.velocity)
+        fast = np.flatnonzero(np.hypot(vx, vy) >= _MOVING_MPS / 2)
+        if not len(fast):
+            return None
+        directions = np.unwrap(np.arctan2(vy[fast], vx[fast]))
+        result: Floats = np.interp(np.arange(len(own)), fast, directions)
+        return result
+
+    def _speed(self, own: NDArray[np.intp], heading: Floats, moved: Floats) -> Floats:
+        """Speeds along headings as stated; those without a sign get that of the motion."""
+        rows = self.rows
+        if rows.speed is not None:
+            stated = rows.speed[own]
+            backs_up = (moved < -0.5) & (stated > 0)
+            return np.where(backs_up, -stated, stated)
+        if rows.velocity is not None:
+            return motion.along(np.column_stack([part[own] for part in rows.velocity]), heading)
+        return moved
+
+    def _lamps(self, own: NDArray[np.intp]) -> dict[int, frozenset[Lamp]]:
+        """The lamps that are lit, by step; without steps of which nothing is known."""
+        lamps: dict[int, frozenset[Lamp]] = {}
+        if not self.rows.lamps:
+            return lamps
+        values = {name: column[own] for name, column in self.rows.lamps.items()}
+        known = ~np.isnan(np.array([*values.values()])).any(axis=0)
+        steps = self.rows.times.steps[own]
+        for at in np.flatnonzero(known).tolist():
+            lit = (name for name, column in values.items() if column[at] == 1)
+            lamps[int(steps[at])] = frozenset(lit)
+        return lamps
+
+    def _remarks(self) -> Iterator[str]:
+        if self.rows.type is None:
+            yield f"all tracks are taken to be of type `{USUAL_TYPE}`, as there is no column `type`"
+        usual = [what for what, _ in self.taken.most_common()]
+        if usual:
+            more = f", and {len(usual) - _NAMED} more" if len(usual) > _NAMED else ""
+            yield f"what is not stated is taken to be as usual: {', '.join(usual[:_NAMED])}{more}"
+        if self.rows.times.start_s:
+            yield f"times count from the first one, {self.rows.times.start_s:.10g} s"
+
+
+def _filled(values: Floats, others: Floats) -> Floats:
+    return np.where(np.isnan(values), others, values)
+
+
+def _types(rows: TrackRows) -> Sequence[str]:
+    """Our type for each of the table's. Raises RulecError for one that is not known."""
+    if rows.type is None:
+        return []
+    ours = []
+    for code, word in enumerate(rows.type.names):
+        known = type_of(word) if word else USUAL_TYPE
+        if known is None and (rows.type.codes == code).any():
+            row = int(np.argmax(rows.type.codes == code))
+            help_text = did_you_mean(word, TYPES) or "write `unknown` for what it cannot tell"
+            why = f"nobody is of type `{short(word)}`"
+            some = "expected a type such as `car`, `truck`, `bus`, `bicycle`, `pedestrian`"
+            raise rows.columns.wrong(row, why, some, help_text)
+        ours.append(known or USUAL_TYPE)
+    return ours
+
+
+_BOUNDED = ("x", "y", "heading", "speed", "acceleration", "length", "width")
+
+
+def _check(rows: TrackRows) -> None:
+    for name in _BOUNDED:
+        values = getattr(rows, name)
+        if values is None:
+            continue
+        largest = LONGEST_BODY_M if name in ("length", "width") else LARGEST
+        low = 0.0 if name in ("length", "width") else -LARGEST
+        bad = ~((values >= low) & (values < largest)) & ~np.isnan(values)
+        if bad.any():
+            row = int(np.argmax(bad))
+            why = f"its `{name}` is {values[row]:g}"
+            expected = f"expected a number from {low:g} to {largest:g}"
+            raise rows.columns.wrong(row, why, expected)
+    for name, values in (("ego", rows.ego), ("standing", rows.standing), *rows.lamps.items()):
+        if values is None:
+            continue
+        bad = ~np.isnan(values) & (values != 0) & (values != 1)
+        if bad.any():
+            row = int(np.argmax(bad))
+            raise rows.columns.wrong(row, f"its `{name}` is {values[row]:g}", "expected 0 or 1")
+    if rows.heading is not None:
+        _check_headings(rows)
+
+
+def _check_headings(rows: TrackRows) -> None:
+    """Refuse headings that are no radians, or that do not fit the motion of most who move."""
+    heading = rows.heading
+    assert heading is not None
+    large = np.abs(heading) > 2 * np.pi + 0.01
+    if large.any():
+        row = int(np.argmax(large))
+        why = f"its heading is {heading[row]:g}, which is no angle in radians"
+        way_out = "call the column `heading_deg` if it holds degrees"
+        raise rows.columns.wrong(row, why, help_text=way_out)
+    order = np.lexsort((rows.times.steps, rows.track.codes))
+    follow = (np.diff(rows.track.codes[order]) == 0) & (np.diff(rows.times.steps[order]) == 1)
+    dx, dy = (np.diff(place[order]) / rows.times.step_s for place in (rows.x, rows.y))
+    moving = follow & (np.hypot(dx, dy) > _MOVING_MPS) & ~np.isnan(heading[order][:-1])
+    off = np.abs(motion.wrapped(np.arctan2(dy, dx) - heading[order][:-1]))[moving]
+    if len(off) > 20 and np.median(off) > _TURNED:
+        row = int(order[:-1][moving][int(np.argmax(off))])
+        why = (
+            f"headings do not fit the motion: most of those who move are turned by more than 45° "
+            f"away from where they go, {np.degrees(np.median(off)):.0f}° in the median"
+        )
+        way_out = (
+            "headings are counter-clockwise from the x axis, y points to the left of x; those of a "
+            "compass are 90° minus that. Without the column they are taken from places"
+        )
+        raise rows.columns.wrong(row, why, help_text=way_out)

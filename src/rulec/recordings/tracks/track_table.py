@@ -1,0 +1,142 @@
+"""Tracks as a table with columns of everybody's own making."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import pi
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast, get_args
+
+import numpy as np
+
+from rulec.recordings.encodings.table_columns import (
+    ColumnKind,
+    ColumnTable,
+    named_columns,
+    unread_remark,
+)
+from rulec.recordings.encodings.table_files import open_table, table_of
+from rulec.recordings.encodings.xml_element import XmlFormat
+from rulec.recordings.lanes.lane_table import lane_map
+from rulec.recordings.map_files import read_map
+from rulec.recordings.recording import Lamp, Recording
+from rulec.recordings.road_map import RoadMap
+from rulec.recordings.tracks.even_times import even_times
+from rulec.recordings.tracks.roads_of_tracks import lanes_beside, roads_of, track_recording
+from rulec.recordings.tracks.track_rows import TrackRows
+
+if TYPE_CHECKING:
+    from rulec.recordings.recording_format import RecordingSource
+
+TRACKS = XmlFormat(
+    "tracks as a table",
+    "",
+    "it has a row for each time of each track, with the columns `track`, `t`, `x`, `y`",
+    4_000_000_000,
+)
+
+_KMH, _MPH, _DEG = 1 / 3.6, 0.44704, pi / 180
+_LAMPS = cast("tuple[Lamp, ...]", get_args(Lamp))
+
+TRACK_COLUMNS = (
+    ColumnKind(
+        "track",
+        dict.fromkeys(("track_id", "trackid", "id", "object_id", "vehicle_id"), 1.0),
+        is_text=True,
+        required=True,
+    ),
+    ColumnKind(
+        "t",
+        {"t_s": 1, "time": 1, "time_s": 1, "t_ms": 1e-3, "time_ms": 1e-3, "timestamp_ms": 1e-3}
+        | {"t_us": 1e-6, "time_us": 1e-6, "timestamp_us": 1e-6}
+        | {"t_ns": 1e-9, "time_ns": 1e-9, "timestamp_ns": 1e-9},
+        required=True,
+    ),
+    ColumnKind("x", {"x_m": 1, "front_x": 1}, required=True),
+    ColumnKind("y", {"y_m": 1, "front_y": 1}, required=True),
+    ColumnKind("type", dict.fromkeys(("class", "agent_type", "object_type"), 1.0), is_text=True),
+    ColumnKind(
+        "heading",
+        {"heading_rad": 1, "yaw": 1, "yaw_rad": 1, "psi_rad": 1}
+        | {"heading_deg": _DEG, "yaw_deg": _DEG},
+    ),
+    ColumnKind("speed", {"speed_mps": 1, "v": 1, "speed_kmh": _KMH, "speed_mph": _MPH}),
+    ColumnKind("vx", {"vel_x": 1, "vx_mps": 1}),
+    ColumnKind("vy", {"vel_y": 1, "vy_mps": 1}),
+    ColumnKind("acceleration", {"acc": 1, "acceleration_mps2": 1}),
+    ColumnKind("length", {"length_m": 1}),
+    ColumnKind("width", {"width_m": 1}),
+    ColumnKind("standing", {}),
+    ColumnKind("ego", {"is_ego": 1}),
+    *(ColumnKind(lamp, {}) for lamp in _LAMPS),
+)
+
+
+def read_track_table(source: RecordingSource) -> Iterator[Recording]:
+    """The recording in a file. Raises RulecError R0610, R0614, R0615, R0701, R0706."""
+    path = source.path
+    rows, remark = track_rows_of(open_table(path, TRACKS))
+    roads = roads_of(path, source.map_path, rows.times.step_s, lanes_beside(path))
+    name = path.name.split(".")[0] or path.name
+    yield track_recording(
+        name, [rows], roads, form="tracks as a table", remarks=[remark], path=path
+    )
+
+
+def recording_from_columns(
+    tracks: Mapping[str, Any],
+    lanes: Mapping[str, Any] | RoadMap | str | Path,
+    *,
+    name: str = "tracks",
+) -> Recording:
+    """A recording from columns: a dict of sequences or arrays, a data frame.
+
+    ``tracks`` has the columns of [tracks as a table](formats.md#tracks-as-a-table), such as
+    ``track``, ``t``, ``x`` and ``y``; ``lanes`` those of lanes as a table, or it is a ``RoadMap``
+    or the path of a map. Raises RulecError R0610 for what makes no sense in them, with its row
+    (counted from 0) and column, R0615 if nobody is near the roads, else as reading that map.
+    """
+    rows, remark = track_rows_of(table_of(tracks, "tracks"))
+    if isinstance(lanes, RoadMap):
+        roads = lanes
+    elif isinstance(lanes, str | Path):
+        roads = read_map(Path(lanes), rows.times.step_s)
+    else:
+        roads = lane_map(lanes)
+    return track_recording(name, [rows], roads, form="tracks as a table", remarks=[remark])
+
+
+def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
+    """The rows of a table of tracks, and a remark about names that are almost known."""
+    named = named_columns(table, TRACK_COLUMNS)
+    numbers = named.numbers
+    if ("vx" in numbers) != ("vy" in numbers):
+        has, lacks = ("vx", "vy") if "vx" in numbers else ("vy", "vx")
+        raise table.refused(f"it has a column `{has}`, but none `{lacks}`")
+    heads = {name.strip().casefold() for name in table.names}
+    front = "front_x" in heads
+    if front != ("front_y" in heads):
+        raise table.refused("only one of the columns `front_x` and `front_y` is there")
+    velocity = (numbers["vx"], numbers["vy"]) if "vx" in numbers else None
+    if velocity is not None and any(np.isnan(part).any() for part in velocity):
+        # Who has no velocity somewhere has none: places tell it as well
+        velocity = None
+    rows = TrackRows(
+        columns=named.columns,
+        track=named.texts["track"],
+        times=even_times(numbers["t"], named.columns),
+        x=numbers["x"],
+        y=numbers["y"],
+        heading=numbers.get("heading"),
+        speed=numbers.get("speed"),
+        velocity=velocity,
+        acceleration=numbers.get("acceleration"),
+        type=named.texts.get("type"),
+        length=numbers.get("length"),
+        width=numbers.get("width"),
+        standing=numbers.get("standing"),
+        ego=numbers.get("ego"),
+        front=front,
+        lamps={lamp: numbers[lamp] for lamp in _LAMPS if lamp in numbers},
+    )
+    return rows, unread_remark(named.unread, TRACK_COLUMNS)

@@ -1,0 +1,87 @@
+"""Tables of centre lines become lanelets: borders, what follows, and what is wrong in them."""
+
+import numpy as np
+import pytest
+
+from rulec import RulecError, read_map
+from support.builders.track_tables import table
+
+
+def lanes(folder, head, *rows):
+    file = folder / "lanes.csv"
+    file.write_text(table(head, *rows), encoding="utf-8")
+    return read_map(file, 0.1)
+
+
+def message(folder, head, *rows):
+    with pytest.raises(RulecError) as refused:
+        lanes(folder, head, *rows)
+    (found,) = refused.value.diagnostics
+    assert found.code == "R0610"
+    return found
+
+
+def test_a_centre_line_is_enough(tmp_path):
+    roads = lanes(tmp_path, "lane,x,y", "a,0,0", "a,50,0", "a,50,50")
+    lane = roads.lanelets["a"]
+    assert lane.centre.tolist() == [[0, 0], [50, 0], [50, 50]]
+    assert lane.left.tolist() == [[0, 1.75], [48.25, 1.75], [48.25, 50]]
+    assert lane.right.tolist() == [[0, -1.75], [51.75, -1.75], [51.75, 50]]
+    assert (lane.limit_mps, lane.left_mark, lane.stop_line, lane.foes) == (None, None, None, None)
+    assert "lanes are taken to be 3.5 m wide" in roads.remarks
+
+
+def test_all_that_can_be_said(tmp_path):
+    head = (
+        "lane,x,y,width,limit_kmh,left_mark,right_mark,type,signs,successors,left_lane,"
+        "junction,foes,first,stop_line,side"
+    )
+    roads = lanes(
+        tmp_path,
+        head,
+        "a,0,0,3,50,broken,solid,urban busLane,stop,b c,d,,,,1,left",
+        "a,50,0,5,,,,,,,,,,,,",
+        *(f"{name},{x},0,3,,,,,,,,j,c,c,,left" for name in "bc" for x in (50, 60)),
+        *(f"d,{x},4,3,,,,,,,,,,,,left" for x in (0, 50)),
+    )
+    a, b, d = (roads.lanelets[name] for name in "abd")
+    assert np.hypot(*(a.left - a.right).T) == pytest.approx([3, 5])
+    assert (a.limit_mps, a.left_mark, a.right_mark) == (pytest.approx(50 / 3.6), "broken", "solid")
+    assert (a.types, a.signs) == ({"urban", "busLane"}, {"STOP"})
+    assert (a.successors, b.predecessors, a.left_of, d.right_of) == (("b", "c"), ("a",), "d", "a")
+    assert a.stop_line.tolist() == [[50, 2.5], [50, -2.5]]
+    assert (b.types, b.junction, b.foes, b.first) == ({"intersection"}, "j", {"c"}, {"c"})
+    assert roads.side == "left"
+
+
+def test_lanes_whose_ends_meet_follow_each_other(tmp_path):
+    """``c`` begins at the end of ``a``, but leads back."""
+    points = ("a,0,0", "a,50,0", "b,50.2,0", "b,90,5", "c,50,0.2", "c,0,3")
+    roads = lanes(tmp_path, "lane,x,y", *points)
+    assert roads.lanelets["a"].successors == ("b",)
+    assert roads.lanelets["b"].predecessors == ("a",)
+    assert "lanes whose ends meet are taken to follow each other" in roads.remarks
+
+
+@pytest.mark.parametrize(
+    ("head", "rows", "line", "said"),
+    [
+        ("lane,x,y", ["a,0,0"], 2, "lane `a` has one place only"),
+        ("lane,x,y", ["a,0,0", "a,30000,0"], 2, "lane `a` is 30,000 m long"),
+        ("lane,x,y,width", ["a,0,0,-1", "a,9,0,3"], 2, "its `width` is -1"),
+        ("lane,x,y,type", ["a,0,0,urbn", "a,9,0,"], 2, "is of type `urbn`"),
+        ("lane,x,y,left_mark", ["a,0,0,", "a,9,0,dashed"], 3, "its `left_mark` is `dashed`"),
+        ("lane,x,y,type", ["a,0,0,urban", "a,9,0,rural"], 3, "its `type` is another"),
+        ("lane,x,y,successors", ["a,0,0,b", "a,9,0,"], 2, "has `b`, which is no lane"),
+    ],
+)
+def test_what_is_wrong_has_its_row(tmp_path, head, rows, line, said):
+    found = message(tmp_path, head, *rows)
+    assert found.place.line == line
+    assert said in found.message
+
+
+def test_ways_out(tmp_path):
+    assert (
+        message(tmp_path, "lane,x,y,type", "a,0,0,urbn", "a,9,0,").help == "did you mean `urban`?"
+    )

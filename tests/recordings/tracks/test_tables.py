@@ -1,0 +1,295 @@
+"""Tracks with columns of one's own become recordings: names, units, sizes, times, ego."""
+
+import gzip
+from math import pi
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from pyarrow import parquet
+
+from rulec import RulecError, read_recording, verify_recording
+from rulec.recordings.recording_files import is_recording
+from support.builders.track_tables import HEAD, LANES, driving, table, written
+
+
+def read(folder, head, *rows, lanes=LANES):
+    return read_recording(written(folder, table(head, *rows), lanes))
+
+
+def only(recording):
+    (one,) = recording.participants
+    return one
+
+
+def message(folder, head, *rows, lanes=LANES):
+    with pytest.raises(RulecError) as refused:
+        read(folder, head, *rows, lanes=lanes)
+    (found,) = refused.value.diagnostics
+    return found
+
+
+def test_four_columns_are_enough(tmp_path):
+    """A car at 10 m/s along x: its heading and speed follow from its places, its size is usual."""
+    recording = read(tmp_path, HEAD, *driving())
+    car = only(recording)
+    assert (recording.step_s, list(car.states)) == (0.1, list(range(11)))
+    state = car.states[5]
+    assert (state.x, state.y, state.heading) == pytest.approx((25.0, 0.0, 0.0))
+    assert (state.speed, state.acceleration) == pytest.approx((10.0, 0.0), abs=1e-6)
+    assert np.ptp(car.outlines[5], axis=0) == pytest.approx((4.5, 1.8))
+    said = " ".join(recording.remarks)
+    assert "type `car`" in said
+    assert "length of a car 4.5 m" in said
+    assert "neighbours" in said
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "heading"),
+    [("heading", pi / 6, pi / 6), ("heading_deg", 30, pi / 6), ("yaw", -0.5, -0.5)],
+)
+def test_angles(tmp_path, column, value, heading):
+    car = only(read(tmp_path, f"{HEAD},{column}", *driving(steps=3, more=f",{value}")))
+    assert car.states[1].heading == pytest.approx(heading)
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "speed"),
+    [("speed", 9, 9), ("speed_kmh", 36, 10), ("speed_mph", 10, 4.4704)],
+)
+def test_speeds(tmp_path, column, value, speed):
+    car = only(read(tmp_path, f"{HEAD},{column}", *driving(steps=3, more=f",{value}")))
+    assert car.states[1].speed == pytest.approx(speed)
+
+
+def test_velocities_are_speeds_along_the_heading(tmp_path):
+    """It slides 3 m/s to the side at 4 m/s ahead: its speed is 4 m/s."""
+    car = only(read(tmp_path, f"{HEAD},heading,vx,vy", *driving(steps=3, more=",0,4,3")))
+    assert car.states[1].speed == pytest.approx(4.0)
+
+
+def test_backing_up(tmp_path):
+    """Its front shows along x, its places go back by 2 m/s: a speed without a sign gets one."""
+    rows = driving(speed=-2.0, more=",0,2")
+    assert only(read(tmp_path, f"{HEAD},heading,speed", *rows)).states[4].speed == -2.0
+
+
+def test_places_of_the_front(tmp_path):
+    car = only(read(tmp_path, "track,t,front_x,front_y,length", *driving(more=",6")))
+    assert car.states[0].x == pytest.approx(17.0)
+
+
+def test_who_stands_is_turned_as_the_lane(tmp_path):
+    """It flickers by 0.2 m; the only lane leads up."""
+    rows = [f"a,{k / 10},5,{20 + 0.1 * (k % 3)}" for k in range(9)]
+    lanes = table("lane,x,y", "u,5,0", "u,5,90")
+    recording = read(tmp_path, HEAD, *rows, lanes=lanes)
+    assert only(recording).states[3].heading == pytest.approx(pi / 2)
+    assert "that does not move" in " ".join(recording.remarks)
+
+
+@pytest.mark.parametrize(
+    ("word", "kind"),
+    [("Car", "car"), ("truck_bus", "truck"), ("motorbike", "motorcycle"), ("Cyclist", "bicycle"),
+     ("person", "pedestrian"), ("Emergency Vehicle", "priorityVehicle"), ("other", "unknown"),
+     ("parkedVehicle", "parkedVehicle")],
+)  # fmt: skip
+def test_types(tmp_path, word, kind):
+    assert only(read(tmp_path, f"{HEAD},type", *driving(more=f",{word}"))).type == kind
+
+
+def test_a_size_of_nothing_is_the_usual_one(tmp_path):
+    rows = driving(more=",pedestrian,0,")
+    person = only(read(tmp_path, f"{HEAD},type,length,width", *rows))
+    assert np.ptp(person.outlines[0], axis=0) == pytest.approx((0.5, 0.5))
+
+
+def test_lamps_ego_and_who_stands(tmp_path):
+    """Where a lamp's cell is empty nothing is known of it."""
+    head = f"{HEAD},brake_light,left_indicator,ego,standing"
+    rows = ["a,0,20,0,1,0,1,", "a,0.1,21,0,1,1,1,", "a,0.2,22,0,,1,1,", "p,0,50,-2,,,0,1",
+            "p,0.1,50,-2,,,0,1"]  # fmt: skip
+    recording = read(tmp_path, head, *rows)
+    car, parked = recording.participants
+    assert car.lamps == {
+        0: frozenset({"brake_light"}),
+        1: frozenset({"brake_light", "left_indicator"}),
+    }
+    assert car.shows == {"brake_light", "left_indicator"}
+    assert (recording.ego, parked.standing, list(parked.states)) == ("a", True, [0])
+
+
+@pytest.mark.parametrize(
+    ("times", "step_s", "steps"),
+    [
+        ((0, 0.1, 0.2, 0.3), 0.1, [0, 1, 2, 3]),
+        ((12.0, 12.04, 12.08), 0.04, [300, 301, 302]),
+        ((0, 0.033, 0.067, 0.1, 0.133), 1 / 30, [0, 1, 2, 3, 4]),
+        ((0, 0.03, 0.07, 0.10, 0.13, 0.17, 0.20), 1 / 30, [0, 1, 2, 3, 4, 5, 6]),
+        ((0.0, 0.2, 0.4), 0.2, [0, 1, 2]),
+        ((5, 6, 7), 1.0, [5, 6, 7]),
+    ],
+)
+def test_steps(tmp_path, times, step_s, steps):
+    rows = [f"a,{t},{20 + 10 * t},0" for t in times]
+    recording = read(tmp_path, HEAD, *rows)
+    assert recording.step_s == pytest.approx(step_s, rel=1e-12)
+    assert list(only(recording).states) == steps
+
+
+def test_the_rate_of_video(tmp_path):
+    """A minute at 30,000 frames in 1001 s, written with milliseconds, is not 30 a second."""
+    times = [round(k * 1001 / 30000, 3) for k in range(1800)]
+    recording = read(tmp_path, HEAD, *[f"a,{t},{20 + t / 10},0" for t in times])
+    assert recording.step_s == pytest.approx(1001 / 30000, rel=1e-12)
+    assert len(only(recording).states) == 1800
+
+
+def test_a_unit_of_time(tmp_path):
+    rows = [f"a,{k * 100_000_000},{20 + k},0" for k in range(3)]
+    assert read(tmp_path, "track,t_ns,x,y", *rows).step_s == 0.1
+
+
+def test_times_since_1970_count_from_the_first(tmp_path):
+    rows = [f"a,{1_700_000_000 + k / 10:.1f},{20 + k},0" for k in range(3)]
+    recording = read(tmp_path, HEAD, *rows)
+    assert (recording.step_s, list(only(recording).states)) == (0.1, [0, 1, 2])
+    assert "times count from the first one, 1700000000 s" in recording.remarks
+
+
+def test_who_comes_back_is_another_one(tmp_path):
+    rows = [f"7,{t},{20 + 10 * t},0" for t in (0, 0.1, 0.2, 0.6, 0.7, 0.8)]
+    first, second = read(tmp_path, HEAD, *rows).participants
+    assert (first.id, list(first.states)) == ("7", [0, 1, 2])
+    assert (second.id, list(second.states)) == ("7_2", [6, 7, 8])
+
+
+def test_rows_in_any_order(tmp_path):
+    rows = driving("a") + driving("b", y=3.5)
+    sorted_, mixed = read(tmp_path, HEAD, *rows), read(tmp_path, HEAD, *rows[::-1])
+    assert [one.id for one in mixed.participants] == ["a", "b"]
+    for one, other in zip(sorted_.participants, mixed.participants, strict=True):
+        assert dict(one.states) == dict(other.states)
+
+
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_other_separators(tmp_path, mark):
+    text = table(HEAD, *driving()).replace(",", mark)
+    assert only(read_recording(written(tmp_path, text))).states[0].x == 20.0
+
+
+def test_packed_and_from_elsewhere(tmp_path):
+    text = "\ufeff" + table('"Track",T,X,Y', *driving()).replace("\n", "\r\n") + "\r\n\r\n"
+    file = written(tmp_path, text)
+    packed = tmp_path / "cars.csv.gz"
+    packed.write_bytes(gzip.compress(file.read_bytes()))
+    assert dict(only(read_recording(file)).states) == dict(only(read_recording(packed)).states)
+    assert is_recording(str(packed))
+
+
+def test_parquet_says_the_same(tmp_path):
+    text = written(tmp_path, table(HEAD, *driving("7"), *driving("8", y=3.5)))
+    cells = [row.split(",") for row in (*driving("7"), *driving("8", y=3.5))]
+    columns = {"track": [int(row[0]) for row in cells]}
+    columns |= {
+        name: [float(row[at]) for row in cells] for at, name in ((1, "t"), (2, "x"), (3, "y"))
+    }
+    file = tmp_path / "cars.parquet"
+    parquet.write_table(pa.table(columns), file)
+    assert is_recording(str(file))
+    for one, other in zip(
+        read_recording(text).participants, read_recording(file).participants, strict=True
+    ):
+        assert (one.id, dict(one.states)) == (other.id, dict(other.states))
+
+
+def test_a_file_of_traces_is_none(tmp_path):
+    file = tmp_path / "traces.csv"
+    file.write_text("trace,step,object,type,other,position,x,y,t\n")
+    assert not is_recording(str(file))
+
+
+@pytest.mark.parametrize(
+    ("head", "row", "line", "said"),
+    [
+        ("trak,t,x,y", "a,0,20,0", None, "it has no column `track`, but `trak`"),
+        ("track,t,x,speed", "a,0,20,0", None, "it has no column `y`"),
+        (HEAD, "a,0.3,2O,0", 5, "column `x` holds `2O`"),
+        (HEAD, "a,0.3,inf,0", 5, "column `x` holds `inf`"),
+        (HEAD, "a,0.3,,0", 5, "column `x` is empty here"),
+        (HEAD, ",0.3,20,0", 5, "column `track` is empty here"),
+        (HEAD, "a,0.3,20", 5, "its row has 3 cells, its head 4 names"),
+        (HEAD, "a,0.2,20,0", 5, "track `a` is twice at 0.2 s"),
+        (HEAD, "a,0.3,1e12,0", 5, "its `x` is 1e+12"),
+        (HEAD, "a,0.345,20,0", 5, "its times are uneven: 0.345 s"),
+        (HEAD, "a,3000000,20,0", None, "spread over 3,000,000 s"),
+        (f"{HEAD},type", "a,0.3,20,0,spaceship", 5, "nobody is of type `spaceship`"),
+        (
+            f"{HEAD},heading",
+            "a,0.3,20,0,271",
+            5,
+            "its heading is 271, which is no angle in radians",
+        ),
+        (f"{HEAD},ego", "a,0.3,20,0,2", 5, "its `ego` is 2"),
+        (f"{HEAD},length", "a,0.3,20,0,-4", 5, "its `length` is -4"),
+        (f"{HEAD},heading,heading_deg", "a,0.3,20,0,1,1", None, "are both `heading`"),
+        (f"{HEAD},vx", "a,0.3,20,0,1", None, "a column `vx`, but none `vy`"),
+    ],
+)
+def test_what_is_wrong_has_its_row_and_column(tmp_path, head, row, line, said):
+    rest = "," * (row.count(",") - 3)
+    before = [f"{one}{rest}" if head.startswith(HEAD) else row for one in driving(steps=3)]
+    found = message(tmp_path, head, *before, row)
+    assert (found.code, found.place.line) == ("R0610", line)
+    assert said in found.message
+
+
+def test_ways_out(tmp_path):
+    assert message(tmp_path, "trak,t,x,y", "a,0,20,0").help == "if that is the one, call it `track`"
+    degrees = message(tmp_path, f"{HEAD},heading", *driving(more=",90"))
+    assert "heading_deg" in degrees.help
+    wrong = message(tmp_path, f"{HEAD},type", *driving(more=",pedestrain"))
+    assert wrong.help == "did you mean `pedestrian`?"
+
+
+def test_headings_of_a_compass(tmp_path):
+    """90° is east on a compass: in radians all of those who drive east are turned by 90°."""
+    found = message(tmp_path, f"{HEAD},heading_deg", *driving(steps=40, more=",90"))
+    assert "headings do not fit the motion" in found.message
+    assert "90° in the median" in found.message
+
+
+def test_a_slip_in_a_name_is_said(tmp_path):
+    recording = read(tmp_path, f"{HEAD},lenght,note", *driving(more=",5,x"))
+    assert "columns that are not read: `lenght` (is it `length`?)" in recording.remarks
+
+
+def test_a_track_of_another_rate(tmp_path):
+    slow = [f"b,{k / 5},{20 + k},0" for k in range(5)]
+    found = message(tmp_path, HEAD, *driving(), *slow)
+    assert "track `b` has a row every 0.2 s" in found.message
+
+
+def test_two_egos(tmp_path):
+    rows = [*driving("a", more=",1"), *driving("b", more=",1")]
+    assert "`a` and `b` are both ego" in message(tmp_path, f"{HEAD},ego", *rows).message
+
+
+def test_without_a_map(tmp_path):
+    found = message(tmp_path, HEAD, *driving(), lanes="")
+    assert (found.code, found.message) == ("R0614", "`cars.csv` has tracks, but no roads")
+    assert "--map" in found.help
+
+
+def test_far_from_the_roads(tmp_path):
+    found = message(tmp_path, HEAD, *driving(start=5000.0))
+    assert found.code == "R0615"
+    assert "x 5000.0 to 5010.0" in found.message
+
+
+def test_it_is_judged(tmp_path):
+    """16 m/s where 50 km/h (13.9 m/s) are allowed."""
+    lanes = table("lane,x,y,limit_kmh", "r,0,0,50", "r,300,0,50")
+    recording = read(tmp_path, HEAD, *driving(speed=16.0, steps=50), lanes=lanes)
+    (row,) = verify_recording(recording, "de").rows()
+    assert row["violated"] == ["speed_limit"]
