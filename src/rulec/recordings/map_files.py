@@ -35,6 +35,13 @@ def _sumo(path: Path, step_s: float) -> RoadMap:
     return read_sumo_map(path, step_s)
 
 
+def _opendrive(path: Path, _: float) -> RoadMap:
+    # As above.
+    from rulec.recordings.opendrive.opendrive_map import read_opendrive_map
+
+    return read_opendrive_map(path)
+
+
 def _commonroad(path: Path, step_s: float) -> RoadMap:
     # As above.
     from rulec.recordings.commonroad.commonroad_file import read_commonroad_map
@@ -58,6 +65,13 @@ def _lanes(path: Path, step_s: float) -> RoadMap:  # noqa: ARG001 - lanes have n
 
 MAP_FORMATS = (
     MapFormat("sumo", "nets of SUMO's", "*.net.xml", lambda glance: glance.root == "net", _sumo),
+    MapFormat(
+        "opendrive",
+        "ASAM OpenDRIVE, 1.4 to 1.8",
+        "*.xodr",
+        lambda glance: glance.root == "OpenDRIVE",
+        _opendrive,
+    ),
     MapFormat(
         "commonroad",
         "the roads of CommonRoad scenarios",

@@ -1,0 +1,1 @@
+"""ASAM OpenDRIVE maps, versions 1.4 to 1.8."""

@@ -1,0 +1,1 @@
+"""An OpenDRIVE file as data, before it is a map."""

@@ -1,0 +1,221 @@
+"""A road of an OpenDRIVE file, from its element."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+from math import pi
+
+from rulec.recordings.encodings.tree import Tree
+from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.opendrive.content.elements import (
+    Access,
+    Cubic,
+    Geometry,
+    Lane,
+    LaneSection,
+    MapRoad,
+    MarkRecord,
+    RoadLink,
+    RoadStretch,
+    RoadType,
+    Shape,
+)
+from rulec.recordings.opendrive.content.furniture_reader import read_objects, read_signals
+from rulec.recordings.opendrive.content.tree_values import (
+    contact_point,
+    cubic,
+    lane_number,
+    length,
+    name,
+    speed,
+    text,
+)
+
+LONGEST_ROAD_M = 1_000_000.0
+_MOST_TURNED = 200 * pi
+"""A piece of a reference line turns less, helical ramps included."""
+
+_HAIR_M = 0.01
+
+
+def read_road(tree: Tree) -> MapRoad:
+    """The road in an element. Raises RulecError R0610."""
+    road_length = length(tree, "length")
+    if road_length > LONGEST_ROAD_M:
+        raise tree.wrong(f"a road is longer than {LONGEST_ROAD_M / 1000:,.0f} km")
+    junction = text(tree, "junction")
+    link, lanes = tree.first("link"), tree.child("lanes")
+    ends = (None, None) if link is None else map(link.first, ("predecessor", "successor"))
+    predecessor, successor = (None if end is None else _link(end) for end in ends)
+    rule = text(tree, "rule")
+    if rule not in ("", "RHT", "LHT"):
+        raise tree.wrong(f"`rule` of a `road` is `{short(rule)}`", "`RHT` or `LHT`")
+    signals, references = read_signals(tree)
+    objects = tree.first("objects")
+    return MapRoad(
+        id=name(tree),
+        length=road_length,
+        junction="" if junction in ("", "-1") else name(tree, "junction"),
+        left_hand=rule == "LHT",
+        line=tree.place,
+        predecessor=predecessor,
+        successor=successor,
+        types=tuple(sorted(map(_type, tree.all("type")), key=lambda kind: kind.start)),
+        geometries=_geometries(tree.child("planView")),
+        offsets=_cubics(lanes, "laneOffset", "s"),
+        sections=tuple(_sections(lanes, road_length)),
+        signals=signals,
+        references=references,
+        objects=read_objects(tree),
+        tunnels=() if objects is None else tuple(map(_stretch, objects.all("tunnel"))),
+    )
+
+
+def _link(tree: Tree) -> RoadLink | None:
+    # What the file leaves out is not linked, as with an id of -1
+    kind, other = text(tree, "elementType"), text(tree, "elementId")
+    if kind not in ("road", "junction") or not other:
+        return None
+    return RoadLink(kind, name(tree, "elementId"), contact_point(tree))
+
+
+def _type(tree: Tree) -> RoadType:
+    limit = tree.first("speed")
+    most = None if limit is None else speed(limit, None).limit_mps
+    return RoadType(length(tree, "s", 0.0), text(tree, "type"), most, text(tree, "country"))
+
+
+def _stretch(tree: Tree) -> RoadStretch:
+    start = length(tree, "s")
+    return RoadStretch(start, start + length(tree, "length"))
+
+
+def _cubics(tree: Tree, kind: str, key: str) -> tuple[Cubic, ...]:
+    return tuple(sorted((cubic(x, key) for x in tree.all(kind)), key=lambda x: x.start))
+
+
+def _geometries(tree: Tree) -> tuple[Geometry, ...]:
+    found = sorted(map(_geometry, tree.all("geometry")), key=lambda piece: piece.s)
+    # Of two that begin at one place the first has no length
+    kept = [a for a, b in pairwise(found) if b.s > a.s] + found[-1:]
+    if not kept:
+        raise tree.wrong("a road has no `geometry`")
+    return tuple(kept)
+
+
+_SHAPES: dict[Shape, tuple[str, ...]] = {
+    "line": (),
+    "arc": ("curvature",),
+    "spiral": ("curvStart", "curvEnd"),
+    "poly3": ("a", "b", "c", "d"),
+    "paramPoly3": ("aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV"),
+}
+
+
+def _geometry(tree: Tree) -> Geometry:
+    s, x, y, heading = length(tree, "s"), *(tree.number(key) for key in ("x", "y", "hdg"))
+    whole = length(tree, "length")
+    for shape, keys in _SHAPES.items():
+        child = tree.first(shape)
+        if child is None:
+            continue
+        numbers = tuple([child.number(key) for key in keys])
+        curved = max(map(abs, numbers), default=0.0) if shape in ("arc", "spiral") else 0.0
+        if curved * whole > _MOST_TURNED:
+            raise child.wrong(f"a road turns round {curved * whole / 2 / pi:,.0f} times")
+        # Normalized is what the standard takes for granted where a file does not say
+        normalized = shape == "paramPoly3" and text(child, "pRange") != "arcLength"
+        return Geometry(
+            s=s,
+            x=x,
+            y=y,
+            heading=heading,
+            length=whole,
+            shape=shape,
+            numbers=numbers,
+            normalized=normalized,
+        )
+    raise tree.wrong("a `geometry` has no shape that is known here", f"one of {', '.join(_SHAPES)}")
+
+
+def _sections(lanes: Tree, road_length: float) -> Iterator[LaneSection]:
+    trees = sorted(lanes.all("laneSection"), key=lambda tree: length(tree, "s"))
+    if not trees:
+        raise lanes.wrong("a road has no `laneSection`")
+    starts = [length(tree, "s") for tree in trees]
+    if starts[-1] > road_length + _HAIR_M:
+        raise trees[-1].wrong(f"a lane section begins at {starts[-1]:g} m, behind the road's end")
+    rows: list[dict[int, Lane]] = []
+    for number_, tree in enumerate(trees):
+        row = _lanes(tree)
+        if rows and text(tree, "singleSide") == "true":
+            _carry_over(rows[-1], row, starts[number_] - starts[number_ - 1])
+        rows.append(row)
+    for start, end, row in zip(starts, [*starts[1:], road_length], rows, strict=True):
+        yield LaneSection(start, max(start, end), row)
+
+
+def _lanes(section: Tree) -> dict[int, Lane]:
+    found: dict[int, Lane] = {}
+    for side, sign in (("left", 1), ("center", 0), ("right", -1)):
+        for tree in [lane for part in section.all(side) for lane in part.all("lane")]:
+            lane = _lane(tree)
+            if (lane.id > 0) - (lane.id < 0) != sign:
+                raise tree.wrong(f"a lane {lane.id} is among those of `{side}`")
+            if lane.id in found:
+                raise tree.wrong(f"there are two lanes {lane.id} in a lane section")
+            found[lane.id] = lane
+    return found
+
+
+def _carry_over(before: dict[int, Lane], row: dict[int, Lane], way: float) -> None:
+    """Lanes of a side that a section says nothing about go on through it."""
+    for side in (1, -1):
+        if any(lane * side > 0 for lane in row):
+            continue
+        for lane in [lane for lane in before.values() if lane.id * side > 0]:
+            row[lane.id] = replace(
+                lane,
+                widths=tuple([replace(x, start=x.start - way) for x in lane.widths]),
+                borders=tuple([replace(x, start=x.start - way) for x in lane.borders]),
+                marks=tuple([replace(x, start=x.start - way) for x in lane.marks]),
+                speeds=tuple([replace(x, start=x.start - way) for x in lane.speeds]),
+                access=tuple([replace(x, start=x.start - way) for x in lane.access]),
+                predecessors=(lane.id,),
+            )
+            before[lane.id] = replace(lane, successors=(lane.id,))
+
+
+def _lane(tree: Tree) -> Lane:
+    link = tree.first("link")
+    predecessors, successors = (
+        () if link is None else tuple([lane_number(end) for end in link.all(word)])
+        for word in ("predecessor", "successor")
+    )
+    return Lane(
+        id=lane_number(tree),
+        type=text(tree, "type"),
+        direction=text(tree, "direction"),
+        widths=_cubics(tree, "width", "sOffset"),
+        borders=_cubics(tree, "border", "sOffset"),
+        marks=tuple(sorted(map(_mark, tree.all("roadMark")), key=lambda mark: mark.start)),
+        speeds=tuple(
+            sorted((speed(x, "sOffset") for x in tree.all("speed")), key=lambda x: x.start)
+        ),
+        access=tuple([_access(x) for x in tree.all("access")]),
+        predecessors=predecessors,
+        successors=successors,
+    )
+
+
+def _mark(tree: Tree) -> MarkRecord:
+    return MarkRecord(length(tree, "sOffset", 0.0), text(tree, "type"), text(tree, "laneChange"))
+
+
+def _access(tree: Tree) -> Access:
+    """Who may use a lane; before 1.8 in one attribute, since then in an element for each."""
+    users = {text(tree, "restriction"), *(text(x, "type") for x in tree.all("restriction"))}
+    allows = text(tree, "rule") == "allow"
+    return Access(length(tree, "sOffset", 0.0), allows, frozenset(users - {""}))

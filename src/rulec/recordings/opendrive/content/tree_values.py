@@ -1,0 +1,110 @@
+"""Attributes of OpenDRIVE's elements, checked."""
+
+from __future__ import annotations
+
+from math import inf
+
+from rulec.recordings.encodings.tree import Tree
+from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.opendrive.content.elements import ContactPoint, Cubic, Orientation, Speed
+
+LONGEST_NAME = 200
+_UNITS = {"m/s": 1.0, "km/h": 1 / 3.6, "mph": 0.44704, "": 1.0}
+"""The unit of a speed is m/s where none is given."""
+
+_MOST_LANES = 1_000
+
+
+def name(tree: Tree, key: str = "id") -> str:
+    """An id, which may be any text that is not empty."""
+    text = tree.attribute(key).strip()
+    if not text or len(text) > LONGEST_NAME:
+        expected = f"1 to {LONGEST_NAME} characters"
+        raise tree.wrong(f"`{key}` of a `{tree.name}` is `{short(text)}`", expected)
+    return "".join(c if c.isprintable() else "?" for c in text)
+
+
+def text(tree: Tree, key: str) -> str:
+    """A word, empty if it is missing."""
+    return tree.attributes.get(key, "").strip()[:LONGEST_NAME]
+
+
+def number(tree: Tree, key: str, default: float) -> float:
+    """A number, or its default if it is missing or empty."""
+    return tree.number(key) if text(tree, key) else default
+
+
+def length(tree: Tree, key: str, default: float | None = None) -> float:
+    """A number not below 0; by a hair it may be, from rounding."""
+    value = tree.number(key) if default is None else number(tree, key, default)
+    if value < -1e-3:
+        raise tree.wrong(f"`{key}` of a `{tree.name}` is {value:g}", "a number not below 0")
+    return max(value, 0.0)
+
+
+def lane_number(tree: Tree, key: str = "id") -> int:
+    """The number of a lane."""
+    written = tree.attribute(key).strip()
+    digits = written.removeprefix("-").removeprefix("+")
+    if not (digits.isascii() and digits.isdigit()) or len(digits) > 4 or int(digits) > _MOST_LANES:
+        expected = f"a whole number from {-_MOST_LANES} to {_MOST_LANES}"
+        raise tree.wrong(f"`{key}` of a `{tree.name}` is `{short(written)}`", expected)
+    return int(written)
+
+
+def cubic(tree: Tree, key: str) -> Cubic:
+    """The polynomial in an element, which holds from an attribute on."""
+    a, b, c, d = (number(tree, name_, 0.0) for name_ in "abcd")
+    return Cubic(length(tree, key), a, b, c, d)
+
+
+def contact_point(tree: Tree) -> ContactPoint | None:
+    """The end of a road that something is linked with, None if it is not said."""
+    match text(tree, "contactPoint"):
+        case "start":
+            return "start"
+        case "end":
+            return "end"
+    return None
+
+
+def orientation(tree: Tree) -> Orientation:
+    """The direction of the road in which something holds."""
+    match text(tree, "orientation"):
+        case "+":
+            return "+"
+        case "-":
+            return "-"
+    return "none"
+
+
+def validity(tree: Tree) -> tuple[tuple[int, int], ...] | None:
+    """The lanes that an element holds for, from which to which; None for all."""
+    ranges = []
+    for child in tree.all("validity"):
+        ends = lane_number(child, "fromLane"), lane_number(child, "toLane")
+        ranges.append((min(ends), max(ends)))
+    return tuple(ranges) or None
+
+
+def speed(tree: Tree, key: str | None) -> Speed:
+    """The limit in an element; lanes' have a place that they hold from."""
+    start = 0.0 if key is None else length(tree, key, 0.0)
+    match tree.attribute("max").strip().lower():
+        case "no limit":
+            return Speed(start, inf)
+        case "undefined" | "":
+            return Speed(start, None)
+    most = tree.number("max")
+    if most < 0:
+        raise tree.wrong(f"`max` of a `speed` is {most:g}", "a number not below 0")
+    # Some tools write 0 for none that they know
+    return Speed(start, most * unit_mps(tree) if most else None)
+
+
+def unit_mps(tree: Tree) -> float:
+    """A unit of speed in m/s."""
+    unit = text(tree, "unit")
+    if unit not in _UNITS:
+        raise tree.wrong(f"`unit` of a `{tree.name}` is `{short(unit)}`", "`m/s`, `km/h` or `mph`")
+    return _UNITS[unit]

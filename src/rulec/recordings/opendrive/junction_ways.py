@@ -1,0 +1,99 @@
+"""Which junctions are crossroads, and who goes first there.
+
+The standard has a junction wherever roads part or join, also where ramps leave a motorway. For
+traffic law it is one where three roads or more meet, and traffic comes from unlike directions.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import pi
+
+import numpy as np
+
+from rulec.recordings.opendrive.content.elements import OpenDrive, RoadJunction
+from rulec.recordings.opendrive.lane_links import LaneKey, LaneLinks
+from rulec.recordings.opendrive.pieces import RoadPiece
+from rulec.recordings.opendrive.plan_view import places_on
+
+_ARMS = 3
+_LIKE = np.radians(30.0)
+"""Ways that come in at smaller angles run into each other, as where a ramp joins."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crossroads:
+    """Road -> the crossroads that it leads through; road -> roads that go first there."""
+
+    roads: Mapping[str, str]
+    yields_to: Mapping[str, frozenset[str]] = field(default_factory=dict)
+
+    def junction_of(self, road: str) -> str:
+        """The crossroads that a road leads through, or empty."""
+        return self.roads.get(road, "")
+
+
+def crossroads(
+    content: OpenDrive, pieces: Mapping[str, Sequence[RoadPiece]], links: LaneLinks
+) -> Crossroads:
+    """The crossroads of a file."""
+    within: dict[str, list[str]] = defaultdict(list)
+    for road in content.roads.values():
+        if road.junction:
+            within[road.junction].append(road.id)
+    entering: dict[str, list[LaneKey]] = defaultdict(list)
+    arms: dict[str, set[str]] = defaultdict(set)
+    for start, ends in links.after.items():
+        for end in ends:
+            before, after = (content.roads[key.road].junction for key in (start, end))
+            if before != after:
+                if after:
+                    entering[after].append(end)
+                    arms[after].add(start.road)
+                if before:
+                    arms[before].add(end.road)
+    found: dict[str, str] = {}
+    yields_to: dict[str, frozenset[str]] = {}
+    for name, roads in within.items():
+        headings = [_heading(pieces, key) for key in entering[name]]
+        if len(arms[name]) >= _ARMS and _differ(headings):
+            found.update(dict.fromkeys(roads, name))
+            junction = content.junctions.get(name)
+            if junction is not None and junction.priorities:
+                yields_to.update(_rights(junction, roads))
+    return Crossroads(found, yields_to)
+
+
+def _heading(pieces: Mapping[str, Sequence[RoadPiece]], key: LaneKey) -> float:
+    piece = pieces[key.road][key.piece]
+    s = np.array([piece.start if key.forward else piece.end])
+    heading = float(places_on(piece.road.geometries, s).heading[0])
+    return heading if key.forward else heading + pi
+
+
+def _differ(headings: Sequence[float]) -> bool:
+    """True if two of some directions differ by more than what joins at an acute angle."""
+    if not headings:
+        return False
+    turned = (np.array(headings) - headings[0] + pi) % (2 * pi) - pi
+    return bool(np.ptp(turned) > _LIKE)
+
+
+def _rights(junction: RoadJunction, roads: Sequence[str]) -> Iterator[tuple[str, frozenset[str]]]:
+    """The roads through a junction that its priorities name, and those that go before each.
+
+    A road that leads to the junction stands for all ways that begin there.
+    """
+    starting: dict[str, set[str]] = defaultdict(set)
+    for connection in junction.connections:
+        starting[connection.incoming].add(connection.road)
+    first: dict[str, set[str]] = defaultdict(set)
+    for high, low in junction.priorities:
+        before = {high} if high in roads else starting.get(high, set())
+        for road in {low} if low in roads else starting.get(low, set()):
+            first[road] |= before - {road}
+        for road in before:
+            first.setdefault(road, set())
+    yield from ((road, frozenset(others)) for road, others in first.items())

@@ -1,0 +1,286 @@
+"""What signals say to lanes: lights, signs, limits, and stop lines.
+
+A light, a sign to stop or to give way, and a stop line belong to the lane before the junction that
+they stand at, also where the file has them on the roads within it, whose ways then begin there.
+Others hold from where they stand to the end of their road.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from rulec.recordings.opendrive.content.elements import (
+    MapRoad,
+    OpenDrive,
+    Orientation,
+    RoadObject,
+    RoadSignal,
+)
+from rulec.recordings.opendrive.lane_lines import span_at
+from rulec.recordings.opendrive.lane_links import LaneKey, LaneLinks
+from rulec.recordings.opendrive.lane_types import NO_LANE, lane_types
+from rulec.recordings.opendrive.pieces import RoadPiece, directions
+from rulec.recordings.opendrive.signal_catalogues import (
+    HOLDS_ON,
+    PRIORITY_SIGNS,
+    is_light,
+    is_stop_line,
+    sign_of,
+)
+from rulec.recordings.recording import NO_LANES
+
+AT_JUNCTION_M = 40.0
+"""What stands no farther before the end of a road stands at what follows there."""
+
+_HAIR_M = 1e-6
+
+
+class Posted(NamedTuple):
+    """A signal at a place on a road where it holds: its own, or one of a reference."""
+
+    signal: RoadSignal
+    s: float
+    orientation: Orientation
+    lanes: tuple[tuple[int, int], ...] | None
+
+
+@dataclass(slots=True)
+class LaneFurniture:
+    """What stands along a lane; ``lit_to`` are the ways on that a light is for, if it says.
+
+    ``stop_line_s`` is the road and the place on it where the line lies, with the lane there.
+    """
+
+    # Not frozen: signals come one after the other
+    signs: set[str] = field(default_factory=set)
+    limit_mps: float | None = None
+    lit: bool = False
+    lit_to: set[LaneKey] = field(default_factory=set)
+    stop_line: tuple[LaneKey, float] | None = None
+
+
+@dataclass(slots=True)
+class _Street:
+    content: OpenDrive
+    pieces: Mapping[str, Sequence[RoadPiece]]
+    links: LaneLinks
+    found: dict[LaneKey, LaneFurniture] = field(default_factory=dict)
+
+    def at(self, key: LaneKey) -> LaneFurniture:
+        """What stands along a lane."""
+        return self.found.setdefault(key, LaneFurniture())
+
+
+def posted_on(content: OpenDrive) -> dict[str, list[Posted]]:
+    """Road -> the signals that hold on it."""
+    by_id = {x.id: x for road in content.roads.values() for x in road.signals}
+    return {
+        road.id: [
+            *(Posted(x, x.s, x.orientation, x.lanes) for x in road.signals),
+            *(
+                Posted(by_id[x.id], x.s, x.orientation, x.lanes)
+                for x in road.references
+                if x.id in by_id
+            ),
+        ]
+        for road in content.roads.values()
+    }
+
+
+def sign_places(posted: Iterable[Posted]) -> list[float]:
+    """Where on a road something begins or ends that signals say, which it is cut at."""
+    return [x.s for x in posted if is_light(x.signal, ()) or sign_of(x.signal) is not None]
+
+
+def lane_furniture(
+    content: OpenDrive,
+    posted: Mapping[str, Sequence[Posted]],
+    pieces: Mapping[str, Sequence[RoadPiece]],
+    links: LaneLinks,
+) -> Mapping[LaneKey, LaneFurniture]:
+    """What stands along each lane, as far as there is anything."""
+    street = _Street(content, pieces, links)
+    controlled = {signal for signals in content.controllers.values() for signal in signals}
+    for road in content.roads.values():
+        for signal in sorted(posted[road.id], key=lambda x: x.s):
+            _place_signal(street, road, signal, controlled)
+        for backward in sorted(posted[road.id], key=lambda x: -x.s):
+            _hold_on(street, road, backward, forward=False)
+        for thing in road.objects:
+            if is_stop_line_object(thing):
+                _place_line(street, road, thing)
+    return street.found
+
+
+def _place_signal(
+    street: _Street, road: MapRoad, posted: Posted, controlled: frozenset[str] | set[str]
+) -> None:
+    _hold_on(street, road, posted, forward=True)
+    light, line = is_light(posted.signal, controlled), is_stop_line(posted.signal)
+    sign = sign_of(posted.signal)
+    if not (light or line or (sign is not None and sign.name not in HOLDS_ON)):
+        return
+    for key in _lanes_at(street, road, posted):
+        for entry, way in _entries(street, road, key, posted.s):
+            own = street.at(entry)
+            if light:
+                own.lit = True
+                if way is not None:
+                    own.lit_to.add(way)
+            elif line:
+                own.stop_line = key, posted.s
+            elif sign is not None:
+                own.signs.add(sign.name)
+        if sign is not None and sign.name in PRIORITY_SIGNS and not road.junction:
+            for onward in _onward(street, key, posted.s):
+                street.at(onward).signs.add(sign.name)
+
+
+def _hold_on(street: _Street, road: MapRoad, posted: Posted, *, forward: bool) -> None:
+    """What a sign says from its place on, to lanes that are driven along or against the road."""
+    sign = sign_of(posted.signal)
+    if sign is None or sign.name not in HOLDS_ON:
+        return
+    begun = HOLDS_ON[sign.name]
+    for key in _lanes_at(street, road, posted):
+        for onward in _onward(street, key, posted.s) if key.forward == forward else ():
+            own = street.at(onward)
+            # The end of what another sign began
+            own.signs -= begun
+            if "MAX_SPEED" in begun or sign.name == "MAX_SPEED":
+                own.limit_mps = sign.limit_mps
+            if not begun:
+                own.signs.add(sign.name)
+
+
+def _lanes_at(street: _Street, road: MapRoad, posted: Posted) -> list[LaneKey]:
+    """The lanes that a signal holds for: those that it names, else those of its direction.
+
+    Where the lanes that it names are driven the other way, what it names counts.
+    """
+    piece = piece_at(street.pieces[road.id], posted.s)
+    keys = [
+        key
+        for key in drivable(piece)
+        if posted.lanes is None or any(low <= key.lane <= high for low, high in posted.lanes)
+    ]
+    fitting = [
+        key
+        for key in keys
+        if posted.orientation == "none" or key.forward == (posted.orientation == "+")
+    ]
+    return fitting if fitting or posted.lanes is None else keys
+
+
+def drivable(piece: RoadPiece) -> Iterator[LaneKey]:
+    """The lanes of a piece that are part of the carriageway."""
+    for lane in piece.section.lanes.values():
+        types = lane_types(piece.section, lane, piece.middle)
+        if lane.id != 0 and lane.type not in NO_LANE and not NO_LANES.intersection(types):
+            for forward in directions(piece.road, lane):
+                yield LaneKey(piece.road.id, piece.number, lane.id, forward)
+
+
+def piece_at(pieces: Sequence[RoadPiece], s: float) -> RoadPiece:
+    """The piece of a road at a place, the nearest one beyond its ends."""
+    long = [piece for piece in pieces if not piece.is_short] or list(pieces)
+    return min(long, key=lambda piece: max(piece.start - s, s - piece.end, 0.0))
+
+
+def _onward(street: _Street, key: LaneKey, s: float) -> list[LaneKey]:
+    """A lane from a place to the end of its road, as long as it goes on alone."""
+    chain = _chain(street, key)
+    pieces = street.pieces[key.road]
+    middles = [pieces[x.piece].middle for x in chain]
+    return [
+        x
+        for x, middle in zip(chain, middles, strict=True)
+        if (middle >= s - _HAIR_M if key.forward else middle <= s + _HAIR_M)
+    ]
+
+
+def _chain(street: _Street, key: LaneKey, *, back: bool = False) -> list[LaneKey]:
+    """The lanes of one road that follow each other from a lane on, or before it."""
+    links = street.links.before if back else street.links.after
+    chain, seen = [key], {key}
+    while True:
+        following = [x for x in links.get(chain[-1], ()) if x.road == key.road]
+        if len(following) != 1 or following[0] in seen:
+            return chain
+        chain += following
+        seen.update(following)
+
+
+def _entries(
+    street: _Street, road: MapRoad, key: LaneKey, s: float
+) -> Iterator[tuple[LaneKey, LaneKey | None]]:
+    """The lanes at whose ends what stands at a place holds, and the way on that it is for."""
+    if road.junction:
+        first = _chain(street, key, back=True)[-1]
+        for entry in street.links.before.get(first, ()):
+            yield entry, first
+        return
+    chain = _chain(street, key)
+    last, pieces = chain[-1], street.pieces[road.id]
+    end = pieces[last.piece].end if key.forward else pieces[last.piece].start
+    if abs(end - s) > AT_JUNCTION_M:
+        # It stands on the open road, which is cut there
+        passed = [
+            x
+            for x in (*reversed(_chain(street, key, back=True)), *chain[1:])
+            if (pieces[x.piece].middle < s if key.forward else pieces[x.piece].middle > s)
+        ]
+        yield passed[-1] if passed else key, None
+        return
+    yield _before_junction(street, last), None
+
+
+def _before_junction(street: _Street, last: LaneKey) -> LaneKey:
+    """The lane before the junction that a road leads to, over short roads in between."""
+    key, way = last, 0.0
+    while True:
+        following = street.links.after.get(key, ())
+        if len(following) != 1 or street.content.roads[following[0].road].junction:
+            break
+        piece = street.pieces[following[0].road][following[0].piece]
+        way += piece.end - piece.start
+        if way > AT_JUNCTION_M or following[0] == last:
+            return last
+        key = following[0]
+    return key
+
+
+def is_stop_line_object(thing: RoadObject) -> bool:
+    """True if an object is a stop line, by its type, subtype or name."""
+    words = (thing.type, thing.subtype, thing.name)
+    plain = {"".join(c for c in word.lower() if c.isalpha()) for word in words}
+    return "stopline" in plain
+
+
+def _place_line(street: _Street, road: MapRoad, thing: RoadObject) -> None:
+    reach = max(thing.length, thing.width) / 2
+    spans = [t for _, t in thing.corners] if thing.on_road else [thing.t - reach, thing.t + reach]
+    piece = piece_at(street.pieces[road.id], thing.s)
+    posted = Posted(_LINE, thing.s, thing.orientation, None)
+    low, high = min(spans), max(spans)
+    for key in _lanes_at(street, road, posted):
+        if low <= sum(span_at(piece, key.lane, thing.s)) / 2 <= high:
+            for entry, _ in _entries(street, road, key, thing.s):
+                street.at(entry).stop_line = key, thing.s
+
+
+_LINE = RoadSignal(
+    id="",
+    s=0.0,
+    t=0.0,
+    orientation="none",
+    type="294",
+    subtype="",
+    country="",
+    dynamic=False,
+    value=None,
+    unit="",
+    lanes=None,
+)

@@ -1,0 +1,69 @@
+"""Marks between lanes, as each of the two lanes sees them.
+
+A lane's mark is that of its outer border; the centre lane's is the one between both sides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from rulec.recordings.opendrive.content.elements import LaneSection, MarkRecord
+from rulec.recordings.recording import LaneMark
+
+_MARKS: Mapping[str, tuple[LaneMark, LaneMark]] = MappingProxyType(
+    {
+        "none": ("none", "none"),
+        "solid": ("solid", "solid"),
+        "broken": ("broken", "broken"),
+        "solid solid": ("double_solid", "double_solid"),
+        "broken broken": ("broken", "broken"),
+        "solid broken": ("solid", "broken"),
+        "broken solid": ("broken", "solid"),
+    }
+)
+"""Types of marks, as seen from the inner lane (of the centre lane's: from the left) and the other.
+
+Kerbs, grass, Botts' dots and the like say nothing of the line.
+"""
+
+_CHANGES: Mapping[str, tuple[LaneMark, LaneMark]] = MappingProxyType(
+    {"none": ("solid", "solid"), "both": ("broken", "broken")}
+)
+_OWN_LINES = frozenset({"botts dots", "custom"})
+_UNKNOWN = None, None
+
+Marks = tuple["LaneMark | None", "LaneMark | None"]
+
+
+def seen(mark: MarkRecord | None) -> Marks:
+    """A mark as seen from the inner lane, or from the left, and from the other one.
+
+    Of lines of another kind it counts whether lanes may be changed across them.
+    """
+    if mark is None:
+        return _UNKNOWN
+    if mark.type in _OWN_LINES:
+        return _CHANGES.get(mark.change, _UNKNOWN)
+    return _MARKS.get(mark.type, _UNKNOWN)
+
+
+def mark_at(section: LaneSection, lane: int, s: float) -> MarkRecord | None:
+    """The mark of a lane at a place on the road."""
+    own = section.lanes.get(lane)
+    found = None
+    for mark in () if own is None else own.marks:
+        if section.start + mark.start <= s:
+            found = mark
+    return found
+
+
+def mark_beside(section: LaneSection, lane: int, s: float, *, left: bool) -> LaneMark | None:
+    """The mark at a lane's border towards greater ``t`` (``left``) or smaller, as it sees it."""
+    away = left == (lane > 0)
+    if away:
+        return seen(mark_at(section, lane, s))[0]
+    inner = lane - 1 if lane > 0 else lane + 1
+    marks = seen(mark_at(section, inner, s))
+    # The centre lane's are from the left to the right
+    return marks[0] if inner == 0 and lane > 0 else marks[1]

@@ -1,0 +1,87 @@
+"""What lanes and roads are for, in the words of lanelets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from rulec.recordings.opendrive.content.elements import Lane, LaneSection, MapRoad, RoadType
+
+_DRIVING: tuple[str, ...] = ()
+LANE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        **dict.fromkeys(("driving", "bidirectional", "connectingRamp", "HOV"), _DRIVING),
+        **dict.fromkeys(("slipLane", "shared"), _DRIVING),
+        **dict.fromkeys(("entry", "mwyEntry", "onRamp"), ("accessRamp",)),
+        **dict.fromkeys(("exit", "mwyExit", "offRamp"), ("exitRamp",)),
+        **dict.fromkeys(("bus", "taxi"), ("busLane",)),
+        "biking": ("bicycleLane",),
+        **dict.fromkeys(("sidewalk", "walking"), ("sidewalk",)),
+        # The standard's shoulder is soft; its hard one, for stopping, is `stop`
+        "stop": ("shoulder",),
+        **dict.fromkeys(("shoulder", "border", "curb", "median"), ("border",)),
+        "parking": ("parking",),
+        **dict.fromkeys(("restricted", "roadWorks"), ("restricted_area",)),
+        **dict.fromkeys(("rail", "tram"), ("restricted_area", "rail")),
+    }
+)
+"""The standard's types of lanes -> those of lanelets. ``none`` is no lane."""
+
+NO_LANE = frozenset({"none", ""})
+RAMPS = frozenset({"entry", "exit", "mwyEntry", "mwyExit", "onRamp", "offRamp"})
+BOTH_WAYS = "bidirectional"
+
+_ROAD_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "motorway": ("highway",),
+        "rural": ("country",),
+        "town": ("urban",),
+        **dict.fromkeys(
+            ("townExpressway", "townCollector", "townArterial", "townPrivate"), ("urban",)
+        ),
+        **dict.fromkeys(("townLocal", "townPlayStreet"), ("urban",)),
+    }
+)
+
+_BUSES = frozenset({"bus", "taxi", "publicTransport"})
+_RIDERS = frozenset({"bicycle"})
+_WALKERS = frozenset({"pedestrian"})
+
+
+def lane_types(section: LaneSection, lane: Lane, s: float) -> tuple[str, ...]:
+    """What a lane is for at a place on its road; nobody is to drive on one of no known type."""
+    types = LANE_TYPES.get(lane.type, ("border",))
+    allowed = frozenset[str]().union(
+        *(x.users for x in lane.access if x.allow and section.start + x.start <= s)
+    )
+    if types or not allowed:
+        return types
+    if allowed <= _BUSES:
+        return ("busLane",)
+    if allowed <= _WALKERS:
+        return ("sidewalk",)
+    return ("bicycleLane",) if allowed <= _WALKERS | _RIDERS else types
+
+
+def type_at(road: MapRoad, s: float) -> RoadType | None:
+    """What a road is at a place."""
+    found = None
+    for kind in road.types:
+        if kind.start <= s:
+            found = kind
+    return found
+
+
+def road_types(road: MapRoad, s: float) -> tuple[str, ...]:
+    """What a road is at a place, in the words of lanelets."""
+    kind = type_at(road, s)
+    return () if kind is None else _ROAD_TYPES.get(kind.type, ())
+
+
+def limit_at(section: LaneSection, lane: Lane, s: float) -> float | None:
+    """The limit (m/s) that the lane itself has at a place, None if it has none of its own."""
+    found = None
+    for speed in lane.speeds:
+        if section.start + speed.start <= s:
+            found = speed.limit_mps
+    return found

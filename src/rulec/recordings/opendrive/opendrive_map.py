@@ -1,0 +1,271 @@
+"""An OpenDRIVE file as a map: a lanelet for each lane of each piece of a road."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.opendrive.content.elements import Lane, OpenDrive
+from rulec.recordings.opendrive.content.file_reader import OPENDRIVE, read_file
+from rulec.recordings.opendrive.crosswalks import crosswalks
+from rulec.recordings.opendrive.junction_ways import Crossroads, crossroads
+from rulec.recordings.opendrive.lane_furniture import (
+    LaneFurniture,
+    lane_furniture,
+    posted_on,
+    sign_places,
+)
+from rulec.recordings.opendrive.lane_lines import Lines, lane_borders, places_beside, span_at
+from rulec.recordings.opendrive.lane_links import LaneKey, LaneLinks, lane_links
+from rulec.recordings.opendrive.lane_marks import mark_beside
+from rulec.recordings.opendrive.lane_types import (
+    LANE_TYPES,
+    NO_LANE,
+    RAMPS,
+    lane_types,
+    limit_at,
+    road_types,
+    type_at,
+)
+from rulec.recordings.opendrive.pieces import RoadPiece, directions, neighbour, pieces_of
+from rulec.recordings.opendrive.signal_catalogues import country_of
+from rulec.recordings.recording import LONGEST_M, Lanelet, ObservedLight, Points, Side
+from rulec.recordings.road_map import RoadMap
+
+MOST_PLACES = 20_000_000
+"""Of all borders of a map together, some 300 MB of memory."""
+
+NARROWEST_M = 0.05
+"""Lanes that are nowhere wider are none."""
+
+UNSEEN = ObservedLight({})
+"""A light of which a map does not say what it shows."""
+
+_NAMED = 5
+
+
+@dataclass(frozen=True, slots=True)
+class _Whole:
+    """What has been found out of a file's lanes; ``borders`` are those of lanes that are there."""
+
+    content: OpenDrive
+    pieces: Mapping[str, Sequence[RoadPiece]]
+    borders: Mapping[tuple[str, int, int], Lines]
+    links: LaneLinks
+    furniture: Mapping[LaneKey, LaneFurniture]
+    crossroads: Crossroads
+    has_ramps: bool
+
+    def is_there(self, key: LaneKey) -> bool:
+        """True if a lane has a lanelet."""
+        piece = self.pieces[key.road][key.piece]
+        lane = piece.section.lanes.get(key.lane)
+        there = (key.road, key.piece, key.lane) in self.borders
+        return there and lane is not None and key.forward in directions(piece.road, lane)
+
+    def id_of(self, key: LaneKey) -> str:
+        """The id of a lane's lanelet: road, piece and lane, and ``r`` for its other direction."""
+        piece = self.pieces[key.road][key.piece]
+        usual, *_ = directions(piece.road, piece.section.lanes[key.lane])
+        return f"{key.road}.{key.piece}.{key.lane}" + ("" if key.forward == usual else ".r")
+
+    def lane_keys(self) -> Iterator[LaneKey]:
+        """The lanes that have a lanelet."""
+        for road, number, lane in self.borders:
+            piece = self.pieces[road][number]
+            for forward in directions(piece.road, piece.section.lanes[lane]):
+                yield LaneKey(road, number, lane, forward)
+
+
+def read_opendrive_map(path: Path) -> RoadMap:
+    """Read the roads of an OpenDRIVE file.
+
+    Raises RulecError R0610 for a file that is none, R0701 if it cannot be opened.
+    """
+    content = read_file(path)
+    posted = posted_on(content)
+    pieces = {
+        road.id: pieces_of(road, sign_places(posted[road.id])) for road in content.roads.values()
+    }
+    links = lane_links(content, pieces)
+    whole = _Whole(
+        content=content,
+        pieces=pieces,
+        borders=_borders(path, pieces),
+        links=links,
+        furniture=lane_furniture(content, posted, pieces, links),
+        crossroads=crossroads(content, pieces, links),
+        has_ramps=any(
+            lane.type in RAMPS
+            for road in content.roads.values()
+            for section in road.sections
+            for lane in section.lanes.values()
+        ),
+    )
+    lanelets = {x.id: x for x in _lanelets(whole)}
+    for road in content.roads.values():
+        for crossing in crosswalks(road, pieces[road.id], posted[road.id]):
+            lanelets.setdefault(crossing.id, crossing)
+    if not lanelets:
+        raise OPENDRIVE.refused(path, "none of its roads has a lane")
+    return RoadMap(
+        form="OpenDRIVE map",
+        lanelets=lanelets,
+        side=_side(content),
+        country=_country(content),
+        remarks=tuple(_remarks(content)),
+    )
+
+
+def _borders(
+    path: Path, pieces: Mapping[str, Sequence[RoadPiece]]
+) -> dict[tuple[str, int, int], Lines]:
+    borders: dict[tuple[str, int, int], Lines] = {}
+    count = 0
+    for road_pieces in pieces.values():
+        for piece in road_pieces:
+            if piece.is_short:
+                continue
+            try:
+                found = lane_borders(piece)
+            except ValueError as problem:
+                road = piece.road
+                why = f"the road `{short(road.id)}` cannot be laid out: {problem}"
+                raise OPENDRIVE.refused(path, why, road.line) from None
+            for lane, lines in found.items():
+                count += lines.shape[1]
+                wide = float(np.hypot(*(lines[1] - lines[0]).T).max()) > NARROWEST_M
+                if piece.section.lanes[lane].type in NO_LANE or not wide:
+                    continue
+                if np.ptp(lines, axis=(0, 1)).max() > LONGEST_M:
+                    why = f"a lane of the road `{short(piece.road.id)}` is longer than"
+                    why = f"{why} {LONGEST_M / 1000:g} km"
+                    raise OPENDRIVE.refused(path, why, piece.road.line)
+                borders[piece.road.id, piece.number, lane] = lines
+            if count > MOST_PLACES:
+                why = f"its lanes wind so much that they have over {MOST_PLACES:,} places"
+                raise OPENDRIVE.refused(path, why, piece.road.line)
+    return borders
+
+
+def _lanelets(whole: _Whole) -> Iterator[Lanelet]:
+    of_road: dict[str, set[str]] = defaultdict(set)
+    for key in whole.lane_keys():
+        of_road[key.road].add(whole.id_of(key))
+    for key in whole.lane_keys():
+        roads = whole.crossroads.yields_to.get(key.road)
+        lanelet = _lanelet(whole, key)
+        if roads is not None:
+            first = frozenset(name for road in roads for name in of_road[road])
+            lanelet = replace(lanelet, first=first)
+        yield lanelet
+
+
+def _lanelet(whole: _Whole, key: LaneKey) -> Lanelet:
+    piece = whole.pieces[key.road][key.piece]
+    lane = piece.section.lanes[key.lane]
+    low, high = whole.borders[key.road, key.piece, key.lane]
+    right, left = (low, high) if key.forward else (high[::-1], low[::-1])
+    own = whole.furniture.get(key) or LaneFurniture()
+    junction = whole.crossroads.junction_of(key.road)
+    marks = [
+        mark_beside(piece.section, key.lane, piece.middle, left=side == key.forward)
+        for side in (True, False)
+    ]
+    return Lanelet(
+        id=whole.id_of(key),
+        left=left,
+        right=right,
+        centre=(left + right) / 2,
+        successors=_named(whole, whole.links.after.get(key, ())),
+        predecessors=_named(whole, whole.links.before.get(key, ())),
+        left_of=_beside(whole, key, left=True),
+        right_of=_beside(whole, key, left=False),
+        types=frozenset(_types(whole, piece, lane)),
+        signs=frozenset(own.signs),
+        limit_mps=_limit(piece, lane, own),
+        lights=(UNSEEN,) if own.lit else (),
+        lights_to={whole.id_of(way): UNSEEN for way in own.lit_to if whole.is_there(way)},
+        left_mark=marks[0],
+        right_mark=marks[1],
+        stop_line=_stop_line(whole, own),
+        junction=junction,
+    )
+
+
+def _named(whole: _Whole, keys: Sequence[LaneKey]) -> tuple[str, ...]:
+    return tuple([whole.id_of(key) for key in keys if whole.is_there(key)])
+
+
+def _beside(whole: _Whole, key: LaneKey, *, left: bool) -> str | None:
+    """The lane beside one, if it is driven the same way."""
+    other = key._replace(lane=neighbour(key.lane, left=left == key.forward))
+    return whole.id_of(other) if whole.is_there(other) else None
+
+
+def _types(whole: _Whole, piece: RoadPiece, lane: Lane) -> Iterator[str]:
+    road, types = piece.road, lane_types(piece.section, lane, piece.middle)
+    setting = road_types(road, piece.middle)
+    yield from types
+    yield from setting
+    if not types and "highway" in setting and whole.has_ramps:
+        yield "mainCarriageWay"
+    if any(x.start <= piece.middle < x.end for x in road.tunnels):
+        yield "tunnel"
+    if whole.crossroads.junction_of(road.id):
+        yield "intersection"
+
+
+def _limit(piece: RoadPiece, lane: Lane, own: LaneFurniture) -> float | None:
+    """The limit of a lane: its own, else that of a sign, else that of the road's type."""
+    limit = limit_at(piece.section, lane, piece.middle)
+    if limit is None:
+        limit = own.limit_mps
+    kind = type_at(piece.road, piece.middle)
+    return kind.limit_mps if limit is None and kind is not None else limit
+
+
+def _stop_line(whole: _Whole, own: LaneFurniture) -> Points | None:
+    if own.stop_line is None:
+        return None
+    key, s = own.stop_line
+    piece = whole.pieces[key.road][key.piece]
+    low, high = span_at(piece, key.lane, s)
+    ends = (high, low) if key.forward else (low, high)
+    return places_beside(piece.road, [(s, t) for t in ends])
+
+
+def _side(content: OpenDrive) -> Side | None:
+    """The side of traffic, None if roads differ; on the right where a file does not say."""
+    rules = {road.left_hand for road in content.roads.values()}
+    if len(rules) > 1:
+        return None
+    return "left" if rules.pop() else "right"
+
+
+def _country(content: OpenDrive) -> str:
+    """The country that all signals and roads name, empty if they name none, or several."""
+    named = {country_of(x.country) for road in content.roads.values() for x in road.signals}
+    named |= {country_of(x.country) for road in content.roads.values() for x in road.types}
+    codes = {x for x in named if len(x) == 3 and x.isascii() and x.isalpha()}
+    return codes.pop() if len(codes) == 1 else ""
+
+
+def _remarks(content: OpenDrive) -> Iterator[str]:
+    strange: dict[str, None] = {}
+    for road in content.roads.values():
+        for section in road.sections:
+            for lane in section.lanes.values():
+                if lane.id != 0 and lane.type not in LANE_TYPES and lane.type not in NO_LANE:
+                    strange[f"`{short(lane.type)}`"] = None
+    if strange:
+        names, more = list(strange)[:_NAMED], len(strange) - _NAMED
+        some = ", ".join(names + ([f"{more} more"] if more > 0 else []))
+        yield f"lanes of these types are taken to be beside the carriageway: {some}"
+    if len({road.left_hand for road in content.roads.values()}) > 1:
+        yield "traffic keeps to the left on some roads of the map, and to the right on others"

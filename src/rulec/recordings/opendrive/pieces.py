@@ -1,0 +1,91 @@
+"""Roads cut into pieces, on each of which a lane is one lanelet.
+
+A lanelet has one limit, one mark at each of its sides and one kind of surroundings, so lane
+sections are cut where these change, and where a sign stands that holds from there on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from rulec.recordings.opendrive.content.elements import Lane, LaneSection, MapRoad
+from rulec.recordings.opendrive.lane_marks import seen
+from rulec.recordings.opendrive.lane_types import BOTH_WAYS
+
+SHORTEST_M = 1.0
+"""What changes so near before or behind another change, changes with that one."""
+
+NO_LENGTH_M = 0.01
+"""Lane sections that are shorter have no lanelets; their lanes lead on to the next ones."""
+
+LONGEST_PIECE_M = 5_000.0
+"""Longer lane sections are cut."""
+
+
+@dataclass(frozen=True, slots=True)
+class RoadPiece:
+    """A part of a lane section of a road, from ``start`` to ``end``; roads count theirs."""
+
+    road: MapRoad
+    number: int
+    section: LaneSection
+    start: float
+    end: float
+
+    @property
+    def middle(self) -> float:
+        """Its middle, which what is said of the piece holds at."""
+        return (self.start + self.end) / 2
+
+    @property
+    def is_short(self) -> bool:
+        """True if it is too short for lanelets."""
+        return self.end - self.start < NO_LENGTH_M
+
+
+def pieces_of(road: MapRoad, signs: Iterable[float]) -> list[RoadPiece]:
+    """The pieces of a road; ``signs`` are places where something that signs say begins."""
+    found: list[RoadPiece] = []
+    wanted = [x for ends in road.tunnels for x in (ends.start, ends.end)]
+    wanted += [kind.start for kind in road.types] + list(signs)
+    for section in road.sections:
+        cuts = sorted({*wanted, *_changes(section)})
+        places = [section.start]
+        for cut in cuts:
+            if places[-1] + SHORTEST_M <= cut <= section.end - SHORTEST_M:
+                places.append(cut)
+        places.append(section.end)
+        for start, end in pairwise(places):
+            count = max(1, int(np.ceil((end - start) / LONGEST_PIECE_M)))
+            for low, high in pairwise(np.linspace(start, end, count + 1).tolist()):
+                found.append(RoadPiece(road, len(found), section, low, high))
+    return found
+
+
+def _changes(section: LaneSection) -> Iterator[float]:
+    for lane in section.lanes.values():
+        before = None
+        for mark in lane.marks:
+            if (own := seen(mark)) != before:
+                yield section.start + mark.start
+            before = own
+        yield from (section.start + speed.start for speed in lane.speeds)
+        yield from (section.start + access.start for access in lane.access)
+
+
+def directions(road: MapRoad, lane: Lane) -> tuple[bool, ...]:
+    """The directions in which a lane is driven: True along the road, False against it."""
+    usual = (lane.id < 0) != road.left_hand
+    if lane.direction == "both" or lane.type == BOTH_WAYS:
+        return usual, not usual
+    return (not usual,) if lane.direction == "reversed" else (usual,)
+
+
+def neighbour(lane: int, *, left: bool) -> int:
+    """The number of the lane beside another one, towards greater ``t`` (``left``) or smaller."""
+    beside = lane + 1 if left else lane - 1
+    return beside or (1 if left else -1)

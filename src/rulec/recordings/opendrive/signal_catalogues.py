@@ -1,0 +1,125 @@
+"""What signals are, by the catalogues that their types are numbers of.
+
+The standard's own (country ``OpenDRIVE``) has traffic lights and marks on the road; what else a
+signal is called is the number of a country's catalogue, Germany's where none is named.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+from rulec.recordings.commonroad.traffic_signs import UNKNOWN, sign_name
+from rulec.recordings.opendrive.content.elements import RoadSignal
+
+_LIGHTS = frozenset({"1000001", *(f"10000{number:02}" for number in (8, 9, 10, 11, 12))})
+"""Lights for vehicles; others of the catalogue are for people on foot, cyclists, trams."""
+
+_OTHER_LIGHTS = frozenset(f"10000{number:02}" for number in (2, 7, 13, 14, 15, 16, 17, 18))
+WALKERS_LIGHTS = frozenset({"1000002", "1000007"})
+CROSSWALK = "1000003"
+_STOP_LINE = "294"
+
+_CODES: Mapping[str, str] = MappingProxyType(
+    {
+        "US": "USA",
+        "ES": "ESP",
+        "AU": "AUS",
+        "RU": "RUS",
+        "AR": "ARG",
+        "BE": "BEL",
+        "FR": "FRA",
+        "GR": "GRC",
+        "HR": "HRV",
+        "CN": "CHN",
+        "IT": "ITA",
+        "DE": "DEU",
+        "GB": "GBR",
+        "SE": "SWE",
+        "AT": "AUT",
+        "CH": "CHE",
+        "NL": "NLD",
+        "JP": "JPN",
+        "GERMANY": "DEU",
+    }
+)
+"""The codes of countries of two letters, which the standard has since 1.6, and of three."""
+
+_GERMAN = frozenset({"", "DEU", "OPENDRIVE", "OPEN_DRIVE"})
+_CATALOGUES = frozenset(["USA", "ESP", "AUS", "RUS", "ARG", "BEL", "FRA", "GRC", "HRV"])
+"""Of other countries nothing is known here."""
+
+_MORE_IN_USA: Mapping[str, str] = MappingProxyType({"R1-2": "YIELD"})
+
+HOLDS_ON: Mapping[str, frozenset[str]] = MappingProxyType(
+    {
+        "MAX_SPEED": frozenset(),
+        "NO_OVERTAKING_START": frozenset(),
+        "MAX_SPEED_END": frozenset({"MAX_SPEED"}),
+        "NO_OVERTAKING_END": frozenset({"NO_OVERTAKING_START"}),
+        "ALL_MAX_SPEED_AND_OVERTAKING_END": frozenset({"MAX_SPEED", "NO_OVERTAKING_START"}),
+    }
+)
+"""Signs that hold from where they stand on -> those that end there."""
+
+PRIORITY_SIGNS = frozenset({"PRIORITY"})
+_MPH = "mph"
+_UNITS: Mapping[str, float] = MappingProxyType({"km/h": 1 / 3.6, _MPH: 0.44704, "m/s": 1.0})
+
+
+class CatalogueSign(NamedTuple):
+    """A sign's name, and the limit (m/s) that it says, if any."""
+
+    name: str
+    limit_mps: float | None
+
+
+def country_of(code: str) -> str:
+    """The code of a country (ISO 3166, three letters), as far as it is known here."""
+    return _CODES.get(code.upper(), code.upper())
+
+
+def is_light(signal: RoadSignal, controlled: Collection[str]) -> bool:
+    """True for traffic lights for vehicles: of the standard's catalogue, or that are controlled."""
+    if not signal.dynamic or signal.type in _OTHER_LIGHTS:
+        return False
+    return signal.type in _LIGHTS or (signal.id in controlled and sign_of(signal) is None)
+
+
+def is_stop_line(signal: RoadSignal) -> bool:
+    """True for the German sign 294, a stop line."""
+    return signal.type == _STOP_LINE and country_of(signal.country) in _GERMAN
+
+
+def sign_of(signal: RoadSignal) -> CatalogueSign | None:
+    """The sign that a signal is, None if it is none that is known, or shows what it likes."""
+    country = country_of(signal.country)
+    if signal.dynamic or not signal.type or signal.type in ("-1", "none"):
+        return None
+    if country not in _GERMAN | _CATALOGUES:
+        return None
+    numbered = country if country not in _GERMAN else ""
+    more = _MORE_IN_USA if country == "USA" else {}
+    whole = f"{signal.type}-{signal.subtype}"
+    for number in (whole, f"{signal.type}.{signal.subtype}", signal.type):
+        name = more.get(number) or sign_name(number, numbered)
+        if name != UNKNOWN:
+            return CatalogueSign(name, _limit(signal, country) if name == "MAX_SPEED" else None)
+    return None
+
+
+def _limit(signal: RoadSignal, country: str) -> float | None:
+    """The limit (m/s) on a sign: its value, or what Germany's catalogue has for its subtype.
+
+    Until 2017 numbers counted tens from 51 on, since then they are the limit; those that are both
+    say nothing.
+    """
+    if signal.value is not None:
+        unit = signal.unit or (_MPH if country in ("USA", "GBR") else "km/h")
+        return signal.value * _UNITS.get(unit, _UNITS["km/h"])
+    digits = signal.subtype if signal.subtype.isascii() and signal.subtype.isdigit() else ""
+    number = int(digits) if 0 < len(digits) < 4 else 0
+    if country in _GERMAN and 51 <= number <= 59:
+        return (number - 50) * 10 / 3.6
+    return number / 3.6 if country in _GERMAN and number in (10, 20, 30, 40) else None

@@ -1,0 +1,104 @@
+"""OpenDRIVE files made by hand: roads of a few lanes, junctions, signals."""
+
+import os
+from pathlib import Path
+
+_COMMONROAD = os.environ.get("RULEC_RECORDINGS")
+_BESIDE = Path(__file__).resolve().parents[4] / "shared/data"
+_SHARED = Path(_COMMONROAD).parent if _COMMONROAD else _BESIDE
+XODR = (*sorted(_SHARED.glob("opendrive/*.xodr")), *sorted(_SHARED.glob("osi/*.xodr")))
+"""Real maps, if they are at hand."""
+
+
+def shared_map(name):
+    """The real map of a name, None if it is not at hand."""
+    return next((file for file in XODR if file.stem == name), None)
+
+
+def document(*parts):
+    """A whole file."""
+    inside = "\n".join(parts)
+    return f'<OpenDRIVE><header revMajor="1" revMinor="6"/>\n{inside}\n</OpenDRIVE>\n'
+
+
+def cubic(tag, at, start, a, *more):
+    """A polynomial element; ``at`` names the attribute of its start."""
+    numbers = dict(zip("abcd", (a, *more, 0, 0, 0), strict=False))
+    written = " ".join(f'{key}="{value}"' for key, value in numbers.items())
+    return f'<{tag} {at}="{start}" {written}/>'
+
+
+def lane(number, *, kind="driving", width=3.5, mark="", links="", more="", attributes=""):
+    """A lane; ``width`` may be elements, too, and ``links`` are words such as ``successor=-2``."""
+    widths = width if isinstance(width, str) else cubic("width", "sOffset", 0, width)
+    linked = "".join(
+        f'<{word} id="{other}"/>' for word, other in (x.split("=") for x in links.split())
+    )
+    marks = f'<roadMark sOffset="0" type="{mark}"/>' if mark else ""
+    inside = f"<link>{linked}</link>" + (widths if number else "") + marks + more
+    return f'<lane id="{number}" type="{kind}" {attributes}>{inside}</lane>'
+
+
+def section(*lanes, start=0, attributes=""):
+    """A lane section; lanes are sorted to the sides by their numbers."""
+    by_side = {"left": [], "center": [], "right": []}
+    for one in lanes:
+        number = int(one.split('"')[1])
+        by_side["left" if number > 0 else "right" if number else "center"].append(one)
+    if not by_side["center"]:
+        by_side["center"].append(lane(0, kind="none"))
+    sides = "".join(f"<{side}>{''.join(own)}</{side}>" for side, own in by_side.items() if own)
+    return f'<laneSection s="{start}" {attributes}>{sides}</laneSection>'
+
+
+def geometry(shape="<line/>", *, s=0, x=0, y=0, hdg=0, length=100):
+    """A piece of a reference line."""
+    return f'<geometry s="{s}" x="{x}" y="{y}" hdg="{hdg}" length="{length}">{shape}</geometry>'
+
+
+def road(
+    number,
+    *sections,
+    plan=None,
+    length=100,
+    junction=-1,
+    links="",
+    offsets="",
+    more="",
+    attributes="",
+):
+    """A road; ``links`` are words such as ``successor=road:2:start``, ``successor=junction:9``."""
+    linked = ""
+    for word, element, other, *contact in (x.replace("=", ":").split(":") for x in links.split()):
+        point = f' contactPoint="{contact[0]}"' if contact else ""
+        linked += f'<{word} elementType="{element}" elementId="{other}"{point}/>'
+    plan = plan or geometry(length=length)
+    lanes = f"<lanes>{offsets}{''.join(sections)}</lanes>"
+    inside = f"<link>{linked}</link><planView>{plan}</planView>{lanes}{more}"
+    return (
+        f'<road id="{number}" length="{length}" junction="{junction}" {attributes}>{inside}</road>'
+    )
+
+
+def signals(*each):
+    """The signals of a road, each a dictionary of attributes; ``lanes`` is its validity."""
+    written = []
+    for one in each:
+        attributes = dict(one)
+        lanes, tag = attributes.pop("lanes", None), attributes.pop("tag", "signal")
+        words = " ".join(f'{key}="{value}"' for key, value in attributes.items())
+        valid = "" if lanes is None else f'<validity fromLane="{lanes[0]}" toLane="{lanes[1]}"/>'
+        written.append(f"<{tag} {words}>{valid}</{tag}>")
+    return f"<signals>{''.join(written)}</signals>"
+
+
+def two_way(**changes):
+    """Two lanes, one for each direction."""
+    return section(lane(1, **changes), lane(-1, **changes))
+
+
+def written(folder, text, name="made.xodr"):
+    """A file with this text."""
+    file = folder / name
+    file.write_text(text, encoding="utf-8")
+    return file
