@@ -69,6 +69,7 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "tracks": _EITHER | _ON_ANY_MAP | {"boarding", "leaving_stop"},
     **dict.fromkeys(("levelx", "interaction", "ngsim", "omega-prime"), _EITHER | _ON_ANY_MAP),
     "highd": _EITHER,
+    "osi": _EITHER | {"icy", "no_overtaking_sign", "visibility", "wet"},
 }
 """Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""
 

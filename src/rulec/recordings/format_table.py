@@ -53,6 +53,17 @@ def _is_waymo(glance: Glance) -> bool:
     return ".tfrecord" in glance.name
 
 
+def _osi(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.osi.osi_recording import read_osi
+
+    yield read_osi(source.path, source.map_path)
+
+
+def _is_osi(glance: Glance) -> bool:
+    return glance.name.endswith((".osi", ".mcap")) or glance.head.startswith(b"\x89MCAP0\r\n")
+
+
 def _is_protobuf(glance: Glance) -> bool:
     return glance.name.endswith(".pb")
 
@@ -175,6 +186,14 @@ FORMATS = (
         files="*.csv, *.parquet",
         recognises=lambda glance: heads.is_track_head(heads.head_of(glance)),
         read=_tracks,
+        takes_map=True,
+    ),
+    RecordingFormat(
+        name="osi",
+        title="ASAM OSI traces",
+        files="*.osi, *.mcap",
+        recognises=_is_osi,
+        read=_osi,
         takes_map=True,
     ),
 )

@@ -1,0 +1,29 @@
+"""Chunks of bytes packed with LZ4 or Zstandard, unpacked to the size that is stated and no more."""
+
+from __future__ import annotations
+
+
+def unpacked(packed: bytes, method: str, size: int) -> bytes:
+    """The bytes of a chunk: ``method`` is ``lz4`` (frames), ``zstd``, or empty for none.
+
+    Raises ValueError for one that is damaged, is not of its size, or is packed otherwise.
+    """
+    if not method:
+        content = packed
+    elif method in ("lz4", "zstd"):
+        # Few files are packed so
+        import cramjam
+
+        buffer = bytearray(size)
+        library = cramjam.lz4 if method == "lz4" else cramjam.zstd
+        try:
+            # It writes no further than the buffer, whatever the chunk says of itself
+            count = library.decompress_into(packed, buffer)
+        except cramjam.DecompressionError:
+            raise ValueError(f"it is packed ({method}), and damaged or not of its size") from None
+        content = bytes(buffer[:count])
+    else:
+        raise ValueError("it is packed by another method than lz4 or zstd")
+    if len(content) != size:
+        raise ValueError(f"it has {len(content):,} bytes instead of {size:,}")
+    return content

@@ -1,0 +1,1 @@
+"""ASAM OSI traces, read as recordings."""

@@ -1,0 +1,102 @@
+"""Lanes and their boundaries as a trace has them, before they are lanelets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from rulec.recordings.encodings.wire_format import WireFile
+from rulec.recordings.osi.message_fields import Fields, id_of, ids_of, part, places
+from rulec.recordings.osi.trace_file import OSI
+from rulec.recordings.polylines import without_repeats
+from rulec.recordings.recording import LONGEST_M, LaneMark, Points
+
+_MARKS: Mapping[str, LaneMark] = {
+    "solid_line": "solid",
+    "dashed_line": "broken",
+    "botts_dots": "broken",
+    "no_line": "none",
+}
+"""Types of boundaries; kerbs, edges and rails are no marks."""
+
+_CLOSEST_M = 0.001
+
+
+class Boundary(NamedTuple):
+    """A boundary: its line, and its mark if it is one."""
+
+    line: Points
+    mark: LaneMark | None
+
+
+class Lane(NamedTuple):
+    """A lane, its left and right as its points run; ``forward``: does traffic run so, too?
+
+    Of boundaries there are the ids, of lanes beside it, too; ``linked`` are those before and after
+    it. ``pairs``: the lanes that ways through an area of an intersection lead from and to.
+    """
+
+    id: str
+    kind: str
+    subtype: str
+    centre: Points
+    forward: bool | None
+    left_bounds: tuple[str, ...]
+    right_bounds: tuple[str, ...]
+    left_of: tuple[str, ...]
+    right_of: tuple[str, ...]
+    linked: tuple[str, ...]
+    pairs: tuple[tuple[str, str], ...] = ()
+    limit_mps: float | None = None
+    types: frozenset[str] = frozenset()
+
+
+def read_boundaries(messages: Mapping[str, Fields], file: WireFile) -> dict[str, Boundary]:
+    """Boundaries by id, without those that are no line. Raises RulecError R0610."""
+    found = {}
+    for key, fields in messages.items():
+        points = (part(point, "position") for point in fields.get("boundary_line", ()))
+        line = line_of(points, file)
+        if len(line) > 1:
+            kind = part(fields, "classification").get("type", "unknown")
+            found[key] = Boundary(line, _MARKS.get(kind))
+    return found
+
+
+def line_of(vectors: Iterable[Fields], file: WireFile) -> Points:
+    """A line without repeated points. Raises RulecError R0610 for one that is no such line."""
+    points = places(vectors, file)
+    if len(points) and np.ptp(points, axis=0).max() > LONGEST_M:
+        why = f"a line of a lane is longer than {LONGEST_M / 1000:g} km"
+        raise OSI.refused(file.path, why)
+    return without_repeats(points, _CLOSEST_M) if len(points) else points
+
+
+def read_lanes(messages: Mapping[str, Fields], file: WireFile) -> list[Lane]:
+    """The lanes of a trace. Raises RulecError R0610."""
+    return [_lane(key, part(fields, "classification"), file) for key, fields in messages.items()]
+
+
+def _lane(key: str, fields: Fields, file: WireFile) -> Lane:
+    pairs = [
+        (id_of(pair, "antecessor_lane_id"), id_of(pair, "successor_lane_id"))
+        for pair in fields.get("lane_pairing", ())
+    ]
+    centre = line_of(fields.get("centerline", ()), file)
+    linked = dict.fromkeys(x for pair in pairs for x in pair if x is not None and x != key)
+    return Lane(
+        id=key,
+        kind=fields.get("type", "unknown"),
+        subtype=fields.get("subtype", "unknown"),
+        centre=centre,
+        # Senders of version 3 of Protocol Buffers leave out what is false
+        forward=fields.get("centerline_is_driving_direction", False if len(centre) > 1 else None),
+        left_bounds=ids_of(fields, "left_lane_boundary_id"),
+        right_bounds=ids_of(fields, "right_lane_boundary_id"),
+        left_of=ids_of(fields, "left_adjacent_lane_id"),
+        right_of=ids_of(fields, "right_adjacent_lane_id"),
+        linked=tuple(linked),
+        pairs=tuple((before, after) for before, after in pairs if before and after),
+    )

@@ -1,0 +1,297 @@
+"""The lanes of an ASAM OSI trace as connected lanelets in the direction of traffic."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import shapely
+
+from rulec.recordings.osi.lane_messages import Boundary, Lane
+from rulec.recordings.osi.lane_shapes import Shape, lane_shape, way_across
+from rulec.recordings.recording import Lanelet, LaneMark, Points, Side
+
+MEET_M = 1.0
+"""A lane leads to another one if the lines across them, at its end and the other's start, are no
+farther apart: of those that a trace connects some do not meet at all."""
+
+_TOGETHER = 0.8
+"""Lanes side by side for so much of either are neighbours."""
+
+_DOUBLE_M = 0.6
+"""Solid lines of two lanes so near to each other are one double line."""
+
+_LIKE = 0.7
+
+_TYPES: Mapping[str, tuple[str, ...]] = {
+    "biking": ("bicycleLane",),
+    "sidewalk": ("sidewalk",),
+    "parking": ("parking",),
+    "stop": ("shoulder",),
+    "shoulder": ("shoulder",),
+    "border": ("border",),
+    "restricted": ("restricted",),
+    "exit": ("exitRamp",),
+    "offramp": ("exitRamp",),
+    "entry": ("accessRamp",),
+    "onramp": ("accessRamp",),
+}
+_KINDS: Mapping[str, tuple[str, ...]] = {
+    "intersection": ("intersection",),
+    "nondriving": ("restricted_area",),
+}
+"""Types by subtype, and by kind where the subtype says nothing."""
+
+_DRIVEN_ON = frozenset({"intersection", "bicycleLane", "shoulder", "exitRamp", "accessRamp"})
+
+
+@dataclass(slots=True)
+class LaneNetwork:
+    """The lanelets of a trace by id, and what was wrong or missing in it, for remarks.
+
+    ``of_lane``: the lanelets of a lane of the trace, of which an area of an intersection has many.
+    """
+
+    lanelets: dict[str, Lanelet] = field(default_factory=dict)
+    of_lane: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    side: Side | None = None
+    shapeless: list[str] = field(default_factory=list)
+    undirected: list[str] = field(default_factory=list)
+    assumed: list[str] = field(default_factory=list)
+    across: list[str] = field(default_factory=list)
+    apart: list[str] = field(default_factory=list)
+
+
+def lane_network(lanes: Sequence[Lane], boundaries: Mapping[str, Boundary]) -> LaneNetwork:
+    """The lanelets of lanes."""
+    network = LaneNetwork()
+    middles = {lane.id: lane.centre for lane in lanes if len(lane.centre) > 1}
+    known: dict[str, Lane] = {}
+    shapes: dict[str, Shape] = {}
+    areas = []
+    for lane in lanes:
+        shape = lane_shape(lane, boundaries, middles)
+        if shape is not None:
+            known[lane.id], shapes[lane.id] = _in_traffic(lane, shape)
+            if shape.assumed:
+                network.assumed.append(lane.id)
+            if lane.forward is None and "restricted_area" not in _types(lane):
+                network.undirected.append(lane.id)
+        elif lane.pairs:
+            areas.append(lane)
+        else:
+            network.shapeless.append(lane.id)
+    links = _links(known, shapes, {area.id for area in areas}, network)
+    junctions = {}
+    for area in areas:
+        ways = {f"{area.id}_{one}_{other}": (one, other) for one, other in area.pairs}
+        for name, (one, other) in ways.items():
+            if one in shapes and other in shapes:
+                shapes[name] = way_across(shapes[one], shapes[other])
+                known[name] = replace_id(area, name)
+                links += [(one, name), (name, other)]
+                junctions[name] = area.id
+                network.across.append(name)
+        network.of_lane[area.id] = tuple(name for name in ways if name in shapes)
+    after, before = defaultdict[str, list[str]](list), defaultdict[str, list[str]](list)
+    for one, other in dict.fromkeys(links):
+        after[one].append(other)
+        before[other].append(one)
+    for name, lane in known.items():
+        shape = shapes[name]
+        network.of_lane.setdefault(name, (name,))
+        beside = [_beside(name, ids, shapes) for ids in (lane.left_of, lane.right_of)]
+        marks = [
+            _mark(own, _facing(known, other, left=left), boundaries)
+            for own, other, left in (
+                (lane.left_bounds, lane.left_of, True),
+                (lane.right_bounds, lane.right_of, False),
+            )
+        ]
+        network.lanelets[name] = Lanelet(
+            id=name,
+            left=shape.left,
+            right=shape.right,
+            centre=shape.centre,
+            successors=tuple(after[name]),
+            predecessors=tuple(before[name]),
+            left_of=beside[0],
+            right_of=beside[1],
+            types=_types(lane),
+            signs=frozenset(),
+            limit_mps=lane.limit_mps,
+            left_mark=marks[0],
+            right_mark=marks[1],
+            junction=junctions.get(name, ""),
+        )
+    network.lanelets = _mutual(network.lanelets)
+    network.side = _side(known, shapes)
+    return network
+
+
+def replace_id(area: Lane, name: str) -> Lane:
+    """A way across an area, which has its types and no boundaries or lanes beside."""
+    nothing: tuple[str, ...] = ()
+    return area._replace(
+        id=name,
+        left_bounds=nothing,
+        right_bounds=nothing,
+        left_of=nothing,
+        right_of=nothing,
+    )
+
+
+def _in_traffic(lane: Lane, shape: Shape) -> tuple[Lane, Shape]:
+    """A lane and its shape, both turned round if traffic runs against its points."""
+    if lane.forward is not False:
+        return lane, shape
+    turned = lane._replace(
+        left_bounds=lane.right_bounds,
+        right_bounds=lane.left_bounds,
+        left_of=lane.right_of,
+        right_of=lane.left_of,
+    )
+    left, right, centre = shape.right[::-1], shape.left[::-1], shape.centre[::-1]
+    return turned, shape._replace(left=left, right=right, centre=centre)
+
+
+def _types(lane: Lane) -> frozenset[str]:
+    own = _TYPES.get(lane.subtype, ())
+    types = {*own, *(_KINDS["intersection"] if lane.kind == "intersection" else ())}
+    if lane.kind == "nondriving" and not types - _DRIVEN_ON - {"restricted"}:
+        types |= {"restricted_area"} if "shoulder" not in types else set()
+    return frozenset(types) | lane.types
+
+
+def _links(
+    known: Mapping[str, Lane], shapes: Mapping[str, Shape], areas: set[str], network: LaneNetwork
+) -> list[tuple[str, str]]:
+    """The pairs of lanes of which one leads to the other.
+
+    Which of two comes first their ends show: traces call what lies before the first point of a lane
+    its antecessor, or what traffic comes from.
+    """
+    links = []
+    for name, lane in known.items():
+        for other in lane.linked:
+            if other in areas:
+                continue
+            ways = [
+                (one, two)
+                for one, two in ((name, other), (other, name))
+                if other in shapes and _meet(shapes[one], shapes[two])
+            ]
+            links += ways
+            if not ways:
+                network.apart.append(f"{name} and {other}")
+    return links
+
+
+def _meet(before: Shape, after: Shape) -> bool:
+    """True if a lane's end is another one's start, and they lead the same way there."""
+    ahead, onward = before.centre[-1] - before.centre[-2], after.centre[1] - after.centre[0]
+    if float(ahead @ onward) <= 0:
+        return False
+    end = shapely.LineString((before.left[-1], before.right[-1]))
+    return bool(
+        shapely.distance(end, shapely.LineString((after.left[0], after.right[0]))) <= MEET_M
+    )
+
+
+def _beside(name: str, others: Sequence[str], shapes: Mapping[str, Shape]) -> str | None:
+    """The lane of several beside another one that is so for most of both, and leads its way."""
+    own = shapes[name].centre
+    shares = {
+        other: min(_share(own, shapes[other].centre), _share(shapes[other].centre, own))
+        for other in others
+        if other in shapes and _direction(own) @ _direction(shapes[other].centre) > 0
+    }
+    best = max(shares, key=lambda other: shares[other], default=None)
+    return best if best is not None and shares[best] >= _TOGETHER else None
+
+
+def _direction(line: Points) -> Points:
+    step: Points = line[-1] - line[0]
+    return step
+
+
+def _share(line: Points, other: Points) -> float:
+    """Which part of a line is beside another one, by where that begins and ends."""
+    string = shapely.LineString(line)
+    start, end = shapely.line_locate_point(string, shapely.points(other[[0, -1]]))
+    return float((end - start) / max(string.length, 1e-9))
+
+
+def _mutual(lanelets: dict[str, Lanelet]) -> dict[str, Lanelet]:
+    """The lanelets, without neighbours that have another one there."""
+
+    def agreed(name: str, other: str | None, side: str) -> str | None:
+        known = None if other is None else getattr(lanelets[other], side)
+        return other if known in (None, name) else None
+
+    return {
+        name: replace(
+            lanelet,
+            left_of=agreed(name, lanelet.left_of, "right_of"),
+            right_of=agreed(name, lanelet.right_of, "left_of"),
+        )
+        for name, lanelet in lanelets.items()
+    }
+
+
+def _facing(known: Mapping[str, Lane], others: Sequence[str], *, left: bool) -> Iterator[str]:
+    """The boundaries of lanes beside one that are on its side, whichever way they lead."""
+    for other in others:
+        if other in known:
+            lane = known[other]
+            yield from (
+                (*lane.right_bounds, *lane.left_bounds)
+                if left
+                else (
+                    *lane.left_bounds,
+                    *lane.right_bounds,
+                )
+            )
+
+
+def _mark(
+    own: Sequence[str], facing: Iterator[str], boundaries: Mapping[str, Boundary]
+) -> LaneMark | None:
+    """The mark of a side; None if it is none or changes on the way.
+
+    A double line is two boundaries, one of either lane.
+    """
+    marks = {boundaries[x].mark for x in own if x in boundaries}
+    mark = marks.pop() if len(marks) == 1 else None
+    if mark != "solid":
+        return mark
+    lines = [shapely.LineString(boundaries[x].line) for x in own if x in boundaries]
+    for other in facing:
+        if other not in own and other in boundaries and boundaries[other].mark == "solid":
+            line = shapely.LineString(boundaries[other].line)
+            if any(_runs_along(line, one) for one in lines):
+                return "double_solid"
+    return mark
+
+
+def _runs_along(line: shapely.LineString, other: shapely.LineString) -> bool:
+    middle = shapely.line_interpolate_point(line, 0.5, normalized=True)
+    return bool(shapely.distance(middle, other) <= _DOUBLE_M)
+
+
+def _side(known: Mapping[str, Lane], shapes: Mapping[str, Shape]) -> Side | None:
+    """The side of traffic: lanes that lead the other way are on the other one."""
+    sides: set[Side] = set()
+    for name, lane in known.items():
+        if lane.kind != "driving":
+            continue
+        for others, side in ((lane.left_of, "right"), (lane.right_of, "left")):
+            for other in others:
+                if other in known and known[other].kind == "driving":
+                    own, its = (_direction(shapes[x].centre) for x in (name, other))
+                    cosine = float(own @ its) / max(np.hypot(*own) * np.hypot(*its), 1e-9)
+                    if cosine < -_LIKE:
+                        sides.add("right" if side == "right" else "left")
+    return sides.pop() if len(sides) == 1 else None

@@ -1,0 +1,187 @@
+"""The shapes of lanes: bounds and middle with as many points each, as their points run.
+
+A lane has a line to which all is related: its centre line, or its longest boundary. Boundaries
+become distances beside that line, so that they may consist of several, begin and end elsewhere, as
+dashed ones do at a dash, or be missing on one side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.recordings.osi.lane_messages import Boundary, Lane
+from rulec.recordings.recording import Points
+
+USUAL_WIDTH_M = 3.5
+"""Of a lane of which nothing tells its width."""
+
+WIDTHS_M = (2.0, 5.0)
+"""Lanes beside each other whose middles are so far apart at least and at most have that width."""
+
+_CLOSEST_M = 0.01
+_SHARPEST = 0.5
+
+
+class Shape(NamedTuple):
+    """Left and right bound and middle; ``assumed``: is a width not from the trace?"""
+
+    left: Points
+    right: Points
+    centre: Points
+    assumed: bool = False
+
+
+class _Line:
+    """A line of two or more points, and places along and beside it."""
+
+    def __init__(self, points: Points) -> None:
+        steps = np.diff(points, axis=0)
+        lengths = np.hypot(*steps.T)
+        self.points = points
+        self.reached = np.concatenate(([0.0], np.cumsum(lengths)))
+        self._ahead = steps / lengths[:, None]
+        self._string = shapely.LineString(points)
+
+    def beside(self, points: Points) -> tuple[NDArray[float64], NDArray[float64]]:
+        """How far along the line places are (m), and how far to its left, in order along it."""
+        along = shapely.line_locate_point(self._string, shapely.points(points))
+        piece = self._piece(along)
+        away = points - self.points[piece]
+        ahead = self._ahead[piece]
+        left = ahead[:, 0] * away[:, 1] - ahead[:, 1] * away[:, 0]
+        # Beyond its ends the line goes on straight
+        beyond = (along <= 0) | (along >= self.reached[-1])
+        along = np.where(beyond, self.reached[piece] + (ahead * away).sum(axis=1), along)
+        order = np.argsort(along, kind="stable")
+        return along[order], left[order]
+
+    def at(self, along: NDArray[float64], left: NDArray[float64] | float = 0.0) -> Points:
+        """The places so far along the line, and so far to its left."""
+        x, y = (np.interp(along, self.reached, axis) for axis in self.points.T)
+        piece = self._piece(along)
+        ahead = self._ahead[piece].copy()
+        # At a corner both pieces' parallels meet on the line that halves it
+        corner = (np.abs(along - self.reached[piece]) < _CLOSEST_M / 2) & (piece > 0)
+        before = self._ahead[piece[corner] - 1]
+        both = 1.0 + (before * ahead[corner]).sum(axis=1)
+        ahead[corner] = (before + ahead[corner]) / np.maximum(both, _SHARPEST)[:, None]
+        across = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
+        places: Points = np.stack((x, y), axis=1) + across * np.reshape(left, (-1, 1))
+        return places
+
+    def _piece(self, along: NDArray[float64]) -> NDArray[np.intp]:
+        piece = np.searchsorted(self.reached, along + _CLOSEST_M / 2, side="right") - 1
+        clipped: NDArray[np.intp] = np.clip(piece, 0, len(self._ahead) - 1)
+        return clipped
+
+
+def lane_shape(
+    lane: Lane, boundaries: Mapping[str, Boundary], middles: Mapping[str, Points]
+) -> Shape | None:
+    """The shape of a lane; None if it has neither a middle nor boundaries.
+
+    ``middles`` are those of all lanes, for what no boundary tells.
+    """
+    sides = [[boundaries[x].line for x in ids if x in boundaries] for ids in _bounds(lane)]
+    lines = [lane.centre] if len(lane.centre) > 1 else [x for side in sides for x in side]
+    if not lines:
+        return None
+    line = _Line(max(lines, key=lambda x: float(np.hypot(*np.diff(x, axis=0).T).sum())))
+    known = [_side(line, side) if side else None for side in sides]
+    end = line.reached[-1]
+    stations = np.concatenate([line.reached, *(side[0] for side in known if side is not None)])
+    stations = np.unique(np.clip(stations, 0.0, end))
+    stations = stations[np.concatenate(([True], np.diff(stations) > _CLOSEST_M))]
+    stations[-1] = end
+    left, right = (None if side is None else np.interp(stations, *side) for side in known)
+    widths, assumed = _widths(lane, line, left, right, middles)
+    left = np.full(len(stations), widths[0]) if left is None else left
+    right = np.full(len(stations), -widths[1]) if right is None else right
+    middle = 0.0 if len(lane.centre) > 1 else (left + right) / 2
+    at = [line.at(stations, side) for side in (left, right, middle)]
+    return Shape(at[0], at[1], at[2], assumed)
+
+
+def _bounds(lane: Lane) -> tuple[Sequence[str], Sequence[str]]:
+    return lane.left_bounds, lane.right_bounds
+
+
+def _side(line: _Line, parts: Iterable[Points]) -> tuple[NDArray[float64], NDArray[float64]]:
+    """Places along a line and beside it of the boundaries of one side, in order."""
+    found = sorted((line.beside(points) for points in parts), key=lambda x: float(x[0].mean()))
+    along, left = (np.concatenate(rows) for rows in zip(*found, strict=True))
+    order = np.argsort(along, kind="stable")
+    return along[order], left[order]
+
+
+def _widths(
+    lane: Lane,
+    line: _Line,
+    left: NDArray[float64] | None,
+    right: NDArray[float64] | None,
+    middles: Mapping[str, Points],
+) -> tuple[tuple[float, float], bool]:
+    """Half the widths of a side without boundary (m), and whether any is a usual one.
+
+    By lanes beside it, then as on its other side.
+    """
+    if left is not None and right is not None:
+        return (0.0, 0.0), False
+    if len(lane.centre) < 2:
+        # All that it has is the boundary of one side
+        width = USUAL_WIDTH_M
+        return (width, width), True
+    halves = [
+        float(np.median(np.abs(side))) if side is not None else _half(line, beside, middles)
+        for side, beside in ((left, lane.left_of), (right, lane.right_of))
+    ]
+    told = [half for half in halves if half is not None]
+    usual = told[0] if told else USUAL_WIDTH_M / 2
+    filled = [usual if half is None else half for half in halves]
+    return (filled[0], filled[1]), not told
+
+
+def _half(line: _Line, beside: Sequence[str], middles: Mapping[str, Points]) -> float | None:
+    """Half the distance to the middle of a lane beside; None if none is as far as lanes are."""
+    for name in beside:
+        if name in middles:
+            along, left = line.beside(middles[name])
+            inside = (along > 0) & (along < line.reached[-1])
+            away = float(np.median(np.abs(left[inside]))) if inside.any() else 0.0
+            if WIDTHS_M[0] <= away <= WIDTHS_M[1]:
+                return away / 2
+    return None
+
+
+def way_across(before: Shape, after: Shape) -> Shape:
+    """The shape of a way from a lane's end to another's start, where only its ends are known."""
+    ends = zip(before[:3], after[:3], strict=True)
+    left, right, centre = (_curve(one, other) for one, other in ends)
+    return Shape(left, right, centre)
+
+
+def _curve(before: Points, after: Points) -> Points:
+    """A cubic curve (Hermite's) on from the end of one line to the start of another."""
+    start, end = before[-1], after[0]
+    length = max(float(np.hypot(*(end - start))), _CLOSEST_M)
+    at = np.linspace(0.0, 1.0, int(np.clip(length, 8, 64)) + 1)[:, None]
+    first, last = (_heading(line) * length for line in (before[-2:], after[:2]))
+    curve: Points = (
+        (2 * at**3 - 3 * at**2 + 1) * start
+        + (at**3 - 2 * at**2 + at) * first
+        + (3 * at**2 - 2 * at**3) * end
+        + (at**3 - at**2) * last
+    )
+    return curve
+
+
+def _heading(pair: Points) -> NDArray[float64]:
+    step = pair[1] - pair[0]
+    direction: NDArray[float64] = step / max(float(np.hypot(*step)), 1e-9)
+    return direction

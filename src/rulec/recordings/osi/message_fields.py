@@ -1,0 +1,75 @@
+"""Messages as dictionaries of their fields, which tables have checked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from rulec.recordings.encodings.wire_format import Message, Table, WireField, WireFile
+from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.recording import Points
+
+Fields: TypeAlias = Mapping[str, Any]
+"""Field -> its value; a list where there may be many, which is missing if there is none."""
+
+
+def fields_of(items: Iterable[WireField]) -> dict[str, Any]:
+    """The fields of a message."""
+    found: dict[str, Any] = {}
+    for item in items:
+        value: Any = item.value
+        if isinstance(value, Message):
+            value = fields_of(value.fields)
+        if item.field.many:
+            found.setdefault(item.field.name, []).append(value)
+        else:
+            found[item.field.name] = value
+    return found
+
+
+def decoded(data: bytes, table: Table, file: WireFile) -> Fields:
+    """The fields of a message that was kept as bytes; ``file`` is where it is from.
+
+    Raises RulecError R0610.
+    """
+    return fields_of(WireFile(data, file.path, file.form).fields(table))
+
+
+def id_of(fields: Fields, name: str = "id") -> str | None:
+    """The id in a field, None if there is none. Senders of version 3 leave out a 0."""
+    identifier = fields.get(name)
+    return None if identifier is None else str(identifier.get("value", 0))
+
+
+def ids_of(fields: Fields, name: str) -> tuple[str, ...]:
+    """The ids in a field of which there may be many, each once."""
+    return tuple(dict.fromkeys(str(one.get("value", 0)) for one in fields.get(name, ())))
+
+
+def assigned_lanes(said: Fields) -> tuple[str, ...]:
+    """The lanes that a classification names, and the logical ones, whose ids are others."""
+    logical = (id_of(one, "assigned_lane_id") for one in said.get("logical_lane_assignment", ()))
+    return tuple(dict.fromkeys((*ids_of(said, "assigned_lane_id"), *filter(None, logical))))
+
+
+def part(fields: Fields, *names: str) -> Fields:
+    """A message in a message, without any fields if it is missing."""
+    for name in names:
+        fields = fields.get(name, {})
+    return fields
+
+
+def number(fields: Fields, name: str, wrong: WireFile) -> float:
+    """A number, 0 if it is missing. Raises RulecError R0610 for one that is huge or none."""
+    value = float(fields.get(name, 0.0))
+    if not abs(value) < LARGEST:
+        raise wrong.form.refused(wrong.path, f"`{name}` is {value:g}, which is no such number")
+    return value
+
+
+def places(vectors: Iterable[Fields], wrong: WireFile) -> Points:
+    """Places (m) from vectors. Raises RulecError R0610 for one that is huge or none."""
+    rows = [(number(one, "x", wrong), number(one, "y", wrong)) for one in vectors]
+    return np.array(rows, dtype=float).reshape(-1, 2)

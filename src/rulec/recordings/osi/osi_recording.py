@@ -1,0 +1,161 @@
+"""An ASAM OSI trace as one recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from glob import escape
+from pathlib import Path
+
+from rulec.diagnostics import SourceLocation
+from rulec.recordings.encodings.wire_format import WireFile
+from rulec.recordings.map_files import MAP_FORMATS, read_map
+from rulec.recordings.osi.environment import country_of, weather_of
+from rulec.recordings.osi.lane_messages import read_boundaries, read_lanes
+from rulec.recordings.osi.lane_network import LaneNetwork, lane_network
+from rulec.recordings.osi.light_heads import with_lights
+from rulec.recordings.osi.logical_lanes import (
+    lanes_by_logical,
+    logical_boundaries,
+    logical_lanes,
+    with_logical,
+)
+from rulec.recordings.osi.message_times import TimeGrid, time_grid
+from rulec.recordings.osi.moving_objects import participants, standing
+from rulec.recordings.osi.signs_and_marks import with_crossings, with_signs, with_stop_lines
+from rulec.recordings.osi.trace_content import TraceContent, read_content
+from rulec.recordings.osi.trace_file import OSI
+from rulec.recordings.recording import Lanelet, Participant, Recording, is_lane
+from rulec.recordings.recording_format import Glance
+from rulec.recordings.recording_messages import NET_MISSING
+
+_NAMED = 5
+
+
+def read_osi(path: Path, map_path: Path | None = None) -> Recording:
+    """Read a trace, on its own lanes or on those of a map.
+
+    Raises RulecError R0610 for a file that cannot be read as what it should be, R0614 if there are
+    neither lanes in it nor a map, R0701 if a file cannot be opened.
+    """
+    content = read_content(path)
+    grid = time_grid(path, content.times)
+    file = WireFile(b"", path, OSI)
+    if not content.objects:
+        raise OSI.refused(path, "nobody is in it")
+    network = _network(content, file)
+    if map_path is None and not any(is_lane(x) for x in network.lanelets.values()):
+        map_path = _map_beside(path)
+    road = None if map_path is None else read_map(map_path, grid.step_s)
+    country, by_country = country_of(content.country)
+    return Recording(
+        name=path.name.split(".")[0] or path.name,
+        step_s=grid.step_s,
+        lanelets=_lanelets(content, network, grid, file) if road is None else road.lanelets,
+        participants=tuple(_participants(content, grid, file)),
+        problems=(),
+        form="ASAM OSI trace",
+        side=by_country or (network.side if road is None else road.side),
+        remarks=(
+            *_remarks(content, grid),
+            *(_network_remarks(network) if road is None else road.remarks),
+        ),
+        country=country or ("" if road is None else road.country),
+        complete=frozenset() if road is None else road.complete,
+        weather=weather_of(content.environment, content.static["lane"].values()),
+        ego=content.host if content.host and content.host in content.objects else "",
+    )
+
+
+def _network(content: TraceContent, file: WireFile) -> LaneNetwork:
+    """The lanelets of a trace: of its lanes, else of its logical ones."""
+    messages = content.static
+    boundaries = read_boundaries(messages["lane_boundary"], file)
+    lanes = read_lanes(messages["lane"], file)
+    logical = logical_lanes(messages["logical_lane"], file)
+    if lanes:
+        network = lane_network(with_logical(lanes, logical), boundaries)
+    else:
+        found = logical_boundaries(messages["logical_lane_boundary"], boundaries, file)
+        network = lane_network([lane.lane for lane in logical], found)
+    for name, physical in lanes_by_logical(logical).items():
+        parts = [x for lane in physical for x in network.of_lane.get(lane, ())]
+        network.of_lane.setdefault(name, tuple(parts))
+    return network
+
+
+def _lanelets(
+    content: TraceContent, network: LaneNetwork, grid: TimeGrid, file: WireFile
+) -> dict[str, Lanelet]:
+    """The lanelets with what stands beside them and is painted on them."""
+    lanelets = with_lights(network.lanelets, content.bulbs.values(), network.of_lane, grid)
+    signs = content.static["traffic_sign"].items()
+    constant = [fields for key, fields in signs if key not in content.changing_signs]
+    lanelets = with_signs(lanelets, constant, network.of_lane, file)
+    marks = content.static["road_marking"]
+    lanelets = with_stop_lines(lanelets, marks.values(), network.of_lane, file)
+    return with_crossings(lanelets, marks, network.of_lane, file)
+
+
+def _participants(content: TraceContent, grid: TimeGrid, file: WireFile) -> Iterator[Participant]:
+    yield from participants(content.objects, grid)
+    things = content.static["stationary_object"].items()
+    named = ((f"{key}_standing" if key in content.objects else key, x) for key, x in things)
+    yield from standing(named, file)
+
+
+def _map_beside(path: Path) -> Path:
+    """The map beside a trace that has its name. Raises RulecError R0614 if there is none."""
+    stem = path.name.split(".")[0]
+    for beside in sorted(path.parent.glob(f"{escape(stem)}.*")):
+        if beside != path and any(form.recognises(Glance(beside)) for form in MAP_FORMATS):
+            return beside
+    raise NET_MISSING.error(
+        SourceLocation(str(path)),
+        "the trace has no lanes in it, and no map of its name is beside it",
+        help="name the map with --map FILE",
+    )
+
+
+def _remarks(content: TraceContent, grid: TimeGrid) -> Iterator[str]:
+    if not grid.is_even:
+        yield (
+            f"times are up to {grid.off_s * 1000:.1f} ms off steps of {grid.step_s:g} s, and are"
+            " taken to be on them"
+        )
+    if content.skipped:
+        yield f"{content.skipped:,} messages have the time of the one before and are left out"
+    sizes = [key for key, body in content.objects.items() if min(body.length, body.width) <= 0]
+    if sizes:
+        yield f"sizes that are not said are taken to be usual: of {_some(sizes)}"
+    lost = [bulb.id for bulb in content.bulbs.values() if not bulb.lanes]
+    if lost:
+        yield f"traffic lights are assigned to no lane, and left out: {_some(lost)}"
+    if content.changing_signs:
+        yield f"signs that change are left out: {_some(sorted(content.changing_signs))}"
+
+
+def _network_remarks(network: LaneNetwork) -> Iterator[str]:
+    if network.assumed:
+        yield (
+            "lanes without boundaries are taken to be as wide as is usual: "
+            + _some(network.assumed)
+        )
+    if network.undirected:
+        yield (
+            "traffic is taken to run as the points of lanes do where that is not said: "
+            + _some(network.undirected)
+        )
+    if network.across:
+        yield (
+            "ways across areas of intersections are taken to be curves from lane to lane: "
+            + _some(network.across)
+        )
+    if network.shapeless:
+        yield f"lanes with neither a middle nor boundaries are left out: {_some(network.shapeless)}"
+    if network.apart:
+        yield f"lanes that are said to follow each other and do not meet: {_some(network.apart)}"
+
+
+def _some(names: list[str]) -> str:
+    more = len(names) - _NAMED
+    return ", ".join(names[:_NAMED]) + (f", and {more:,} more" if more > 0 else "")

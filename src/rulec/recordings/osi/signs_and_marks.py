@@ -1,0 +1,177 @@
+"""Traffic signs, stop lines and pedestrian crossings of an ASAM OSI trace, on its lanelets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from rulec.recordings.encodings.wire_format import WireFile
+from rulec.recordings.osi.message_fields import Fields, assigned_lanes, number, part, places
+from rulec.recordings.recording import Lanelet, Points
+
+_NAMES: Mapping[str, str] = {
+    "give_way": "YIELD",
+    "stop": "STOP",
+    "priority_to_opposite_direction": "PRIORITY_OPPOSITE_DIRECTION",
+    "priority_over_opposite_direction": "PRIORITY_OVER_ONCOMING",
+    "right_of_way_next_intersection": "RIGHT_OF_WAY",
+    "right_of_way_begin": "PRIORITY",
+    "roundabout": "ROUNDABOUT",
+    "bus_lane": "BUS_LANE",
+    "bus_lane_begin": "BUS_LANE",
+    "speed_limit_begin": "MAX_SPEED",
+    "speed_limit_zone_begin": "MAX_SPEED_ZONE_START",
+    "overtaking_ban_begin": "NO_OVERTAKING_START",
+    "overtaking_ban_for_trucks_begin": "NO_OVERTAKING_TRUCKS_START",
+    "traffic_light_green_arrow": "GREEN_ARROW",
+}
+"""The names that signs have in recordings; others are not about driving, or end something."""
+
+_LIMITS = frozenset({"MAX_SPEED", "MAX_SPEED_ZONE_START"})
+_MPS: Mapping[str, float] = {"kmh": 1 / 3.6, "mph": 0.44704}
+_PAINTED = frozenset({"painted_traffic_sign", "symbolic_traffic_sign"})
+_CROSSING = "crossing_"
+_NARROWEST_M = 0.5
+_Lanes = Mapping[str, Sequence[str]]
+
+
+def limit_of(value: Fields, file: WireFile) -> float | None:
+    """A limit (m/s), None if its unit is not said. Raises RulecError R0610."""
+    unit = _MPS.get(value.get("value_unit", "unknown"))
+    limit = number(value, "value", file)
+    return limit * unit if unit is not None and limit > 0 else None
+
+
+def with_signs(
+    lanelets: Mapping[str, Lanelet], signs: Iterable[Fields], of_lane: _Lanes, file: WireFile
+) -> dict[str, Lanelet]:
+    """The lanelets with the signs that are assigned to their lanes.
+
+    A sign with another one below it is for some hours, places or vehicles only, and left out.
+    """
+    signed = dict(lanelets)
+    for fields in signs:
+        said = part(fields, "main_sign", "classification")
+        name = _NAMES.get(said.get("type", "unknown"))
+        if name is None or said.get("is_out_of_service") or _is_qualified(fields):
+            continue
+        limit = limit_of(part(said, "value"), file) if name in _LIMITS else None
+        for key in _lanelets_of(said, of_lane):
+            own = signed[key]
+            limits = [x for x in (own.limit_mps, limit) if x is not None]
+            signed[key] = replace(
+                own, signs=own.signs | {name}, limit_mps=min(limits, default=None)
+            )
+    return signed
+
+
+def _is_qualified(fields: Fields) -> bool:
+    below = fields.get("supplementary_sign", ())
+    return any(part(x, "classification").get("type", "other") != "no_sign" for x in below)
+
+
+def _lanelets_of(said: Fields, of_lane: _Lanes) -> Iterator[str]:
+    for lane in assigned_lanes(said):
+        yield from of_lane.get(lane, ())
+
+
+def with_stop_lines(
+    lanelets: Mapping[str, Lanelet], marks: Iterable[Fields], of_lane: _Lanes, file: WireFile
+) -> dict[str, Lanelet]:
+    """The lanelets with the stop lines on their lanes: the mark of a sign to stop."""
+    lined = dict(lanelets)
+    for fields in marks:
+        said = part(fields, "classification")
+        if not _is_mark_of(said, "stop"):
+            continue
+        place = places([part(fields, "base", "position")], file)
+        for key in _lanelets_of(said, of_lane):
+            lined[key] = replace(lined[key], stop_line=_across(lined[key], place))
+    return lined
+
+
+def _is_mark_of(said: Fields, sign: str) -> bool:
+    painted = said.get("type") in _PAINTED and said.get("traffic_main_sign_type") == sign
+    return painted and not said.get("is_out_of_service")
+
+
+def _across(lanelet: Lanelet, place: Points) -> Points:
+    """The ends of the line across a lanelet beside a place."""
+    steps = np.hypot(*np.diff(lanelet.centre, axis=0).T)
+    reached = np.concatenate(([0.0], np.cumsum(steps)))
+    along = shapely.line_locate_point(shapely.LineString(lanelet.centre), shapely.points(place))
+    ends = [
+        [np.interp(along, reached, axis)[0] for axis in bound.T]
+        for bound in (lanelet.left, lanelet.right)
+    ]
+    return np.array(ends, dtype=float)
+
+
+def with_crossings(
+    lanelets: Mapping[str, Lanelet], marks: Mapping[str, Fields], of_lane: _Lanes, file: WireFile
+) -> dict[str, Lanelet]:
+    """The lanelets, and one for each pedestrian crossing that is painted."""
+    crossed = dict(lanelets)
+    for key, fields in marks.items():
+        said = part(fields, "classification")
+        outline = _ground_outline(part(fields, "base"), file)
+        if not _is_mark_of(said, "zebra_crossing") or outline is None:
+            continue
+        lanes = [lanelets[x] for x in _lanelets_of(said, of_lane)]
+        crossed[_CROSSING + key] = _crossing(_CROSSING + key, outline, lanes)
+    return crossed
+
+
+def _ground_outline(base: Fields, file: WireFile) -> Points | None:
+    """The four corners of a box seen from above, as small as they can be; None if it has no area.
+
+    A mark stands upright in its own coordinates and is laid on the ground by its orientation.
+    """
+    size, turned = part(base, "dimension"), part(base, "orientation")
+    half = [abs(number(size, name, file)) / 2 for name in ("length", "width", "height")]
+    roll, pitch, yaw = (number(turned, name, file) for name in ("roll", "pitch", "yaw"))
+    signs = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T
+    about_x = np.array(
+        [(1, 0, 0), (0, np.cos(roll), -np.sin(roll)), (0, np.sin(roll), np.cos(roll))]
+    )
+    about_y = np.array(
+        [(np.cos(pitch), 0, np.sin(pitch)), (0, 1, 0), (-np.sin(pitch), 0, np.cos(pitch))]
+    )
+    about_z = np.array([(np.cos(yaw), -np.sin(yaw), 0), (np.sin(yaw), np.cos(yaw), 0), (0, 0, 1)])
+    corners = (signs * half) @ (about_z @ about_y @ about_x).T
+    ground = corners[:, :2] + places([part(base, "position")], file)
+    box = shapely.minimum_rotated_rectangle(shapely.multipoints(ground))
+    if not isinstance(box, shapely.Polygon) or shapely.minimum_clearance(box) < _NARROWEST_M:
+        return None
+    outline: Points = shapely.get_coordinates(box)[:4]
+    return outline
+
+
+def _crossing(key: str, outline: Points, lanes: Sequence[Lanelet]) -> Lanelet:
+    """A crossing: one walks across its lanes; where none is known, along its longer side."""
+    ahead = outline[1] - outline[0]
+    if lanes:
+        along = lanes[0].centre[-1] - lanes[0].centre[0]
+        unit = along / max(float(np.hypot(*along)), 1e-9)
+        other = outline[2] - outline[1]
+        is_across = abs(ahead @ unit) / np.hypot(*ahead) <= abs(other @ unit) / np.hypot(*other)
+    else:
+        is_across = bool(np.hypot(*ahead) >= np.hypot(*(outline[2] - outline[1])))
+    first, second, third, fourth = outline if is_across else np.roll(outline, -1, axis=0)
+    right, left = np.stack((first, second)), np.stack((fourth, third))
+    return Lanelet(
+        id=key,
+        left=left,
+        right=right,
+        centre=(left + right) / 2,
+        successors=(),
+        predecessors=(),
+        left_of=None,
+        right_of=None,
+        types=frozenset({"crosswalk"}),
+        signs=frozenset(),
+        limit_mps=None,
+    )
