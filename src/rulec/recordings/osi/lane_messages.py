@@ -31,7 +31,7 @@ class Boundary(NamedTuple):
     mark: LaneMark | None
 
 
-class Lane(NamedTuple):
+class TraceLane(NamedTuple):
     """A lane, its left and right as its points run; ``forward``: does traffic run so, too?
 
     Of boundaries there are the ids, of lanes beside it, too; ``linked`` are those before and after
@@ -74,19 +74,19 @@ def line_of(vectors: Iterable[Fields], file: WireFile) -> Points:
     return without_repeats(points, _CLOSEST_M) if len(points) else points
 
 
-def read_lanes(messages: Mapping[str, Fields], file: WireFile) -> list[Lane]:
+def read_lanes(messages: Mapping[str, Fields], file: WireFile) -> list[TraceLane]:
     """The lanes of a trace. Raises RulecError R0610."""
     return [_lane(key, part(fields, "classification"), file) for key, fields in messages.items()]
 
 
-def _lane(key: str, fields: Fields, file: WireFile) -> Lane:
+def _lane(key: str, fields: Fields, file: WireFile) -> TraceLane:
     pairs = [
         (id_of(pair, "antecessor_lane_id"), id_of(pair, "successor_lane_id"))
         for pair in fields.get("lane_pairing", ())
     ]
     centre = line_of(fields.get("centerline", ()), file)
     linked = dict.fromkeys(x for pair in pairs for x in pair if x is not None and x != key)
-    return Lane(
+    return TraceLane(
         id=key,
         kind=fields.get("type", "unknown"),
         subtype=fields.get("subtype", "unknown"),

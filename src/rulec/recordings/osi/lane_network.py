@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import shapely
 
-from rulec.recordings.osi.lane_messages import Boundary, Lane
-from rulec.recordings.osi.lane_shapes import Shape, lane_shape, way_across
+from rulec.recordings.osi.lane_messages import Boundary, TraceLane
+from rulec.recordings.osi.lane_shapes import LaneShape, lane_shape, way_across
 from rulec.recordings.recording import Lanelet, LaneMark, Points, Side
 
 MEET_M = 1.0
@@ -64,12 +64,12 @@ class LaneNetwork:
     apart: list[str] = field(default_factory=list)
 
 
-def lane_network(lanes: Sequence[Lane], boundaries: Mapping[str, Boundary]) -> LaneNetwork:
+def lane_network(lanes: Sequence[TraceLane], boundaries: Mapping[str, Boundary]) -> LaneNetwork:
     """The lanelets of lanes."""
     network = LaneNetwork()
     middles = {lane.id: lane.centre for lane in lanes if len(lane.centre) > 1}
-    known: dict[str, Lane] = {}
-    shapes: dict[str, Shape] = {}
+    known: dict[str, TraceLane] = {}
+    shapes: dict[str, LaneShape] = {}
     areas = []
     for lane in lanes:
         shape = lane_shape(lane, boundaries, middles)
@@ -131,7 +131,7 @@ def lane_network(lanes: Sequence[Lane], boundaries: Mapping[str, Boundary]) -> L
     return network
 
 
-def replace_id(area: Lane, name: str) -> Lane:
+def replace_id(area: TraceLane, name: str) -> TraceLane:
     """A way across an area, which has its types and no boundaries or lanes beside."""
     nothing: tuple[str, ...] = ()
     return area._replace(
@@ -143,7 +143,7 @@ def replace_id(area: Lane, name: str) -> Lane:
     )
 
 
-def _in_traffic(lane: Lane, shape: Shape) -> tuple[Lane, Shape]:
+def _in_traffic(lane: TraceLane, shape: LaneShape) -> tuple[TraceLane, LaneShape]:
     """A lane and its shape, both turned round if traffic runs against its points."""
     if lane.forward is not False:
         return lane, shape
@@ -157,7 +157,7 @@ def _in_traffic(lane: Lane, shape: Shape) -> tuple[Lane, Shape]:
     return turned, shape._replace(left=left, right=right, centre=centre)
 
 
-def _types(lane: Lane) -> frozenset[str]:
+def _types(lane: TraceLane) -> frozenset[str]:
     own = _TYPES.get(lane.subtype, ())
     types = {*own, *(_KINDS["intersection"] if lane.kind == "intersection" else ())}
     if lane.kind == "nondriving" and not types - _DRIVEN_ON - {"restricted"}:
@@ -166,7 +166,10 @@ def _types(lane: Lane) -> frozenset[str]:
 
 
 def _links(
-    known: Mapping[str, Lane], shapes: Mapping[str, Shape], areas: set[str], network: LaneNetwork
+    known: Mapping[str, TraceLane],
+    shapes: Mapping[str, LaneShape],
+    areas: set[str],
+    network: LaneNetwork,
 ) -> list[tuple[str, str]]:
     """The pairs of lanes of which one leads to the other.
 
@@ -189,7 +192,7 @@ def _links(
     return links
 
 
-def _meet(before: Shape, after: Shape) -> bool:
+def _meet(before: LaneShape, after: LaneShape) -> bool:
     """True if a lane's end is another one's start, and they lead the same way there."""
     ahead, onward = before.centre[-1] - before.centre[-2], after.centre[1] - after.centre[0]
     if float(ahead @ onward) <= 0:
@@ -200,7 +203,7 @@ def _meet(before: Shape, after: Shape) -> bool:
     )
 
 
-def _beside(name: str, others: Sequence[str], shapes: Mapping[str, Shape]) -> str | None:
+def _beside(name: str, others: Sequence[str], shapes: Mapping[str, LaneShape]) -> str | None:
     """The lane of several beside another one that is so for most of both, and leads its way."""
     own = shapes[name].centre
     shares = {
@@ -241,7 +244,7 @@ def _mutual(lanelets: dict[str, Lanelet]) -> dict[str, Lanelet]:
     }
 
 
-def _facing(known: Mapping[str, Lane], others: Sequence[str], *, left: bool) -> Iterator[str]:
+def _facing(known: Mapping[str, TraceLane], others: Sequence[str], *, left: bool) -> Iterator[str]:
     """The boundaries of lanes beside one that are on its side, whichever way they lead."""
     for other in others:
         if other in known:
@@ -281,7 +284,7 @@ def _runs_along(line: shapely.LineString, other: shapely.LineString) -> bool:
     return bool(shapely.distance(middle, other) <= _DOUBLE_M)
 
 
-def _side(known: Mapping[str, Lane], shapes: Mapping[str, Shape]) -> Side | None:
+def _side(known: Mapping[str, TraceLane], shapes: Mapping[str, LaneShape]) -> Side | None:
     """The side of traffic: lanes that lead the other way are on the other one."""
     sides: set[Side] = set()
     for name, lane in known.items():

@@ -15,7 +15,7 @@ import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.recordings.osi.lane_messages import Boundary, Lane
+from rulec.recordings.osi.lane_messages import Boundary, TraceLane
 from rulec.recordings.recording import Points
 
 USUAL_WIDTH_M = 3.5
@@ -28,7 +28,7 @@ _CLOSEST_M = 0.01
 _SHARPEST = 0.5
 
 
-class Shape(NamedTuple):
+class LaneShape(NamedTuple):
     """Left and right bound and middle; ``assumed``: is a width not from the trace?"""
 
     left: Points
@@ -82,8 +82,8 @@ class _Line:
 
 
 def lane_shape(
-    lane: Lane, boundaries: Mapping[str, Boundary], middles: Mapping[str, Points]
-) -> Shape | None:
+    lane: TraceLane, boundaries: Mapping[str, Boundary], middles: Mapping[str, Points]
+) -> LaneShape | None:
     """The shape of a lane; None if it has neither a middle nor boundaries.
 
     ``middles`` are those of all lanes, for what no boundary tells.
@@ -105,10 +105,10 @@ def lane_shape(
     right = np.full(len(stations), -widths[1]) if right is None else right
     middle = 0.0 if len(lane.centre) > 1 else (left + right) / 2
     at = [line.at(stations, side) for side in (left, right, middle)]
-    return Shape(at[0], at[1], at[2], assumed)
+    return LaneShape(at[0], at[1], at[2], assumed)
 
 
-def _bounds(lane: Lane) -> tuple[Sequence[str], Sequence[str]]:
+def _bounds(lane: TraceLane) -> tuple[Sequence[str], Sequence[str]]:
     return lane.left_bounds, lane.right_bounds
 
 
@@ -121,7 +121,7 @@ def _side(line: _Line, parts: Iterable[Points]) -> tuple[NDArray[float64], NDArr
 
 
 def _widths(
-    lane: Lane,
+    lane: TraceLane,
     line: _Line,
     left: NDArray[float64] | None,
     right: NDArray[float64] | None,
@@ -159,11 +159,11 @@ def _half(line: _Line, beside: Sequence[str], middles: Mapping[str, Points]) -> 
     return None
 
 
-def way_across(before: Shape, after: Shape) -> Shape:
+def way_across(before: LaneShape, after: LaneShape) -> LaneShape:
     """The shape of a way from a lane's end to another's start, where only its ends are known."""
     ends = zip(before[:3], after[:3], strict=True)
     left, right, centre = (_curve(one, other) for one, other in ends)
-    return Shape(left, right, centre)
+    return LaneShape(left, right, centre)
 
 
 def _curve(before: Points, after: Points) -> Points:

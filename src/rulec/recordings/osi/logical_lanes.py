@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rulec.recordings.encodings.wire_format import WireFile
-from rulec.recordings.osi.lane_messages import Boundary, Lane, line_of
+from rulec.recordings.osi.lane_messages import Boundary, TraceLane, line_of
 from rulec.recordings.osi.message_fields import Fields, id_of, ids_of, part
 from rulec.recordings.osi.signs_and_marks import limit_of
 
@@ -28,7 +28,7 @@ _SETTINGS: Mapping[str, str] = {
 class LogicalLane(NamedTuple):
     """A logical lane as a lane, and the lanes that it is made of."""
 
-    lane: Lane
+    lane: TraceLane
     physical: tuple[str, ...]
 
 
@@ -50,7 +50,7 @@ def _logical_lane(key: str, fields: Fields, file: WireFile) -> LogicalLane:
         for name in ("predecessor_lane", "successor_lane")
         for one in fields.get(name, ())
     ]
-    lane = Lane(
+    lane = TraceLane(
         id=key,
         kind="nondriving" if kind not in _DRIVING else "intersection" if is_crossed else "driving",
         subtype=kind,
@@ -98,9 +98,9 @@ def logical_boundaries(
     return found
 
 
-def with_logical(lanes: Sequence[Lane], logical: Sequence[LogicalLane]) -> list[Lane]:
+def with_logical(lanes: Sequence[TraceLane], logical: Sequence[LogicalLane]) -> list[TraceLane]:
     """Lanes with the limits and types that all logical lanes made of them have."""
-    of_lane: dict[str, list[Lane]] = {}
+    of_lane: dict[str, list[TraceLane]] = {}
     for one in logical:
         for name in one.physical:
             of_lane.setdefault(name, []).append(one.lane)
