@@ -58,10 +58,27 @@ As above, of five scenes of nuScenes: 0.12 m, and 0.09 m/s (1,142 means); boxes 
 USUAL_ROUNDING = Rounding(0.01, 0.01)
 """SUMO writes two decimals."""
 
+LIDAR = Tolerances(0.15, 0.1)
+"""Boxes around lidar points, as annotated by hand in Argoverse 2's sensor logs.
+
+Where a body ends is known to a step of the lidar, 0.2° (Velodyne VLP-32C), which is 0.1 m at 30 m,
+and by as much where another one does. Of means over a second 95 in 100 differ from the slope of a
+smooth curve, as above, by less than 0.06 m/s (1,666 means of 48 vehicles).
+"""
+
+TRACKER = Tolerances(0.2, 0.2)
+"""Tracks of a car's own perception, as in Argoverse 2's motion forecasting.
+
+Places differ from that curve by less than 0.2 m in 99 of 100 states, and means over a second from
+its slope by less than 0.2 m/s in 95 of 100 (228 means).
+"""
+
 _BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
     {
         "NGSIM tracks": NGSIM,
         "Waymo scenario": AUTO_LABELS,
+        "Argoverse 2 motion forecasting": TRACKER,
+        "Argoverse 2 sensor log": LIDAR,
         "ScenarioNet scenario": KEYFRAMES,
         "ScenarioNet scenario of Waymo": AUTO_LABELS,
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rulec.recordings import table_heads as heads
+from rulec.recordings.argoverse.argoverse_files import ANNOTATIONS, SCENARIO, is_named
 from rulec.recordings.recording_format import Glance, RecordingFormat, RecordingSource
 
 if TYPE_CHECKING:
@@ -62,6 +63,20 @@ def _osi(source: RecordingSource) -> Iterator[Recording]:
 
 def _is_osi(glance: Glance) -> bool:
     return glance.name.endswith((".osi", ".mcap")) or glance.head.startswith(b"\x89MCAP0\r\n")
+
+
+def _argoverse_motion(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.argoverse.motion import read_motion
+
+    yield read_motion(source.path, source.map_path)
+
+
+def _argoverse_sensor(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.argoverse.sensor_log import read_sensor_log
+
+    yield read_sensor_log(source.path, source.map_path)
 
 
 def _is_protobuf(glance: Glance) -> bool:
@@ -131,6 +146,22 @@ FORMATS = (
         files="*.xml",
         recognises=lambda glance: glance.root == "fcd-export",
         read=_sumo,
+        takes_map=True,
+    ),
+    RecordingFormat(
+        name="argoverse-motion",
+        title="Argoverse 2's motion forecasting, with the map beside it",
+        files="scenario_*.parquet, or its folder",
+        recognises=lambda glance: is_named(glance.path, SCENARIO),
+        read=_argoverse_motion,
+        takes_map=True,
+    ),
+    RecordingFormat(
+        name="argoverse-sensor",
+        title="Argoverse 2's sensor logs, with poses and map beside them",
+        files="annotations*.feather, or its folder",
+        recognises=lambda glance: is_named(glance.path, ANNOTATIONS),
+        read=_argoverse_sensor,
         takes_map=True,
     ),
     RecordingFormat(

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.recordings import table_heads as heads
+from rulec.recordings.argoverse.argoverse_files import MAP as MAP_ARCHIVES
+from rulec.recordings.argoverse.argoverse_files import is_named
 from rulec.recordings.encodings.xml_element import XmlFormat, short
 from rulec.recordings.recording_format import Glance
 
@@ -63,6 +65,13 @@ def _lanes(path: Path, step_s: float) -> RoadMap:  # noqa: ARG001 - lanes have n
     return read_lane_map(path)
 
 
+def _argoverse(path: Path, _step_s: float) -> RoadMap:
+    # As above.
+    from rulec.recordings.argoverse.map_archive import read_map_archive
+
+    return read_map_archive(path)
+
+
 MAP_FORMATS = (
     MapFormat("sumo", "nets of SUMO's", "*.net.xml", lambda glance: glance.root == "net", _sumo),
     MapFormat(
@@ -86,6 +95,13 @@ MAP_FORMATS = (
         "*.csv, *.parquet",
         lambda glance: heads.is_lane_head(heads.head_of(glance)),
         _lanes,
+    ),
+    MapFormat(
+        "argoverse",
+        "maps of Argoverse 2",
+        MAP_ARCHIVES,
+        lambda glance: is_named(glance.path, MAP_ARCHIVES),
+        _argoverse,
     ),
 )
 

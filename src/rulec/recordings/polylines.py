@@ -46,3 +46,27 @@ def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:
     stretch = np.maximum(1.0 + (before * after).sum(axis=1), _SHARPEST)
     line: Points = points + np.reshape(offset, (-1, 1)) * (before + after) / stretch[:, None]
     return line
+
+
+def paired(line: Points, other: Points) -> tuple[Points, Points]:
+    """Two lines side by side with a point for each of both's, at equal parts of their lengths."""
+    parts = [_parts(line), _parts(other)]
+    at = np.unique(np.concatenate(parts))
+    at = at[np.append(True, np.diff(at) > _ONE)]
+    # The ends are both's, however close a point is
+    at[0], at[-1] = 0.0, 1.0
+    first, second = (
+        np.stack([np.interp(at, part, points[:, axis]) for axis in (0, 1)], axis=1)
+        for part, points in zip(parts, (line, other), strict=True)
+    )
+    return first, second
+
+
+_ONE = 1e-9
+"""Points that lie no farther apart, as a part of the length, are one."""
+
+
+def _parts(points: Points) -> NDArray[float64]:
+    ways = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+    parts: NDArray[float64] = ways / ways[-1]
+    return parts

@@ -57,14 +57,17 @@ OBSTACLE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "priorityVehicle": ("emergency_vehicle", *_VEHICLE),
         **dict.fromkeys(("vehicle", "parkedVehicle"), _VEHICLE),
         "bicycle": ("cyclist", *_RIDER),
+        "rider": _RIDER,
         "pedestrian": ("pedestrian", "vulnerable_user", "road_user", "obstacle"),
         "train": ("train", "rail_vehicle", "rail_borne", "road_user", "obstacle"),
         "unknown": ("road_user", "obstacle"),
         **dict.fromkeys(("constructionZone", "roadBoundary", "building"), ("obstacle",)),
-        **dict.fromkeys(("pillar", "median_strip"), ("obstacle",)),
+        **dict.fromkeys(("pillar", "median_strip", "object"), ("obstacle",)),
     }
 )
-"""CommonRoad's obstacle types -> object types of vocabularies, the most specific word first.
+"""Types of participants -> object types of vocabularies, the most specific word first.
+
+They are CommonRoad's obstacle types, a vehicle, a rider and an object of no more specific one.
 
 A rulebook that does not tell cars from other vehicles judges a car as a vehicle. What is not a road
 user is an obstacle at most; a rulebook without that word has no rule about it, but it is in the way
@@ -172,7 +175,8 @@ class Participant:
 
     ``standing``: it is there all the time, in its only state. ``lamps``: by time step those that
     are lit; steps that the file says nothing about are missing. ``shows`` are those that the file
-    speaks of. ``stated_error`` is how far the file itself says that states may be wrong.
+    speaks of. ``stated_error`` is how far the file itself says that states may be wrong, or a usual
+    size in place of one that it does not say.
     """
 
     __repr__ = short_repr

@@ -22,7 +22,12 @@ MAP_REACH_M = 150.0
 """A lanelet farther from ego's path is not drawn."""
 
 _FOOTWAYS = frozenset({"sidewalk", "bicycleLane"})
-_MARKS: dict[LaneMark | None, MarkKind] = {"solid": "solid", "broken": "broken", None: "unsaid"}
+_MARKS: dict[LaneMark | None, MarkKind] = {
+    "solid": "solid",
+    "double_solid": "solid",
+    "broken": "broken",
+    None: "unsaid",
+}
 _SIGN_TEXTS = {
     "STOP": "STOP",
     "YIELD": "▽",

@@ -1,0 +1,47 @@
+"""Which files of Argoverse 2 lie beside each other."""
+
+from __future__ import annotations
+
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from rulec.diagnostics import named
+from rulec.recordings.encodings.xml_element import XmlFormat, short
+
+SCENARIO = "scenario_*.parquet"
+ANNOTATIONS = "annotations*.feather"
+POSES = "city_SE3_egovehicle.feather"
+MAP = "log_map_archive_*.json"
+
+_MOST_NAMED = 3
+
+
+def is_named(path: Path, pattern: str) -> bool:
+    """True for a file with such a name, and for a folder with such a file."""
+    return has(path, pattern) or (not path.is_dir() and fnmatchcase(path.name, pattern))
+
+
+def has(folder: Path, pattern: str) -> bool:
+    """True for a folder with such a file."""
+    return folder.is_dir() and next(folder.glob(pattern), None) is not None
+
+
+def only_in(path: Path, pattern: str, form: XmlFormat) -> Path:
+    """The file itself, or the only one with such a name in a folder. Raises RulecError R0610."""
+    return _only(path, path, pattern, form, "name one of them") if path.is_dir() else path
+
+
+def map_beside(path: Path, form: XmlFormat) -> Path:
+    """The map beside a file, or in the folder `map` there. Raises RulecError R0610."""
+    folder = path.parent if has(path.parent, MAP) else path.parent / "map"
+    return _only(path, folder, MAP, form, "name the map with --map FILE")
+
+
+def _only(path: Path, folder: Path, pattern: str, form: XmlFormat, way_out: str) -> Path:
+    found = sorted(folder.glob(pattern)) if folder.is_dir() else []
+    if len(found) == 1:
+        return found[0]
+    if not found:
+        raise form.refused(path, f"there is no `{pattern}` beside it", help_text=way_out)
+    some = named([short(file.name) for file in found[:_MOST_NAMED]])
+    raise form.refused(path, f"there are {len(found)} beside it: {some}", help_text=way_out)

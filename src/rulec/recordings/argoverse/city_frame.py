@@ -1,0 +1,46 @@
+"""Poses in three dimensions: from ego's frame to the city's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import float64, intp
+from numpy.typing import NDArray
+
+_Floats = NDArray[float64]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Poses:
+    """Rotations (3 x 3 matrices) and translations (m), a row for each."""
+
+    rotations: _Floats
+    translations: _Floats
+
+    @property
+    def headings(self) -> _Floats:
+        """The directions (rad) in the plane of the x axes."""
+        headings: _Floats = np.arctan2(self.rotations[:, 1, 0], self.rotations[:, 0, 0])
+        return headings
+
+    def taken(self, rows: NDArray[intp]) -> Poses:
+        """Those of some rows."""
+        return Poses(self.rotations[rows], self.translations[rows])
+
+    def after(self, inner: Poses) -> Poses:
+        """Poses in these frames as poses in the frame that these are in, row by row."""
+        moved = np.einsum("nij,nj->ni", self.rotations, inner.translations) + self.translations
+        return Poses(np.einsum("nij,njk->nik", self.rotations, inner.rotations), moved)
+
+
+def rotations(quaternions: _Floats) -> _Floats:
+    """The matrices of quaternions (w, x, y, z) of any length but 0."""
+    w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1)[:, None]).T
+    rows = (
+        (x * x - y * y - z * z + w * w, 2 * (x * y - z * w), 2 * (x * z + y * w)),
+        (2 * (x * y + z * w), -x * x + y * y - z * z + w * w, 2 * (y * z - x * w)),
+        (2 * (x * z - y * w), 2 * (y * z + x * w), -x * x - y * y + z * z + w * w),
+    )
+    matrices: _Floats = np.stack([np.stack(row, axis=-1) for row in rows], axis=1)
+    return matrices

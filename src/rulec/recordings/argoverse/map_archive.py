@@ -1,0 +1,204 @@
+"""Argoverse 2's map of a log as lanelets.
+
+By the data set's own API (`argoverse/av2-api`, `av2.map`): lane segments with bounds in the
+direction of travel, the paint of each, neighbours that may lead the other way, and pedestrian
+crossings as two edges, along which people walk. Both data sets have the same file.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+import msgspec
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.recordings.encodings.typed_json import read_json
+from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
+from rulec.recordings.polylines import paired, without_repeats
+from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points
+from rulec.recordings.road_map import RoadMap
+
+MAP_ARCHIVE = XmlFormat(
+    "a map of Argoverse 2",
+    "",
+    "it is `log_map_archive_*.json`, as the data set has it beside its tracks",
+    50_000_000,
+)
+
+_CLOSEST_M = 0.001
+
+LANE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"VEHICLE": (), "BIKE": ("bicycleLane",), "BUS": ("busLane",)}
+)
+
+
+class _Point(msgspec.Struct, frozen=True):
+    x: float
+    y: float
+
+
+_Line = list[_Point]
+
+
+class _LaneSegment(msgspec.Struct, frozen=True):
+    id: int
+    is_intersection: bool
+    lane_type: str
+    left_lane_boundary: _Line
+    right_lane_boundary: _Line
+    left_lane_mark_type: str
+    right_lane_mark_type: str
+    successors: list[int]
+    predecessors: list[int] = []
+    left_neighbor_id: int | None = None
+    right_neighbor_id: int | None = None
+
+
+class _Crossing(msgspec.Struct, frozen=True):
+    id: int
+    edge1: _Line
+    edge2: _Line
+
+
+class _MapArchive(msgspec.Struct, frozen=True):
+    lane_segments: dict[str, _LaneSegment]
+    pedestrian_crossings: dict[str, _Crossing] = {}
+
+
+def read_map_archive(path: Path) -> RoadMap:
+    """Read a map. Raises RulecError R0610 if it is none, R0701 if it cannot be opened."""
+    archive = read_json(path, MAP_ARCHIVE, _MapArchive)
+    if not archive.lane_segments:
+        raise MAP_ARCHIVE.refused(path, "there is no lane segment in it")
+    lanelets: dict[str, Lanelet] = {}
+    for lanelet in (*_lanes(path, archive), *_crosswalks(path, archive)):
+        if lanelet.id in lanelets:
+            raise MAP_ARCHIVE.refused(path, f"`{short(lanelet.id)}` is in it twice")
+        lanelets[lanelet.id] = lanelet
+    return RoadMap(form="Argoverse 2 map", lanelets=lanelets, side="right", country="USA")
+
+
+def _lanes(path: Path, archive: _MapArchive) -> Iterator[Lanelet]:
+    bounds = {}
+    for segment in archive.lane_segments.values():
+        what = f"lane segment {segment.id}"
+        lines = segment.left_lane_boundary, segment.right_lane_boundary
+        own = _bounds(path, what, lines)
+        # In a part of a city that is cut out, what lies at its edge may have been cut to a point
+        if own is not None:
+            bounds[segment.id] = own
+    segments = [x for x in archive.lane_segments.values() if x.id in bounds]
+    before: dict[int, dict[int, None]] = defaultdict(dict)
+    for segment in segments:
+        before[segment.id].update(dict.fromkeys(segment.predecessors))
+    for segment in segments:
+        for after in segment.successors:
+            before[after][segment.id] = None
+    for segment in segments:
+        left, right = bounds[segment.id]
+        if segment.lane_type not in LANE_TYPES:
+            why = f"lane segment {segment.id} is of type `{short(segment.lane_type)}`"
+            raise MAP_ARCHIVE.refused(path, why, expected=f"expected {', '.join(LANE_TYPES)}")
+        left, right = paired(left, right)
+        kinds = (*LANE_TYPES[segment.lane_type], *["intersection"] * segment.is_intersection)
+        yield Lanelet(
+            id=str(segment.id),
+            left=left,
+            right=right,
+            centre=(left + right) / 2,
+            successors=_known(segment.successors, bounds),
+            predecessors=_known(before[segment.id], bounds),
+            left_of=_beside(segment.id, segment.left_neighbor_id, bounds, left=True),
+            right_of=_beside(segment.id, segment.right_neighbor_id, bounds, left=False),
+            types=frozenset(kinds),
+            signs=frozenset(),
+            limit_mps=None,
+            left_mark=MARKS.get(segment.left_lane_mark_type),
+            right_mark=MARKS.get(segment.right_lane_mark_type),
+        )
+
+
+def _known(names: Iterable[int], bounds: Mapping[int, object]) -> tuple[str, ...]:
+    return tuple(str(name) for name in dict.fromkeys(names) if name in bounds)
+
+
+def _beside(
+    own: int, other: int | None, bounds: Mapping[int, tuple[Points, Points]], *, left: bool
+) -> str | None:
+    """The lane beside one if it leads the same way: then the border runs the same way for both."""
+    if other is None or other == own or other not in bounds:
+        return None
+    border, same = bounds[own][0 if left else 1], bounds[other][1 if left else 0]
+    opposite = bounds[other][0 if left else 1][::-1]
+    return str(other) if _apart(border, same) <= _apart(border, opposite) else None
+
+
+def _apart(line: Points, other: Points) -> float:
+    return float(np.hypot(*(line[[0, -1]] - other[[0, -1]]).T).sum())
+
+
+MARKS: Mapping[str, LaneMark] = MappingProxyType(
+    {
+        **dict.fromkeys(("SOLID_WHITE", "SOLID_YELLOW"), "solid"),
+        **dict.fromkeys(("SOLID_DASH_WHITE", "SOLID_DASH_YELLOW"), "solid"),
+        **dict.fromkeys(("DOUBLE_SOLID_WHITE", "DOUBLE_SOLID_YELLOW"), "double_solid"),
+        **dict.fromkeys(("DASHED_WHITE", "DASHED_YELLOW"), "broken"),
+        **dict.fromkeys(("DASH_SOLID_WHITE", "DASH_SOLID_YELLOW"), "broken"),
+        **dict.fromkeys(("DOUBLE_DASH_WHITE", "DOUBLE_DASH_YELLOW"), "broken"),
+        "NONE": "none",
+    }
+)
+"""Types of paint -> marks.
+
+Of two different lines the first that is named is the one on the lane's own side
+(`av2.rendering.map` draws them so). What a blue line means the data set does not say.
+"""
+
+
+def _crosswalks(path: Path, archive: _MapArchive) -> Iterator[Lanelet]:
+    for crossing in archive.pedestrian_crossings.values():
+        what = f"pedestrian crossing {crossing.id}"
+        edges = _bounds(path, what, (crossing.edge1, crossing.edge2))
+        if edges is None:
+            continue
+        one, other = edges
+        if _apart(one, other[::-1]) < _apart(one, other):
+            other = other[::-1]
+        one, other = paired(one, other)
+        along, across = (one[-1] - one[0]) + (other[-1] - other[0]), (other - one).mean(axis=0)
+        towards_left = float(along[0] * across[1] - along[1] * across[0]) > 0
+        left, right = (other, one) if towards_left else (one, other)
+        yield Lanelet(
+            id=str(crossing.id),
+            left=left,
+            right=right,
+            centre=(left + right) / 2,
+            successors=(),
+            predecessors=(),
+            left_of=None,
+            right_of=None,
+            types=frozenset({"crosswalk"}),
+            signs=frozenset(),
+            limit_mps=None,
+        )
+
+
+def _bounds(path: Path, what: str, lines: tuple[_Line, _Line]) -> tuple[Points, Points] | None:
+    """The two lines; None if one of them is no longer than nothing."""
+    found = []
+    for line in lines:
+        points: NDArray[float64] = np.array([(point.x, point.y) for point in line]).reshape(-1, 2)
+        if len(points) < 2:
+            raise MAP_ARCHIVE.refused(path, f"a bound of {what} has fewer than two points")
+        if not (np.abs(points) < LARGEST).all():
+            raise MAP_ARCHIVE.refused(path, f"a place of {what} is not on earth")
+        if np.hypot(*np.diff(points, axis=0).T).sum() > LONGEST_M:
+            raise MAP_ARCHIVE.refused(path, f"{what} is longer than {LONGEST_M / 1000:g} km")
+        found.append(without_repeats(points, _CLOSEST_M))
+    first, second = found
+    return (first, second) if min(map(len, found)) > 1 else None

@@ -1,0 +1,127 @@
+"""Scenarios of Argoverse 2's motion forecasting.
+
+A table (`scenario_*.parquet`) with a row for each object and time step, and the map beside it. By
+`av2.datasets.motion_forecasting`: a place is the middle of the object's box, a heading counts in
+the map's frame, a velocity is one of the instant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy import float64, int64
+from numpy.typing import NDArray
+
+from rulec.recordings.argoverse.argoverse_files import SCENARIO, map_beside, only_in
+from rulec.recordings.argoverse.map_archive import read_map_archive
+from rulec.recordings.argoverse.object_types import (
+    ASSUMED_ERROR,
+    EGO_SIZE_M,
+    MOTION_TYPES,
+    OTHER_SIZE_M,
+    USUAL_SIZES_M,
+)
+from rulec.recordings.argoverse.time_grid import rates
+from rulec.recordings.encodings.arrow_tables import ArrowTable, Wanted, read_table
+from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.recording import MOST_STEPS, Participant, Recording
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+
+MOTION = XmlFormat(
+    "a motion forecasting scenario of Argoverse 2",
+    "",
+    "it is `scenario_*.parquet`, as the data set has it",
+)
+
+EGO = "AV"
+"""The id of the track of the car that recorded all others."""
+
+FORM = "Argoverse 2 motion forecasting"
+
+_STEP_S = 0.1
+"""Between two time steps: the data set has ten a second."""
+
+_WANTED = Wanted(
+    numbers=("position_x", "position_y", "heading", "velocity_x", "velocity_y"),
+    whole=("timestep",),
+    texts=("track_id", "object_type", "scenario_id"),
+    optional=frozenset({"scenario_id"}),
+)
+
+
+def read_motion(path: Path, map_path: Path | None = None) -> Recording:
+    """Read a scenario, or the one in a folder, on the map given or the one beside it.
+
+    Raises RulecError R0610 for a file that is none or has no map, R0701 if a file cannot
+    be opened, R0706 without pyarrow.
+    """
+    path = only_in(path, SCENARIO, MOTION)
+    table = read_table(path, MOTION, _WANTED)
+    if not table.rows:
+        raise MOTION.refused(path, "nobody is in it")
+    road = read_map_archive(map_path or map_beside(path, MOTION))
+    participants = tuple(_participants(table))
+    names = table.texts["scenario_id"].values if "scenario_id" in table.texts else ()
+    return Recording(
+        name=names[0] if names else path.stem.removeprefix("scenario_"),
+        step_s=_STEP_S,
+        lanelets=road.lanelets,
+        participants=participants,
+        problems=(),
+        form=FORM,
+        side=road.side,
+        country=road.country,
+        remarks=(_REMARK,),
+        ego=EGO if any(body.id == EGO for body in participants) else "",
+    )
+
+
+_REMARK = (
+    "sizes, which the file does not say, are taken to be usual ones: vehicles are 4.6 m by 1.9 m"
+)
+
+
+def _participants(table: ArrowTable) -> Iterator[Participant]:
+    steps, tracks = table.whole["timestep"], table.texts["track_id"]
+    odd = (steps < 0) | (steps > MOST_STEPS)
+    if odd.any():
+        row = int(np.argmax(odd))
+        raise table.refused(row, f"`timestep` is {steps[row]}", f"0 to {MOST_STEPS:,}")
+    states = np.stack([table.numbers[name] for name in _WANTED.numbers], axis=1)
+    kinds = table.texts["object_type"]
+    # By track, in the order of the file, and within it by step
+    order = np.lexsort((steps, tracks.codes))
+    starts = np.flatnonzero(np.diff(tracks.codes[order], prepend=-1))
+    for number, rows in enumerate(np.split(order, starts[1:])):
+        own = steps[rows]
+        twice = np.flatnonzero(np.diff(own) == 0)
+        name = tracks.values[number]
+        if len(twice):
+            row = int(rows[twice[0] + 1])
+            raise table.refused(row, f"`{short(name)}` is twice in time step {steps[row]}")
+        kind = kinds.values[int(kinds.codes[rows[0]])]
+        if kind not in MOTION_TYPES:
+            raise table.refused(int(rows[0]), f"`object_type` is `{short(kind)}`")
+        yield _participant(name, kind, own, states[rows])
+
+
+def _participant(
+    name: str, kind: str, steps: NDArray[int64], states: NDArray[float64]
+) -> Participant:
+    x, y, heading, vx, vy = states.T
+    speed: NDArray[float64] = vx * np.cos(heading) + vy * np.sin(heading)
+    gained = rates(speed, steps.astype(float) * _STEP_S)
+    is_ego = name == EGO
+    length, width = EGO_SIZE_M if is_ego else USUAL_SIZES_M.get(kind, OTHER_SIZE_M)
+    track = Track(steps, np.column_stack((x, y, heading, speed, gained)), length, width)
+    return Participant(
+        id=name,
+        type="car" if is_ego else MOTION_TYPES[kind],
+        standing=False,
+        states=TrackStates(track),
+        outlines=TrackOutlines(track),
+        shows=frozenset(),
+        stated_error=None if is_ego else ASSUMED_ERROR,
+    )

@@ -1,0 +1,215 @@
+"""Sensor logs of Argoverse 2: everybody around ego, sweep by sweep.
+
+By `av2.structures.cuboid` and `av2.utils.io`: annotations are boxes in ego's frame at the moment of
+a sweep; poses of that frame, whose origin is the middle of ego's rear axle, are in the city's
+frame, as the map is.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy import bool_, float64, int64, intp
+from numpy.typing import NDArray
+
+from rulec.recordings.argoverse.argoverse_files import ANNOTATIONS, MAP, POSES, map_beside, only_in
+from rulec.recordings.argoverse.city_frame import Poses, rotations
+from rulec.recordings.argoverse.map_archive import read_map_archive
+from rulec.recordings.argoverse.object_types import (
+    CATEGORIES,
+    EGO_MIDDLE_M,
+    EGO_SIZE_M,
+    NOT_ON_THE_ROAD,
+    RIDES,
+)
+from rulec.recordings.argoverse.time_grid import NANOSECONDS, on_grid, rates
+from rulec.recordings.encodings.arrow_tables import ArrowTable, Wanted, read_table
+from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.recording import Participant, Recording
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+
+SENSOR = XmlFormat(
+    "a sensor log of Argoverse 2",
+    "",
+    "it is `annotations.feather`, with `city_SE3_egovehicle.feather` beside it, as the data set "
+    "has them",
+)
+FORM = "Argoverse 2 sensor log"
+
+EGO = "AV"
+"""The id of ego where no annotation is of it, as motion forecasting has it."""
+
+_EGO_CATEGORY = "EGO_VEHICLE"
+_QUATERNION, _PLACE = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
+_POSES = Wanted(numbers=(*_QUATERNION, *_PLACE), whole=("timestamp_ns",))
+_BOXES = Wanted(
+    numbers=(*_QUATERNION, *_PLACE, "length_m", "width_m"),
+    whole=("timestamp_ns",),
+    texts=("track_uuid", "category"),
+)
+_LARGEST_M = 200.0
+_RIDDEN_M = 1.0
+"""A rider's box is on what it rides if their middles are no farther apart."""
+
+_NAME = re.compile(MAP.replace("*", r"([0-9A-Za-z-]+)_*.*").replace(".json", r"\.json"))
+_REMARK = (
+    f"ego's middle, which the log does not say, is taken to be {EGO_MIDDLE_M:g} m ahead of its "
+    "rear axle"
+)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Sweeps:
+    """The sweeps with annotations: their moments (s), time steps, and ego's poses."""
+
+    seconds: NDArray[float64]
+    steps: NDArray[int64]
+    poses: Poses
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Box:
+    """The boxes of a track: the sweep of each, their poses in the city, and its size (m)."""
+
+    id: str
+    category: str
+    sweeps: NDArray[intp]
+    poses: Poses
+    size: tuple[float, float]
+
+    def kept(self, flags: NDArray[bool_]) -> _Box:
+        """Its boxes in some sweeps only."""
+        rows = np.flatnonzero(flags)
+        return replace(self, sweeps=self.sweeps[rows], poses=self.poses.taken(rows))
+
+
+def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
+    """Read a log from its annotations, or the folder they are in, on the map given or beside it.
+
+    Raises RulecError R0610 for a file that is none or has no poses or map, R0701 if a file cannot
+    be opened, R0706 without pyarrow.
+    """
+    path = only_in(path, ANNOTATIONS, SENSOR)
+    boxes = read_table(path, SENSOR, _BOXES)
+    if not boxes.rows:
+        raise SENSOR.refused(path, "nobody is in it")
+    moments, sweep_of = np.unique(boxes.whole["timestamp_ns"], return_inverse=True)
+    steps, step_s = on_grid(path, SENSOR, moments)
+    at = path.parent / POSES
+    if not at.is_file():
+        raise SENSOR.refused(path, f"there is no `{POSES}` beside it")
+    poses = _poses_at(read_table(at, SENSOR, _POSES), moments)
+    seconds = (moments - moments[0]) / NANOSECONDS
+    sweeps = _Sweeps(seconds, steps, poses)
+    tracks = list(_tracks(boxes, sweeps, sweep_of.reshape(-1)))
+    map_path = map_path or map_beside(path, SENSOR)
+    road = read_map_archive(map_path)
+    own = next((x for x in tracks if x.category == _EGO_CATEGORY), None)
+    ego = _ego(EGO if own is None else own.id, EGO_SIZE_M if own is None else own.size, sweeps)
+    others = _with_riders([x for x in tracks if x.category != _EGO_CATEGORY])
+    if any(x.id == ego.id for x in others):
+        raise SENSOR.refused(path, f"somebody else is called `{ego.id}`, as ego is")
+    log = _NAME.fullmatch(map_path.name)
+    return Recording(
+        name=log[1] if log else path.resolve().parent.name,
+        step_s=step_s,
+        lanelets=road.lanelets,
+        participants=tuple(_participant(x, sweeps) for x in (ego, *others) if len(x.sweeps)),
+        problems=(),
+        form=FORM,
+        side=road.side,
+        country=road.country,
+        remarks=(_REMARK,),
+        ego=ego.id,
+    )
+
+
+def _poses_at(table: ArrowTable, moments: NDArray[int64]) -> Poses:
+    """Ego's poses at moments of the annotations, which are among those of the poses."""
+    known = table.whole["timestamp_ns"]
+    order = np.argsort(known, kind="stable")
+    rows = np.searchsorted(known, moments, sorter=order)
+    found = np.append(known[order], -1)[rows] == moments
+    if not found.all():
+        missing = int(moments[np.argmin(found)])
+        raise SENSOR.refused(table.path, f"it has no pose at {missing} ns, a moment of annotations")
+    return _poses(table).taken(order[rows])
+
+
+def _poses(table: ArrowTable) -> Poses:
+    quaternions = np.stack([table.numbers[name] for name in _QUATERNION], axis=1)
+    flat = np.abs(quaternions).max(axis=1, initial=0.0) < 1e-6
+    if flat.any():
+        raise table.refused(int(np.argmax(flat)), "its quaternion is 0")
+    places = np.stack([table.numbers[name] for name in _PLACE], axis=1)
+    return Poses(rotations(quaternions), places)
+
+
+def _tracks(table: ArrowTable, sweeps: _Sweeps, sweep_of: NDArray[intp]) -> Iterator[_Box]:
+    sizes = np.stack([table.numbers["length_m"], table.numbers["width_m"]], axis=1)
+    odd = ((sizes <= 0) | (sizes > _LARGEST_M)).any(axis=1)
+    if odd.any():
+        row = int(np.argmax(odd))
+        length, width = sizes[row]
+        raise table.refused(row, f"a box is {length:g} m by {width:g} m")
+    names, kinds = table.texts["track_uuid"], table.texts["category"]
+    in_city = sweeps.poses.taken(sweep_of).after(_poses(table))
+    order = np.lexsort((sweep_of, names.codes))
+    starts = np.flatnonzero(np.diff(names.codes[order], prepend=-1))
+    for number, rows in enumerate(np.split(order, starts[1:])):
+        category, own = kinds.values[int(kinds.codes[rows[0]])], sweep_of[rows]
+        twice = np.flatnonzero(np.diff(own) == 0)
+        if len(twice):
+            row = int(rows[twice[0] + 1])
+            raise table.refused(row, f"`{short(names.values[number])}` is twice in one sweep")
+        if category in NOT_ON_THE_ROAD:
+            continue
+        if category not in CATEGORIES:
+            raise table.refused(int(rows[0]), f"`category` is `{short(category)}`")
+        length, width = np.median(sizes[rows], axis=0).tolist()
+        yield _Box(names.values[number], category, own, in_city.taken(rows), (length, width))
+
+
+def _ego(name: str, size: tuple[float, float], sweeps: _Sweeps) -> _Box:
+    count = len(sweeps.steps)
+    ahead = np.tile([EGO_MIDDLE_M, 0.0, 0.0], (count, 1))
+    middle = sweeps.poses.after(Poses(np.tile(np.eye(3), (count, 1, 1)), ahead))
+    return _Box(name, _EGO_CATEGORY, np.arange(count), middle, size)
+
+
+def _with_riders(boxes: list[_Box]) -> list[_Box]:
+    """Boxes of which one stands for a rider and what it rides: as large as both, where it rides."""
+    ridden = {x.id: np.zeros(len(x.sweeps), dtype=bool) for x in boxes}
+    sizes = {x.id: x.size for x in boxes}
+    for rider in boxes:
+        for device in boxes:
+            if device.category != RIDES.get(rider.category):
+                continue
+            _, on, under = np.intersect1d(rider.sweeps, device.sweeps, return_indices=True)
+            apart = rider.poses.translations[on, :2] - device.poses.translations[under, :2]
+            near = np.hypot(*apart.T) <= _RIDDEN_M
+            if near.any():
+                ridden[device.id][under[near]] = True
+                own, other = sizes[rider.id], device.size
+                sizes[rider.id] = max(own[0], other[0]), max(own[1], other[1])
+    return [replace(x, size=sizes[x.id]).kept(~ridden[x.id]) for x in boxes]
+
+
+def _participant(box: _Box, sweeps: _Sweeps) -> Participant:
+    x, y = box.poses.translations[:, :2].T
+    heading, seconds = box.poses.headings, sweeps.seconds[box.sweeps]
+    speed = rates(x, seconds) * np.cos(heading) + rates(y, seconds) * np.sin(heading)
+    rows = np.column_stack((x, y, heading, speed, rates(speed, seconds)))
+    track = Track(sweeps.steps[box.sweeps], rows, *box.size)
+    return Participant(
+        id=box.id,
+        type=CATEGORIES[box.category],
+        standing=False,
+        states=TrackStates(track),
+        outlines=TrackOutlines(track),
+        shows=frozenset(),
+    )

@@ -1,0 +1,252 @@
+"""Tables in Parquet and Feather files, read with Arrow within bounds.
+
+Feather's second version is Arrow's file format for interprocess communication.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy import float64, int64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import RulecError
+from rulec.files import opened
+from rulec.recordings.encodings.arrow_messages import OddMessageError, batch_size
+from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
+from rulec.trace.formats.arrow.parquet import unavailable
+
+MOST_ROWS = 5_000_000
+MOST_BYTES = 1_000_000_000
+"""That the columns which are read unpack to."""
+
+LONGEST_TEXT = 200
+
+PARQUET_MARK, FEATHER_MARK = b"PAR1", b"ARROW1"
+_FIRST_FEATHER = b"FEA1"
+_HEADER_BYTES = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Texts:
+    """A column of texts: the number of each row's among the different ones."""
+
+    codes: NDArray[int64]
+    values: tuple[str, ...]
+
+    def rows(self) -> list[str]:
+        """The text of each row."""
+        return [self.values[code] for code in self.codes.tolist()]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ArrowTable:
+    """Columns of a file by name, without gaps; numbers are finite, below ``LARGEST``."""
+
+    path: Path
+    form: XmlFormat
+    rows: int
+    numbers: Mapping[str, NDArray[float64]]
+    whole: Mapping[str, NDArray[int64]]
+    texts: Mapping[str, Texts]
+
+    def refused(self, row: int, why: str, expected: str = "") -> RulecError:
+        """The error (R0610) for a row, the first of which is 1."""
+        return self.form.refused(self.path, why, row + 1, expected=expected)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wanted:
+    """The columns to read, by what they hold; those in ``optional`` may be missing."""
+
+    numbers: tuple[str, ...] = ()
+    whole: tuple[str, ...] = ()
+    texts: tuple[str, ...] = ()
+    optional: frozenset[str] = frozenset()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All of them."""
+        return (*self.numbers, *self.whole, *self.texts)
+
+
+def read_table(path: Path, form: XmlFormat, wanted: Wanted) -> ArrowTable:
+    """Read columns of a Parquet or Feather file.
+
+    Raises RulecError R0610 for a file that is none, is damaged or too large, or lacks a column,
+    R0701 if it cannot be opened, R0706 without pyarrow.
+    """
+    arrow = _arrow(path)
+    with opened(path) as stream:
+        data = stream.read(form.largest_bytes + 1)
+    if len(data) > form.largest_bytes:
+        raise form.refused(path, f"it is larger than {form.largest_bytes:,} bytes")
+    try:
+        table = _read(arrow, data, path, form, wanted)
+        table.validate(full=True)
+        table = table.combine_chunks()
+        found: dict[str, Any] = {name: table.column(name) for name in table.column_names}
+        return ArrowTable(
+            path,
+            form,
+            table.num_rows,
+            _converted(wanted.numbers, found, lambda name, column: _numbers(name, column, arrow)),
+            _converted(wanted.whole, found, lambda name, column: _whole(name, column, arrow)),
+            _converted(wanted.texts, found, lambda name, column: _texts(name, column, arrow)),
+        )
+    except OddMessageError:
+        raise form.refused(path, "it is damaged (its sizes contradict each other)") from None
+    except _OddColumnError as reason:
+        raise form.refused(path, reason.why, reason.row) from None
+    except (arrow.ArrowException, OSError, ValueError, KeyError, MemoryError) as reason:
+        words = short(str(reason).partition(".")[0].partition("\n")[0])
+        raise form.refused(path, f"it is damaged ({words})") from None
+
+
+def _arrow(path: Path) -> Any:
+    try:
+        import pyarrow  # an extra, and 0.1 s
+        import pyarrow.ipc
+        import pyarrow.parquet
+    except ImportError:
+        message = f"`{path.name}` takes the package `pyarrow`, which is not installed"
+        raise unavailable(message, str(path), "`pip install 'rulec[parquet]'`") from None
+    return pyarrow
+
+
+def _read(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wanted) -> Any:
+    if data.startswith(FEATHER_MARK):
+        return _feather(arrow, data, path, form, wanted)
+    if data.startswith(PARQUET_MARK):
+        return _parquet(arrow, data, path, form, wanted)
+    if data.startswith(_FIRST_FEATHER):
+        raise form.refused(path, "it is of Feather's first version", help_text="write it anew")
+    raise form.refused(path, "it is neither Parquet nor Feather" if data else "it is empty")
+
+
+def _feather(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wanted) -> Any:
+    # The messages one after the other, without the table of contents, which could point anywhere
+    messages = arrow.py_buffer(data).slice(_HEADER_BYTES)
+    rows = unpacked = 0
+    for message in arrow.ipc.MessageReader.open_stream(messages):
+        body = memoryview(b"" if message.body is None else message.body)
+        size = batch_size(message.metadata.to_pybytes(), body)
+        rows, unpacked = rows + size.rows, unpacked + size.unpacked_bytes
+        if size.rows < 0 or rows > MOST_ROWS or unpacked > MOST_BYTES:
+            raise _too_much(path, form, rows)
+    with arrow.ipc.open_stream(messages) as reader:
+        columns = _present(reader.schema.names, path, form, wanted)
+        table = reader.read_all()
+    return table.select(columns)
+
+
+def _parquet(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wanted) -> Any:
+    # Texts as numbers in a dictionary: each may be there a million times
+    source = arrow.parquet.ParquetFile(arrow.BufferReader(data), read_dictionary=list(wanted.texts))
+    columns = _present(source.schema_arrow.names, path, form, wanted)
+    about = source.metadata
+    groups = [about.row_group(number) for number in range(about.num_row_groups)]
+    parts = [group.column(at) for group in groups for at in range(group.num_columns)]
+    unpacked = sum(
+        abs(part.total_uncompressed_size)
+        for part in parts
+        if part.path_in_schema.partition(".")[0] in columns
+    )
+    if not 0 <= about.num_rows <= MOST_ROWS or unpacked > MOST_BYTES:
+        raise _too_much(path, form, about.num_rows)
+    batches, rows = [], 0
+    for batch in source.iter_batches(columns=columns, use_threads=False):
+        rows += batch.num_rows
+        if rows > MOST_ROWS:
+            raise _too_much(path, form, rows)
+        batches.append(batch)
+    return arrow.Table.from_batches(batches, schema=None if batches else source.schema_arrow)
+
+
+def _too_much(path: Path, form: XmlFormat, rows: int) -> RulecError:
+    why = f"its table of {rows:,} rows is too large"
+    expected = f"{MOST_ROWS:,} rows at most, and {MOST_BYTES:,} bytes"
+    return form.refused(path, why, expected=f"expected {expected}")
+
+
+def _present(names: Iterable[str], path: Path, form: XmlFormat, wanted: Wanted) -> list[str]:
+    known = list(names)
+    doubled = sorted({name for name in known if known.count(name) > 1 and name in wanted.names})
+    if doubled:
+        raise form.refused(path, f"it has two columns `{doubled[0]}`")
+    missing = [x for x in wanted.names if x not in known and x not in wanted.optional]
+    if missing:
+        raise form.refused(path, f"it has no column `{missing[0]}`")
+    return [name for name in wanted.names if name in known]
+
+
+class _OddColumnError(Exception):
+    def __init__(self, why: str, row: int | None = None) -> None:
+        self.why, self.row = why, row
+
+
+def _converted(
+    names: Iterable[str], found: Mapping[str, Any], convert: Callable[[str, Any], Any]
+) -> dict[str, Any]:
+    return {name: convert(name, found[name]) for name in names if name in found}
+
+
+def _gap(name: str, column: Any) -> None:
+    if column.null_count:
+        row = int(np.argmax(column.is_null().to_numpy())) + 1
+        raise _OddColumnError(f"`{name}` has no value", row)
+
+
+def _numbers(name: str, column: Any, arrow: Any) -> NDArray[float64]:
+    if not (arrow.types.is_floating(column.type) or arrow.types.is_integer(column.type)):
+        raise _OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
+    _gap(name, column)
+    values = np.asarray(column.to_numpy(), dtype=float)
+    odd = ~(np.abs(values) < LARGEST)
+    if odd.any():
+        row = int(np.argmax(odd))
+        raise _OddColumnError(f"`{name}` is {values[row]:g}", row + 1)
+    return values
+
+
+def _whole(name: str, column: Any, arrow: Any) -> NDArray[int64]:
+    if not arrow.types.is_integer(column.type):
+        raise _OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
+    _gap(name, column)
+    values: NDArray[int64] = column.cast(arrow.int64()).to_numpy()
+    return values
+
+
+def _texts(name: str, column: Any, arrow: Any) -> Texts:
+    kind = column.type.value_type if arrow.types.is_dictionary(column.type) else column.type
+    if not (arrow.types.is_string(kind) or arrow.types.is_large_string(kind)):
+        raise _OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
+    _gap(name, column)
+    if not arrow.types.is_dictionary(column.type):
+        column = column.dictionary_encode()
+    chunks = list(_chunks(column))
+    values = [value for _, own in chunks for value in own]
+    longest = max((len(value or "") for value in values), default=0)
+    if longest > LONGEST_TEXT:
+        raise _OddColumnError(f"a text in `{name}` is longer than {LONGEST_TEXT} characters")
+    numbers: dict[str | None, int] = {}
+    codes = [
+        np.array([numbers.setdefault(value, len(numbers)) for value in own], dtype=int)[indices]
+        for indices, own in chunks
+        if len(indices)
+    ]
+    if None in numbers:
+        raise _OddColumnError(f"`{name}` has no value")
+    return Texts(
+        np.concatenate(codes) if codes else np.zeros(0, dtype=int),
+        tuple(value for value in numbers if value is not None),
+    )
+
+
+def _chunks(column: Any) -> Iterator[tuple[NDArray[int64], list[str | None]]]:
+    for chunk in getattr(column, "chunks", [column]):
+        yield chunk.indices.to_numpy(zero_copy_only=False), chunk.dictionary.to_pylist()

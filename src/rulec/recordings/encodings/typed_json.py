@@ -1,0 +1,32 @@
+"""JSON read into types within bounds; what no type asks for is skipped."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+
+from rulec.files import opened
+from rulec.recordings.encodings.xml_element import XmlFormat
+
+T = TypeVar("T")
+
+
+def read_json(path: Path, form: XmlFormat, kind: type[T]) -> T:
+    """The content of a file as a value of a type, which bounds its depth.
+
+    Raises RulecError R0610 for a file that is larger than the format allows, broken, or holds
+    something else, with the place in it as a path of keys or a byte; R0701 if it cannot be opened.
+    """
+    with opened(path) as stream:
+        data = stream.read(form.largest_bytes + 1)
+    if len(data) > form.largest_bytes:
+        raise form.refused(path, f"it is larger than {form.largest_bytes:,} bytes")
+    try:
+        return msgspec.json.decode(data, type=kind)
+    except (msgspec.DecodeError, UnicodeDecodeError, ValueError) as reason:
+        words = "".join(x if x.isprintable() else "?" for x in str(reason)[:200])
+        raise form.refused(path, words) from None
+    except RecursionError:
+        raise form.refused(path, "its parts are too deep in each other") from None
