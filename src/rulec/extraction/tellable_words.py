@@ -45,6 +45,16 @@ _SUMO_ONLY = frozenset(
         *("level_crossing_zone", "told_to_go", "told_to_stop", "tracks_at_kerb", "tunnel"),
     )
 )
+_SIGNED = frozenset(
+    (
+        *("crosses_stop_line", "give_way_sign", "limit", "on_priority_road", "stop_sign"),
+        "turn_on_red_sign",
+    )
+)
+_LAMPS = frozenset(("indicator", "warning_lights"))
+_ROAD_KINDS = frozenset(("built_up", "lane_kind", "road_class"))
+_ARGOVERSE = _EITHER - _SIGNED - _LAMPS - _ROAD_KINDS
+"""Its maps have lanes, marks and crossings; of its objects there are places, kinds and sizes."""
 
 _NOT_BY_LANE_CENTRES = frozenset(
     (
@@ -70,6 +80,8 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     **dict.fromkeys(("levelx", "interaction", "ngsim", "omega-prime"), _EITHER | _ON_ANY_MAP),
     "highd": _EITHER,
     "osi": _EITHER | {"icy", "no_overtaking_sign", "visibility", "wet"},
+    "argoverse-motion": _ARGOVERSE,
+    "argoverse-sensor": _ARGOVERSE,
 }
 """Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""
 
