@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec import read_recording
-from rulec.automata.compiler import compile_rulebook
+from rulec import compile_rulebook, read_recording
 from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
@@ -14,7 +13,6 @@ from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.source_tolerances import tolerances_of
 from rulec.recordings.recording import Participant, Recording, StatedError, TrackState
 from support.builders.argoverse_files import SCENARIO_ID, rows_of, town, write_map, write_motion
-from support.builders.national_books import read
 from support.builders.recordings import lanelet, rectangle, straight
 
 STEPS = range(50)
@@ -172,9 +170,9 @@ def the_same_by_hand():
 @pytest.fixture(scope="module")
 def california():
     """The rules that this scene is about, as few take less time."""
-    book = read("us-ca").rulebook
+    book = compile_rulebook("us-ca")
     rules = tuple(x for x in book.rules if x.name in ("give_way_to_pedestrians", "solid_line"))
-    return compile_rulebook(replace(book, rules=rules))
+    return replace(book, rules=rules)
 
 
 def verdicts(found, book):
