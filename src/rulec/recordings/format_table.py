@@ -67,7 +67,7 @@ def _is_osi(glance: Glance) -> bool:
 
 def _argoverse_motion(source: RecordingSource) -> Iterator[Recording]:
     # As above.
-    from rulec.recordings.argoverse.motion import read_motion
+    from rulec.recordings.argoverse.motion_scenario import read_motion
 
     yield read_motion(source.path, source.map_path)
 

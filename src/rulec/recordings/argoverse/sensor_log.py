@@ -26,7 +26,7 @@ from rulec.recordings.argoverse.object_types import (
     NOT_ON_THE_ROAD,
     RIDES,
 )
-from rulec.recordings.argoverse.time_grid import NANOSECONDS, on_grid, rates
+from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid, rates
 from rulec.recordings.encodings.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.xml_element import XmlFormat, short
 from rulec.recordings.recording import Participant, Recording
