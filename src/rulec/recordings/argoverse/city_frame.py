@@ -1,4 +1,4 @@
-"""Poses in three dimensions: from ego's frame to the city's."""
+"""CityPoses in three dimensions: from ego's frame to the city's."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _Floats = NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Poses:
+class CityPoses:
     """Rotations (3 x 3 matrices) and translations (m), a row for each."""
 
     rotations: _Floats
@@ -24,14 +24,14 @@ class Poses:
         headings: _Floats = np.arctan2(self.rotations[:, 1, 0], self.rotations[:, 0, 0])
         return headings
 
-    def taken(self, rows: NDArray[intp]) -> Poses:
+    def taken(self, rows: NDArray[intp]) -> CityPoses:
         """Those of some rows."""
-        return Poses(self.rotations[rows], self.translations[rows])
+        return CityPoses(self.rotations[rows], self.translations[rows])
 
-    def after(self, inner: Poses) -> Poses:
-        """Poses in these frames as poses in the frame that these are in, row by row."""
+    def after(self, inner: CityPoses) -> CityPoses:
+        """CityPoses in these frames as poses in the frame that these are in, row by row."""
         moved = np.einsum("nij,nj->ni", self.rotations, inner.translations) + self.translations
-        return Poses(np.einsum("nij,njk->nik", self.rotations, inner.rotations), moved)
+        return CityPoses(np.einsum("nij,njk->nik", self.rotations, inner.rotations), moved)
 
 
 def rotations(quaternions: _Floats) -> _Floats:

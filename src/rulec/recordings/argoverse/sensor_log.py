@@ -17,7 +17,7 @@ from numpy import bool_, float64, int64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.argoverse.argoverse_files import ANNOTATIONS, MAP, POSES, map_beside, only_in
-from rulec.recordings.argoverse.city_frame import Poses, rotations
+from rulec.recordings.argoverse.city_frame import CityPoses, rotations
 from rulec.recordings.argoverse.map_archive import read_map_archive
 from rulec.recordings.argoverse.object_types import (
     CATEGORIES,
@@ -68,7 +68,7 @@ class _Sweeps:
 
     seconds: NDArray[float64]
     steps: NDArray[int64]
-    poses: Poses
+    poses: CityPoses
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -78,7 +78,7 @@ class _Box:
     id: str
     category: str
     sweeps: NDArray[intp]
-    poses: Poses
+    poses: CityPoses
     size: tuple[float, float]
 
     def kept(self, flags: NDArray[bool_]) -> _Box:
@@ -128,7 +128,7 @@ def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
     )
 
 
-def _poses_at(table: ArrowTable, moments: NDArray[int64]) -> Poses:
+def _poses_at(table: ArrowTable, moments: NDArray[int64]) -> CityPoses:
     """Ego's poses at moments of the annotations, which are among those of the poses."""
     known = table.whole["timestamp_ns"]
     order = np.argsort(known, kind="stable")
@@ -140,13 +140,13 @@ def _poses_at(table: ArrowTable, moments: NDArray[int64]) -> Poses:
     return _poses(table).taken(order[rows])
 
 
-def _poses(table: ArrowTable) -> Poses:
+def _poses(table: ArrowTable) -> CityPoses:
     quaternions = np.stack([table.numbers[name] for name in _QUATERNION], axis=1)
     flat = np.abs(quaternions).max(axis=1, initial=0.0) < 1e-6
     if flat.any():
         raise table.refused(int(np.argmax(flat)), "its quaternion is 0")
     places = np.stack([table.numbers[name] for name in _PLACE], axis=1)
-    return Poses(rotations(quaternions), places)
+    return CityPoses(rotations(quaternions), places)
 
 
 def _tracks(table: ArrowTable, sweeps: _Sweeps, sweep_of: NDArray[intp]) -> Iterator[_Box]:
@@ -177,7 +177,7 @@ def _tracks(table: ArrowTable, sweeps: _Sweeps, sweep_of: NDArray[intp]) -> Iter
 def _ego(name: str, size: tuple[float, float], sweeps: _Sweeps) -> _Box:
     count = len(sweeps.steps)
     ahead = np.tile([EGO_MIDDLE_M, 0.0, 0.0], (count, 1))
-    middle = sweeps.poses.after(Poses(np.tile(np.eye(3), (count, 1, 1)), ahead))
+    middle = sweeps.poses.after(CityPoses(np.tile(np.eye(3), (count, 1, 1)), ahead))
     return _Box(name, _EGO_CATEGORY, np.arange(count), middle, size)
 
 

@@ -32,7 +32,7 @@ _HEADER_BYTES = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Texts:
+class TextColumn:
     """A column of texts: the number of each row's among the different ones."""
 
     codes: NDArray[int64]
@@ -52,7 +52,7 @@ class ArrowTable:
     rows: int
     numbers: Mapping[str, NDArray[float64]]
     whole: Mapping[str, NDArray[int64]]
-    texts: Mapping[str, Texts]
+    texts: Mapping[str, TextColumn]
 
     def refused(self, row: int, why: str, expected: str = "") -> RulecError:
         """The error (R0610) for a row, the first of which is 1."""
@@ -91,12 +91,14 @@ def read_table(path: Path, form: XmlFormat, wanted: Wanted) -> ArrowTable:
         table = table.combine_chunks()
         found: dict[str, Any] = {name: table.column(name) for name in table.column_names}
         return ArrowTable(
-            path,
-            form,
-            table.num_rows,
-            _converted(wanted.numbers, found, lambda name, column: _numbers(name, column, arrow)),
-            _converted(wanted.whole, found, lambda name, column: _whole(name, column, arrow)),
-            _converted(wanted.texts, found, lambda name, column: _texts(name, column, arrow)),
+            path=path,
+            form=form,
+            rows=table.num_rows,
+            numbers=_converted(
+                wanted.numbers, found, lambda name, column: _numbers(name, column, arrow)
+            ),
+            whole=_converted(wanted.whole, found, lambda name, column: _whole(name, column, arrow)),
+            texts=_converted(wanted.texts, found, lambda name, column: _texts(name, column, arrow)),
         )
     except OddMessageError:
         raise form.refused(path, "it is damaged (its sizes contradict each other)") from None
@@ -110,8 +112,8 @@ def read_table(path: Path, form: XmlFormat, wanted: Wanted) -> ArrowTable:
 def _arrow(path: Path) -> Any:
     try:
         import pyarrow  # an extra, and 0.1 s
-        import pyarrow.ipc
-        import pyarrow.parquet
+        import pyarrow.ipc  # as above
+        import pyarrow.parquet  # as above
     except ImportError:
         message = f"`{path.name}` takes the package `pyarrow`, which is not installed"
         raise unavailable(message, str(path), "`pip install 'rulec[parquet]'`") from None
@@ -145,7 +147,7 @@ def _feather(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wante
 
 
 def _parquet(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wanted) -> Any:
-    # Texts as numbers in a dictionary: each may be there a million times
+    # TextColumn as numbers in a dictionary: each may be there a million times
     source = arrow.parquet.ParquetFile(arrow.BufferReader(data), read_dictionary=list(wanted.texts))
     columns = _present(source.schema_arrow.names, path, form, wanted)
     about = source.metadata
@@ -221,7 +223,7 @@ def _whole(name: str, column: Any, arrow: Any) -> NDArray[int64]:
     return values
 
 
-def _texts(name: str, column: Any, arrow: Any) -> Texts:
+def _texts(name: str, column: Any, arrow: Any) -> TextColumn:
     kind = column.type.value_type if arrow.types.is_dictionary(column.type) else column.type
     if not (arrow.types.is_string(kind) or arrow.types.is_large_string(kind)):
         raise _OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
@@ -241,7 +243,7 @@ def _texts(name: str, column: Any, arrow: Any) -> Texts:
     ]
     if None in numbers:
         raise _OddColumnError(f"`{name}` has no value")
-    return Texts(
+    return TextColumn(
         np.concatenate(codes) if codes else np.zeros(0, dtype=int),
         tuple(value for value in numbers if value is not None),
     )
