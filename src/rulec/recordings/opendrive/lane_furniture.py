@@ -89,9 +89,19 @@ def posted_on(content: OpenDrive) -> dict[str, list[Posted]]:
     }
 
 
-def sign_places(posted: Iterable[Posted]) -> list[float]:
+def sign_places(road: MapRoad, posted: Iterable[Posted]) -> list[float]:
     """Where on a road something begins or ends that signals say, which it is cut at."""
-    return [x.s for x in posted if is_light(x.signal, ()) or sign_of(x.signal) is not None]
+    return [x.s for x in posted if _parts(road, x)]
+
+
+def _parts(road: MapRoad, posted: Posted) -> bool:
+    sign = sign_of(posted.signal)
+    if sign is not None and sign.name in HOLDS_ON:
+        return True
+    left = {"+": road.length - posted.s, "-": posted.s}
+    ahead = left.get(posted.orientation, min(left.values()))
+    stands_alone = ahead > AT_JUNCTION_M and not road.junction
+    return stands_alone and (sign is not None or is_light(posted.signal, ()))
 
 
 def lane_furniture(

@@ -90,7 +90,8 @@ def read_opendrive_map(path: Path) -> RoadMap:
     content = read_file(path)
     posted = posted_on(content)
     pieces = {
-        road.id: pieces_of(road, sign_places(posted[road.id])) for road in content.roads.values()
+        road.id: pieces_of(road, sign_places(road, posted[road.id]))
+        for road in content.roads.values()
     }
     links = lane_links(content, pieces)
     whole = _Whole(
