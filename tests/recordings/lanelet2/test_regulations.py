@@ -1,5 +1,6 @@
 """Lights, signs, stop lines and rights of way of Lanelet2 maps, and whom they are for."""
 
+import numpy as np
 import pytest
 
 from rulec.recordings.lanelet2.signs import Sign, sign_of
@@ -134,6 +135,19 @@ def test_limits_of_signs_go_before_those_of_tags(tmp_path):
     assert kmh == {signs: 30, both: 20, dynamic: 50}
 
 
+def test_a_line_for_several_lanes_is_parted(tmp_path):
+    file = MapFile()
+    # Aslant across two lanes of 3 m: 2 m farther on the right than on the left
+    line = file.line((45, 3), (47, -3), type="stop_line")
+    rule = file.rule("traffic_light", [("ref_line", "way", line)])
+    middle = file.line((0, 0), (50, 0))
+    left = file.lanelet(file.line((0, 3), (50, 3)), middle, rules=[rule])
+    right = file.lanelet(middle, file.line((0, -3), (50, -3)), rules=[rule])
+    found = map_of(file, tmp_path).lanelets
+    assert found[left].stop_line == pytest.approx(np.array([[45, 3], [46, 0]]))
+    assert found[right].stop_line == pytest.approx(np.array([[46, 0], [47, -3]]))
+
+
 def test_everybody_stops(tmp_path):
     file = MapFile()
     lines = [file.line((48, 0), (48, -3)), file.line((60, 0), (60, -3))]
@@ -152,7 +166,8 @@ def test_lines_across_a_lane_are_for_it(tmp_path):
     file.line((50, 0.2), (50, -3.1), type="stop_line")
     file.line((70, -1), (80, -1.2), type="stop_line")
     found = map_of(file, tmp_path).lanelets
-    assert found[first].stop_line[0].tolist() == [50, 0.2]
+    # Its part between the lane's bounds
+    assert found[first].stop_line.tolist() == [[50, 0], [50, -3]]
     # One where it begins is the other's, and one along it is none
     assert found[second].stop_line is None
 

@@ -25,6 +25,8 @@ MOST_MEMBERS = 1_000
 _MOST_CROSSED = 1_000_000
 _AT_END_M = 1.0
 _ON_LINE_M = 0.5
+_SHORTEST_M = 0.5
+"""Lines that cover less of a lane are for it as they are."""
 
 _GIVES_WAY = frozenset({"YIELD", "STOP", "STOP_4_WAY"})
 _GOES_FIRST = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
@@ -113,7 +115,7 @@ class _Element:
                 line = nearest_line(entry, self.lines)
                 for name, onward in approaches(self.survey, entry, line):
                     rules[name].add_light(self.light, onward)
-                    _draw(rules[name], line)
+                    _draw(self.survey.entries[name], rules[name], line)
             case "traffic_sign" | "speed_limit":
                 self._add_signs(entry, rules)
 
@@ -126,7 +128,7 @@ class _Element:
             line = nearest_line(entry, self.lines)
             for name, _ in approaches(self.survey, entry, line):
                 rules[name].signs |= names & _GIVES_WAY
-                _draw(rules[name], line)
+                _draw(self.survey.entries[name], rules[name], line)
 
 
 def _signs(file: OsmFile, element: OsmRelation) -> tuple[Sign, ...]:
@@ -143,9 +145,17 @@ def _signs(file: OsmFile, element: OsmRelation) -> tuple[Sign, ...]:
     return tuple(found)
 
 
-def _draw(rules: LaneRules, line: Points | None) -> None:
-    if rules.stop_line is None:
-        rules.stop_line = line
+def _draw(entry: MapLanelet, rules: LaneRules, line: Points | None) -> None:
+    if rules.stop_line is None and line is not None:
+        rules.stop_line = _own_part(entry, line)
+
+
+def _own_part(entry: MapLanelet, line: Points) -> Points:
+    """The part of a line, which may be for several lanes, between a lanelet's bounds."""
+    whole = shapely.LineString(line)
+    bounds = [shapely.LineString(bound) for bound in (entry.left, entry.right)]
+    ends: Points = shapely.get_coordinates(shapely.shortest_line(bounds, whole))[1::2]
+    return ends if np.hypot(*(ends[1] - ends[0])) > _SHORTEST_M else line
 
 
 def nearest_line(entry: MapLanelet, lines: list[Points]) -> Points | None:
@@ -190,7 +200,7 @@ def _all_way_stop(survey: Surveyed, element: OsmRelation, rules: Mapping[str, La
         if name in survey.entries:
             for approach, _ in approaches(survey, survey.entries[name], line):
                 rules[approach].signs.add("STOP_4_WAY")
-                _draw(rules[approach], line)
+                _draw(survey.entries[approach], rules[approach], line)
 
 
 def _right_of_way_signs(
@@ -211,7 +221,7 @@ def _right_of_way_signs(
             for approach, _ in approaches(survey, entry, line):
                 if not rules[approach].lights:
                     rules[approach].signs |= signs & own
-                    _draw(rules[approach], line)
+                    _draw(survey.entries[approach], rules[approach], line)
 
 
 def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
@@ -236,7 +246,7 @@ def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
             if along > max(_AT_END_M, known) and _crosses(middle, along, line):
                 reached[entry.id] = along, line
     for name, (_, line) in reached.items():
-        rules[name].stop_line = line
+        _draw(survey.entries[name], rules[name], line)
 
 
 def _crosses(middle: shapely.LineString, along: float, line: Points) -> bool:
