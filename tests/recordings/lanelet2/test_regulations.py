@@ -215,7 +215,9 @@ def test_who_turns_waits_for_whom_the_map_names(tmp_path):
     file, names = junction(oncoming, turn_direction="straight")
     found = map_of(file, tmp_path).lanelets
     assert found[names["turn"]].first == {names["on"]}
-    assert found[names["on"]].first is None
+    # Who comes towards it waits, and so nobody goes first
+    assert found[names["on"]].first == frozenset()
+    assert found[names["up"]].first is None
     # No sign is named, so there may be none
     assert not any(lanelet.signs for lanelet in found.values())
 

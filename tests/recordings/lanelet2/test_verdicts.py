@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 
 from rulec import compile_rulebook, judge_recording
 from rulec.recordings.map_files import read_map
@@ -30,6 +31,22 @@ def body(name, kind, start, end, speed, since=0):
     track = Track(np.arange(len(along)) + since, rows, *size)
     shows = frozenset()
     return Participant(name, kind, False, TrackStates(track), TrackOutlines(track), shows=shows)
+
+
+def along(name, corners, speed):
+    """A car that goes from place to place at a speed."""
+    line = shapely.LineString(corners)
+    places = np.arange(0, line.length - 1, speed * STEP_S)
+    here, ahead = (
+        shapely.get_coordinates(shapely.line_interpolate_point(line, places + more))
+        for more in (0.0, 1.0)
+    )
+    rows = np.empty((len(places), 5))
+    rows[:, :2] = here
+    rows[:, 2] = np.arctan2(*(ahead - here).T[::-1])
+    rows[:, 3:] = speed, 0.0
+    track = Track(np.arange(len(places)), rows, 4.5, 1.8)
+    return Participant(name, "car", False, TrackStates(track), TrackOutlines(track))
 
 
 def judged(file, folder, law, *bodies):
@@ -90,3 +107,37 @@ def test_a_light_leaves_open_whether_it_was_red(tmp_path, law):
     assert "give_way_to_pedestrians" not in rules(verdict.violations)
     without = judged(street(), tmp_path, law, CAR, WALKER)
     assert "red_light" not in rules(without.violations) | rules(without.open)
+
+
+def left_turn(ego_waits):
+    """Ego's lane from the west, which turns to the north across one from the east.
+
+    Either ego waits or who comes towards it, as on a road whose priority bends.
+    """
+    file = MapFile()
+    straight = file.line((8, 0), (-8, 0), type="virtual"), file.line((8, 3.5), (-8, 3.5))
+    bend = file.line((-8, 0), (-2, 2), (0, 8)), file.line((-8, -3.5), (1, -1), (3.5, 8))
+    on = file.lanelet(*straight, turn_direction="straight", region="de")
+    turn = file.lanelet(*bend, turn_direction="left", region="de")
+    for lines in (
+        [[(-60, 0), (-8, 0)], [(-60, -3.5), (-8, -3.5)]],
+        [[(0, 8), (0, 60)], [(3.5, 8), (3.5, 60)]],
+        [[(60, 0), (8, 0)], [(60, 3.5), (8, 3.5)]],
+        [[(-8, 0), (-60, 0)], [(-8, 3.5), (-60, 3.5)]],
+    ):
+        file.lanelet(*(file.line(*line) for line in lines), region="de")
+    waits, goes = (turn, on) if ego_waits else (on, turn)
+    file.rule("right_of_way", [("yield", "relation", waits), ("right_of_way", "relation", goes)])
+    return file
+
+
+@pytest.mark.parametrize("ego_waits", [True, False])
+def test_the_map_says_who_goes_first(tmp_path, law, ego_waits):
+    corners = [(-50, -1.75), (-8, -1.75), (-0.5, 0.5), (1.75, 8), (1.75, 50)]
+    # 42 m at 7 m/s to the junction, where the other one arrives at the same time, at 8 m/s
+    ego = along("ego", corners, 7.0)
+    other = body("other", "car", (56, 1.75), (-50, 1.75), 8.0)
+    verdict = judged(left_turn(ego_waits), tmp_path, law, ego, other)
+    found = rules(verdict.violations)
+    assert ("oncoming_priority" in found) == ego_waits
+    assert "oncoming_priority" not in rules(verdict.open) | rules(verdict.not_judged)

@@ -1,7 +1,7 @@
 """Who goes first on the ways through a junction, by the regulatory elements ``right_of_way``.
 
-They name lanelets before a junction, or those in it. Of whom nobody is told to wait for, or whose
-lights say who waits, nothing is known here.
+They name lanelets before a junction, or those in it. Where lights say who waits they hold only when
+these are out of order.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import shapely
 
-from rulec.recordings.lanelet2.map_lanelets import MapLanelet, lanes
+from rulec.recordings.lanelet2.map_lanelets import REVERSED, MapLanelet, lanes
 from rulec.recordings.lanelet2.regulations import LaneRules, Surveyed, regulatory_elements
 
 _TOWARDS = np.cos(np.radians(120.0))
@@ -22,20 +22,27 @@ _MOST_MET = 1_000_000
 def first_ways(survey: Surveyed, rules: Mapping[str, LaneRules]) -> dict[str, frozenset[str]]:
     """Lanelet in a junction -> those whose traffic goes before its own.
 
-    Only where that is told of all who come towards it there.
+    Only where it is told of all who come towards it there whether they or it go first.
     """
-    first: dict[str, frozenset[str]] = {}
+    prior: dict[str, frozenset[str]] = defaultdict(frozenset)
+    named: set[str] = set()
     for element in regulatory_elements(survey.file):
         if element.tags.get("subtype") != "right_of_way":
             continue
-        prior = _ways(survey, element.refs("right_of_way", "relation"))
+        ahead = _ways(survey, element.refs("right_of_way", "relation"))
         waiting = _ways(survey, element.refs("yield", "relation"))
         if any(rules[name].lights for name in _before(survey, waiting)):
             continue
+        named |= ahead | waiting
         for name in waiting:
-            first[name] = first.get(name, frozenset()) | prior
-    towards = _come_towards(survey, list(first))
-    return {name: own for name, own in first.items() if towards.get(name, set()) <= own}
+            prior[name] |= ahead - {name}
+    towards = _come_towards(survey, sorted(named))
+    first = {}
+    for name in named:
+        known = {other for other in towards[name] if name in prior[other]} | prior[name]
+        if known and towards[name] <= known:
+            first[name] = prior[name]
+    return first
 
 
 def _ways(survey: Surveyed, names: Iterator[str]) -> frozenset[str]:
@@ -60,22 +67,21 @@ def _before(survey: Surveyed, names: frozenset[str]) -> Iterator[str]:
 
 
 def _come_towards(survey: Surveyed, names: list[str]) -> dict[str, set[str]]:
-    """Lanelet -> those in whose way it leads that begin in the opposite direction."""
-    found: dict[str, set[str]] = defaultdict(set)
-    if not names:
-        return found
+    """Lanelet -> those that cross or join it, and begin in the opposite direction."""
+    found: dict[str, set[str]] = {name: set() for name in names}
     all_lanes = list(lanes(survey.entries))
-    middles = [shapely.LineString(entry.centre) for entry in all_lanes]
-    own = [shapely.LineString(survey.entries[name].centre) for name in names]
-    tree, count = shapely.STRtree(middles), 0
-    for name, line in zip(names, own, strict=True):
-        met = tree.query(line, predicate="crosses").tolist()
+    tree = shapely.STRtree([shapely.LineString(entry.centre) for entry in all_lanes])
+    count = 0
+    for name in names:
+        entry = survey.entries[name]
+        met = tree.query(shapely.LineString(entry.centre), predicate="intersects").tolist()
         count += len(met)
         if count > _MOST_MET:
             raise survey.file.refused("too many of its lanelets lie on each other")
         for number in met:
             other = all_lanes[number]
-            if _ahead(survey.entries[name]) @ _ahead(other) < _TOWARDS:
+            itself = other.id.removesuffix(REVERSED) == name.removesuffix(REVERSED)
+            if not itself and _ahead(entry) @ _ahead(other) < _TOWARDS:
                 found[name].add(other.id)
     return found
 
