@@ -12,18 +12,16 @@ import numpy as np
 from numpy import float64
 from numpy.typing import ArrayLike, NDArray
 
-from rulec.diagnostics import Diagnostic, RulecError, did_you_mean, named
+from rulec.diagnostics import did_you_mean, named
+from rulec.recordings.building_checks import BuildingChecks
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.lanes.lanes_along import (
-    CLOSEST_M,
     LANE_TYPES,
     USUAL_WIDTH_M,
     lanelet_along,
     linked,
 )
-from rulec.recordings.polylines import without_repeats
 from rulec.recordings.recording import (
-    LONGEST_M,
     MOST_STEPS,
     OBSTACLE_TYPES,
     Lamp,
@@ -36,98 +34,17 @@ from rulec.recordings.recording import (
     Recording,
     Side,
 )
-from rulec.recordings.recording_messages import NOT_BUILT
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.road_user_types import usual_size
 
 _OFF_STEP = 0.02
-_MOST_SHOWN = 20
 
 COMPLETE = frozenset(
     {"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout", "lanes"}
     | {"officer", "arrivals"}
 )
 """Kinds of things that a recording can be said to have all of."""
-
-
-class _Checks:
-    """What is wrong with a thing that is built, all of which is said together."""
-
-    def __init__(self, what: str) -> None:
-        self.what = what
-        self.found: list[Diagnostic] = []
-
-    def wrong(self, why: str, expected: str = "", help_text: str = "") -> None:
-        said = f"{self.what}: {why}"
-        self.found.append(NOT_BUILT.at(None, said, expected=expected, help=help_text))
-
-    def raise_found(self) -> None:
-        if self.found:
-            raise RulecError(self.found[:_MOST_SHOWN])
-
-    def numbers(self, name: str, values: ArrayLike, count: int | None = None) -> NDArray[float64]:
-        """Finite numbers in a row, as many as there have to be; zeros where that is not so."""
-        try:
-            found = np.array(values, dtype=float)
-        except (TypeError, ValueError):
-            found = np.full(0, np.nan)
-            self.wrong(f"`{name}` holds something that is no number", "expected a row of numbers")
-            return np.zeros(count or 1)
-        if found.ndim == 0 and count is not None:
-            found = np.full(count, found)
-        if found.ndim != 1 or (count is not None and len(found) != count):
-            size = "one number" if found.ndim == 0 else f"an array of shape {found.shape}"
-            many = "" if count is None else f"{count:,} "
-            self.wrong(f"`{name}` is {size}", f"expected a row of {many}numbers")
-            return np.zeros(count or 1)
-        self._bounded(name, found)
-        return found
-
-    def points(self, name: str, values: ArrayLike) -> Points:
-        """Two points or more; a line of two where that is not so."""
-        line = np.array([[0.0, 0.0], [1.0, 0.0]])
-        try:
-            found = np.array(values, dtype=float)
-        except (TypeError, ValueError):
-            self.wrong(f"`{name}` holds something that is no number", "expected points (x, y)")
-            return line
-        if found.ndim != 2 or found.shape[1] != 2 or len(found) < 2:
-            shape = f"an array of shape {found.shape}"
-            self.wrong(f"`{name}` is {shape}", "expected two points (x, y) or more in order")
-            return line
-        if not self._bounded(name, found):
-            return line
-        kept = without_repeats(found, CLOSEST_M)
-        if len(kept) < 2:
-            self.wrong(f"`{name}` has one place only", "expected two different points or more")
-            return line
-        length = float(np.hypot(*np.diff(kept, axis=0).T).sum())
-        if length > LONGEST_M:
-            self.wrong(f"`{name}` is {length:,.0f} m long", f"expected {LONGEST_M:,.0f} m at most")
-        return kept
-
-    def _bounded(self, name: str, found: NDArray[float64]) -> bool:
-        bad = ~(np.abs(found) < LARGEST)
-        if bad.any():
-            at = tuple(int(axis[0]) for axis in np.nonzero(bad))
-            place = ", ".join(map(str, at))
-            why = f"`{name}[{place}]` is {found[at]:g}"
-            self.wrong(why, f"expected a number below {LARGEST:.0e}")
-        return not bad.any()
-
-    def positive(self, name: str, value: float) -> float:
-        if not isinstance(value, int | float | np.number) or not 0 < value < LARGEST:
-            self.wrong(f"`{name}` is {value!r:.40}", "expected a number above 0")
-            return 1.0
-        return float(value)
-
-    def one_of(self, name: str, value: str, known: Collection[str]) -> None:
-        if value not in known:
-            some = named(sorted(known))
-            self.wrong(
-                f"`{name}` is `{value!s:.40}`", f"expected {some}", did_you_mean(str(value), known)
-            )
 
 
 def build_lanelet(
@@ -157,7 +74,7 @@ def build_lanelet(
     is as in a ``Lanelet``. Raises RulecError R0617, with all that is wrong.
     """
     name = str(identifier)
-    checks = _Checks(f"lanelet `{name:.40}`")
+    checks = BuildingChecks(f"lanelet `{name:.40}`")
     if not name:
         checks.wrong("its id is empty")
     points = checks.points("centre", centre)
@@ -195,7 +112,7 @@ def build_lanelet(
 
 
 def _widths(
-    checks: _Checks, width: ArrayLike, centre: ArrayLike, kept: Points
+    checks: BuildingChecks, width: ArrayLike, centre: ArrayLike, kept: Points
 ) -> NDArray[float64] | float:
     if np.ndim(width) == 0:
         return checks.positive("width", cast("float", width))
@@ -203,6 +120,8 @@ def _widths(
         return 1.0
     given = np.array(centre, dtype=float)
     widths = checks.numbers("width", width, len(given))
+    if checks.found:
+        return 1.0
     if not (widths > 0).all():
         checks.wrong(f"`width[{int(np.argmin(widths))}]` is {widths.min():g}", "expected above 0")
     first = [int(np.argmax((given == point).all(axis=1))) for point in kept]
@@ -235,7 +154,7 @@ def build_participant(
     with all that is wrong.
     """
     name = str(identifier)
-    checks = _Checks(f"participant `{name:.40}`")
+    checks = BuildingChecks(f"participant `{name:.40}`")
     if not name:
         checks.wrong("its id is empty")
     checks.one_of("kind", kind, OBSTACLE_TYPES)
@@ -278,7 +197,7 @@ def build_participant(
     )
 
 
-def _steps(checks: _Checks, times: NDArray[float64], step_s: float) -> NDArray[np.int64]:
+def _steps(checks: BuildingChecks, times: NDArray[float64], step_s: float) -> NDArray[np.int64]:
     steps = np.round(times / step_s).astype(np.int64)
     off = np.abs(times - steps * step_s) > _OFF_STEP * step_s
     gaps = np.diff(steps) != 1
@@ -297,7 +216,7 @@ def _steps(checks: _Checks, times: NDArray[float64], step_s: float) -> NDArray[n
 
 
 def _lit(
-    checks: _Checks, lamps: Mapping[Lamp, Sequence[bool]], steps: NDArray[np.int64]
+    checks: BuildingChecks, lamps: Mapping[Lamp, Sequence[bool]], steps: NDArray[np.int64]
 ) -> dict[int, frozenset[Lamp]]:
     for name, values in lamps.items():
         checks.one_of("lamps", name, get_args(Lamp))
@@ -333,7 +252,7 @@ def build_recording(
     wrong: shapes of arrays, numbers that are none, ids that are double or lead nowhere.
     """
     lanes, bodies = tuple(lanelets), tuple(participants)
-    checks = _Checks("the recording")
+    checks = BuildingChecks("the recording")
     step_s = checks.positive("step_s", step_s)
     if side is not None:
         checks.one_of("side", side, get_args(Side))
@@ -372,8 +291,8 @@ def build_recording(
     )
 
 
-def _check_lanelet(lanelet: Lanelet, known: Mapping[str, Lanelet], to: _Checks) -> None:
-    checks = _Checks(f"lanelet `{lanelet.id:.40}`")
+def _check_lanelet(lanelet: Lanelet, known: Mapping[str, Lanelet], to: BuildingChecks) -> None:
+    checks = BuildingChecks(f"lanelet `{lanelet.id:.40}`")
     for side in ("left", "right", "centre"):
         checks.points(side, getattr(lanelet, side))
     for what, ids in _references(lanelet):
@@ -394,8 +313,8 @@ def _references(lanelet: Lanelet) -> Iterator[tuple[str, Iterable[str]]]:
     yield "lights_to", lanelet.lights_to
 
 
-def _check_participant(body: Participant, to: _Checks) -> None:
-    checks = _Checks(f"participant `{body.id:.40}`")
+def _check_participant(body: Participant, to: BuildingChecks) -> None:
+    checks = BuildingChecks(f"participant `{body.id:.40}`")
     checks.one_of("type", body.type, OBSTACLE_TYPES)
     if not body.states:
         checks.wrong("it has no states")

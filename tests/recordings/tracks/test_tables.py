@@ -8,7 +8,7 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
-from rulec import RulecError, read_recording, verify_recording
+from rulec import RulecError, read_recording
 from rulec.recordings.recording_files import is_recording
 from support.builders.track_tables import HEAD, LANES, driving, table, written
 
@@ -285,11 +285,3 @@ def test_far_from_the_roads(tmp_path):
     found = message(tmp_path, HEAD, *driving(start=5000.0))
     assert found.code == "R0615"
     assert "x 5000.0 to 5010.0" in found.message
-
-
-def test_it_is_judged(tmp_path):
-    """16 m/s where 50 km/h (13.9 m/s) are allowed."""
-    lanes = table("lane,x,y,limit_kmh", "r,0,0,50", "r,300,0,50")
-    recording = read(tmp_path, HEAD, *driving(speed=16.0, steps=50), lanes=lanes)
-    (row,) = verify_recording(recording, "de").rows()
-    assert row["violated"] == ["speed_limit"]

@@ -209,4 +209,4 @@ def _number(text: str) -> float:
         return np.nan if text.strip().casefold() in _EMPTY else np.inf
 
 
-_EMPTY = ("", "na", "n/a", "null", "none", "-")
+_EMPTY = ("", "na", "<na>", "n/a", "null", "none", "-")

@@ -226,7 +226,10 @@ def table_of(columns: Mapping[str, Any], words: str) -> ColumnTable:
         message = f"the columns cannot be read as {words}: {where}{why}"
         return NOT_A_RECORDING.error(None, message, expected=expected, help=help_text)
 
-    names = _checked_names(tuple(map(str, columns)), refused)
+    # Frames of polars and tables of Arrow list their names so; a mapping does by itself
+    listed = getattr(columns, "columns", columns)
+    listed = getattr(columns, "column_names", listed)
+    names = _checked_names(tuple(map(str, listed)), refused)
 
     def read(numbers: Sequence[str], texts: Sequence[str]) -> Columns:
         wanted = {name: np.asarray(columns[name]) for name in (*numbers, *texts)}

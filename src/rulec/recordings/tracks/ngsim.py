@@ -20,6 +20,8 @@ from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, T
 from rulec.recordings.encodings.table_files import open_table
 from rulec.recordings.encodings.xml_element import XmlFormat
 from rulec.recordings.recording import Recording
+from rulec.recordings.recording_format import Glance
+from rulec.recordings.table_heads import head_of
 from rulec.recordings.tracks.even_times import even_times
 from rulec.recordings.tracks.roads_of_tracks import lanes_beside, roads_of, track_recording
 from rulec.recordings.tracks.track_rows import TrackRows
@@ -65,9 +67,9 @@ def read_ngsim(source: RecordingSource) -> Iterator[Recording]:
     Raises RulecError R0610, R0614, R0615, R0701, else as reading the map.
     """
     path = source.path
-    table = open_table(path, NGSIM_TRACKS)
-    if len(table.names) in HEADLESS and all(map(is_number, table.names)):
-        table = open_table(path, NGSIM_TRACKS, HEADLESS[len(table.names)])
+    first = head_of(Glance(path))
+    headless = len(first) in HEADLESS and all(map(is_number, first))
+    table = open_table(path, NGSIM_TRACKS, HEADLESS[len(first)] if headless else ())
     named = named_columns(table, _COLUMNS)
     name = path.name.split(".")[0]
     places = named.texts.get("Location")

@@ -25,6 +25,7 @@ Floats = NDArray[float64]
 LONGEST_BODY_M = 100.0
 _NAMED = 3
 _MOVING_MPS = 2.0
+_BACKING_MPS = 0.5
 _TURNED = np.pi / 4
 
 
@@ -202,15 +203,16 @@ class _Reading:
         return result
 
     def _speed(self, own: NDArray[np.intp], heading: Floats, moved: Floats) -> Floats:
-        """Speeds along headings as stated; those without a sign get that of the motion."""
+        """Speeds along headings as stated, with the sign of the motion."""
         rows = self.rows
         if rows.speed is not None:
             stated = rows.speed[own]
-            backs_up = (moved < -0.5) & (stated > 0)
-            return np.where(backs_up, -stated, stated)
-        if rows.velocity is not None:
-            return motion.along(np.column_stack([part[own] for part in rows.velocity]), heading)
-        return moved
+        elif rows.velocity is not None:
+            stated = motion.along(np.column_stack([part[own] for part in rows.velocity]), heading)
+        else:
+            return moved
+        other_way = (np.abs(moved) > _BACKING_MPS) & (moved * stated < 0)
+        return np.where(other_way, -stated, stated)
 
     def _lamps(self, own: NDArray[np.intp]) -> dict[int, frozenset[Lamp]]:
         """The lamps that are lit, by step; without steps of which nothing is known."""

@@ -1,0 +1,101 @@
+"""Checks of what programs build, all of which are done before anything is said."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+from numpy import float64
+from numpy.typing import ArrayLike, NDArray
+
+from rulec.diagnostics import Diagnostic, RulecError, did_you_mean, named
+from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.lanes.lanes_along import CLOSEST_M
+from rulec.recordings.polylines import without_repeats
+from rulec.recordings.recording import LONGEST_M, Points
+from rulec.recordings.recording_messages import NOT_BUILT
+
+_MOST_SHOWN = 20
+
+
+class BuildingChecks:
+    """What is wrong with a thing that is built, all of which is said together."""
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+        self.found: list[Diagnostic] = []
+
+    def wrong(self, why: str, expected: str = "", help_text: str = "") -> None:
+        """Note a mistake."""
+        said = f"{self.what}: {why}"
+        self.found.append(NOT_BUILT.at(None, said, expected=expected, help=help_text))
+
+    def raise_found(self) -> None:
+        """Raise RulecError R0617 if anything is wrong."""
+        if self.found:
+            raise RulecError(self.found[:_MOST_SHOWN])
+
+    def numbers(self, name: str, values: ArrayLike, count: int | None = None) -> NDArray[float64]:
+        """Finite numbers in a row, as many as there have to be; zeros where that is not so."""
+        try:
+            found = np.array(values, dtype=float)
+        except (TypeError, ValueError):
+            found = np.full(0, np.nan)
+            self.wrong(f"`{name}` holds something that is no number", "expected a row of numbers")
+            return np.zeros(count or 1)
+        if found.ndim == 0 and count is not None:
+            found = np.full(count, found)
+        if found.ndim != 1 or (count is not None and len(found) != count):
+            size = "one number" if found.ndim == 0 else f"an array of shape {found.shape}"
+            many = "" if count is None else f"{count:,} "
+            self.wrong(f"`{name}` is {size}", f"expected a row of {many}numbers")
+            return np.zeros(count or 1)
+        self._bounded(name, found)
+        return found
+
+    def points(self, name: str, values: ArrayLike) -> Points:
+        """Two points or more; a line of two where that is not so."""
+        line = np.array([[0.0, 0.0], [1.0, 0.0]])
+        try:
+            found = np.array(values, dtype=float)
+        except (TypeError, ValueError):
+            self.wrong(f"`{name}` holds something that is no number", "expected points (x, y)")
+            return line
+        if found.ndim != 2 or found.shape[1] != 2 or len(found) < 2:
+            shape = f"an array of shape {found.shape}"
+            self.wrong(f"`{name}` is {shape}", "expected two points (x, y) or more in order")
+            return line
+        if not self._bounded(name, found):
+            return line
+        kept = without_repeats(found, CLOSEST_M)
+        if len(kept) < 2:
+            self.wrong(f"`{name}` has one place only", "expected two different points or more")
+            return line
+        length = float(np.hypot(*np.diff(kept, axis=0).T).sum())
+        if length > LONGEST_M:
+            self.wrong(f"`{name}` is {length:,.0f} m long", f"expected {LONGEST_M:,.0f} m at most")
+        return kept
+
+    def _bounded(self, name: str, found: NDArray[float64]) -> bool:
+        bad = ~(np.abs(found) < LARGEST)
+        if bad.any():
+            at = tuple(int(axis[0]) for axis in np.nonzero(bad))
+            place = ", ".join(map(str, at))
+            why = f"`{name}[{place}]` is {found[at]:g}"
+            self.wrong(why, f"expected a number below {LARGEST:.0e}")
+        return not bad.any()
+
+    def positive(self, name: str, value: float) -> float:
+        """A number above 0; 1 where it is none."""
+        if not isinstance(value, int | float | np.number) or not 0 < value < LARGEST:
+            self.wrong(f"`{name}` is {value!r:.40}", "expected a number above 0")
+            return 1.0
+        return float(value)
+
+    def one_of(self, name: str, value: str, known: Collection[str]) -> None:
+        """Note a word that is not known."""
+        if value not in known:
+            some = named(sorted(known))
+            self.wrong(
+                f"`{name}` is `{value!s:.40}`", f"expected {some}", did_you_mean(str(value), known)
+            )
