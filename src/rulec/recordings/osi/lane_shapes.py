@@ -24,6 +24,9 @@ USUAL_WIDTH_M = 3.5
 WIDTHS_M = (2.0, 5.0)
 """Lanes beside each other whose middles are so far apart at least and at most have that width."""
 
+_BEYOND_M = 1.0
+"""Lanes beside each other may end so far beyond each other."""
+
 _CLOSEST_M = 0.01
 _SHARPEST = 0.5
 
@@ -152,7 +155,7 @@ def _half(line: _Line, beside: Sequence[str], middles: Mapping[str, Points]) -> 
     for name in beside:
         if name in middles:
             along, left = line.beside(middles[name])
-            inside = (along > 0) & (along < line.reached[-1])
+            inside = (along > -_BEYOND_M) & (along < line.reached[-1] + _BEYOND_M)
             away = float(np.median(np.abs(left[inside]))) if inside.any() else 0.0
             if WIDTHS_M[0] <= away <= WIDTHS_M[1]:
                 return away / 2
