@@ -21,6 +21,10 @@ _MARKS: Mapping[str, LaneMark] = {
 }
 """Types of boundaries; kerbs, edges and rails are no marks."""
 
+MOST_REFERENCES = 200_000
+MOST_POINTS = 10_000_000
+"""Of all lanes together; a map of a town has a hundredth of it."""
+
 _CLOSEST_M = 0.001
 
 
@@ -77,6 +81,25 @@ def line_of(vectors: Iterable[Fields], file: WireFile) -> Points:
 def read_lanes(messages: Mapping[str, Fields], file: WireFile) -> list[TraceLane]:
     """The lanes of a trace. Raises RulecError R0610."""
     return [_lane(key, part(fields, "classification"), file) for key, fields in messages.items()]
+
+
+def check_size(
+    lanes: Iterable[TraceLane], boundaries: Mapping[str, Boundary], file: WireFile
+) -> None:
+    """Raise RulecError R0610 if what lanes refer to would take long to go through."""
+    references = points = 0
+    for lane in lanes:
+        bounds = (*lane.left_bounds, *lane.right_bounds)
+        references += len(bounds) + len(lane.pairs) + len(lane.linked)
+        references += len(lane.left_of) + len(lane.right_of)
+        points += len(lane.centre)
+        points += sum(len(boundaries[x].line) for x in bounds if x in boundaries)
+    if references > MOST_REFERENCES or points > MOST_POINTS:
+        why = (
+            f"its lanes refer to {references:,} others and boundaries, of {points:,} points:"
+            f" at most {MOST_REFERENCES:,} and {MOST_POINTS:,} are read"
+        )
+        raise OSI.refused(file.path, why)
 
 
 def _lane(key: str, fields: Fields, file: WireFile) -> TraceLane:

@@ -17,6 +17,9 @@ MEET_M = 1.0
 """A lane leads to another one if the lines across them, at its end and the other's start, are no
 farther apart: of those that a trace connects some do not meet at all."""
 
+LONGEST_WAY_M = 300.0
+"""Across an area of an intersection."""
+
 _TOGETHER = 0.8
 """Lanes side by side for so much of either are neighbours."""
 
@@ -88,7 +91,7 @@ def lane_network(lanes: Sequence[TraceLane], boundaries: Mapping[str, Boundary])
     for area in areas:
         ways = {f"{area.id}_{one}_{other}": (one, other) for one, other in area.pairs}
         for name, (one, other) in ways.items():
-            if one in shapes and other in shapes:
+            if one in shapes and other in shapes and _is_near(shapes[one], shapes[other]):
                 shapes[name] = way_across(shapes[one], shapes[other])
                 known[name] = replace_id(area, name)
                 links += [(one, name), (name, other)]
@@ -155,6 +158,10 @@ def _in_traffic(lane: TraceLane, shape: LaneShape) -> tuple[TraceLane, LaneShape
     )
     left, right, centre = shape.right[::-1], shape.left[::-1], shape.centre[::-1]
     return turned, shape._replace(left=left, right=right, centre=centre)
+
+
+def _is_near(before: LaneShape, after: LaneShape) -> bool:
+    return float(np.hypot(*(after.centre[0] - before.centre[-1]))) <= LONGEST_WAY_M
 
 
 def _types(lane: TraceLane) -> frozenset[str]:

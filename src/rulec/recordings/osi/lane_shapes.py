@@ -164,16 +164,20 @@ def _half(line: _Line, beside: Sequence[str], middles: Mapping[str, Points]) -> 
 
 def way_across(before: LaneShape, after: LaneShape) -> LaneShape:
     """The shape of a way from a lane's end to another's start, where only its ends are known."""
+    length = float(np.hypot(*(after.centre[0] - before.centre[-1])))
+    at = np.linspace(0.0, 1.0, int(np.clip(length, 8, 64)) + 1)[:, None]
     ends = zip(before[:3], after[:3], strict=True)
-    left, right, centre = (_curve(one, other) for one, other in ends)
+    left, right, centre = (_curve(one, other, at) for one, other in ends)
     return LaneShape(left, right, centre)
 
 
-def _curve(before: Points, after: Points) -> Points:
-    """A cubic curve (Hermite's) on from the end of one line to the start of another."""
+def _curve(before: Points, after: Points, at: NDArray[float64]) -> Points:
+    """A cubic curve (Hermite's) on from the end of one line to the start of another.
+
+    ``at``: parts of the way.
+    """
     start, end = before[-1], after[0]
     length = max(float(np.hypot(*(end - start))), _CLOSEST_M)
-    at = np.linspace(0.0, 1.0, int(np.clip(length, 8, 64)) + 1)[:, None]
     first, last = (_heading(line) * length for line in (before[-2:], after[:2]))
     curve: Points = (
         (2 * at**3 - 3 * at**2 + 1) * start

@@ -10,7 +10,7 @@ from rulec.diagnostics import SourceLocation
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.map_files import MAP_FORMATS, read_map
 from rulec.recordings.osi.environment import country_of, weather_of
-from rulec.recordings.osi.lane_messages import read_boundaries, read_lanes
+from rulec.recordings.osi.lane_messages import check_size, read_boundaries, read_lanes
 from rulec.recordings.osi.lane_network import LaneNetwork, lane_network
 from rulec.recordings.osi.light_heads import with_lights
 from rulec.recordings.osi.logical_lanes import (
@@ -73,10 +73,13 @@ def _network(content: TraceContent, file: WireFile) -> LaneNetwork:
     lanes = read_lanes(messages["lane"], file)
     logical = logical_lanes(messages["logical_lane"], file)
     if lanes:
-        network = lane_network(with_logical(lanes, logical), boundaries)
+        lanes = with_logical(lanes, logical)
     else:
-        found = logical_boundaries(messages["logical_lane_boundary"], boundaries, file)
-        network = lane_network([lane.lane for lane in logical], found)
+        lanes = [one.lane for one in logical]
+        found = messages["logical_lane_boundary"]
+        boundaries = logical_boundaries(found, boundaries, file)
+    check_size(lanes, boundaries, file)
+    network = lane_network(lanes, boundaries)
     for name, physical in lanes_by_logical(logical).items():
         parts = [x for lane in physical for x in network.of_lane.get(lane, ())]
         network.of_lane.setdefault(name, tuple(parts))
