@@ -78,9 +78,7 @@ MOVING_OBJECT: Table = {
     1: Field("id", ID),
     2: Field("base", MOVING_BASE),
     3: Field("type", _words("unknown other vehicle pedestrian animal")),
-    4: IDS_OF_LANES,
     6: Field("vehicle_classification", VEHICLE),
-    9: Field("moving_object_classification", {1: IDS_OF_LANES}),
 }
 STATIONARY_OBJECT: Table = {
     1: Field("id", ID),

@@ -143,7 +143,9 @@ def _ground_outline(base: Fields, file: WireFile) -> Points | None:
     about_z = np.array([(np.cos(yaw), -np.sin(yaw), 0), (np.sin(yaw), np.cos(yaw), 0), (0, 0, 1)])
     corners = (signs * half) @ (about_z @ about_y @ about_x).T
     ground = corners[:, :2] + places([part(base, "position")], file)
-    box = shapely.minimum_rotated_rectangle(shapely.multipoints(ground))
+    with np.errstate(all="ignore"):
+        # What has no area has no box, and is left out
+        box = shapely.minimum_rotated_rectangle(shapely.multipoints(ground))
     if not isinstance(box, shapely.Polygon) or shapely.minimum_clearance(box) < _NARROWEST_M:
         return None
     outline: Points = shapely.get_coordinates(box)[:4]
