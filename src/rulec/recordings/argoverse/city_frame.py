@@ -1,4 +1,4 @@
-"""CityPoses in three dimensions: from ego's frame to the city's."""
+"""Poses in three dimensions: from ego's frame to the city's."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class CityPoses:
         return CityPoses(self.rotations[rows], self.translations[rows])
 
     def after(self, inner: CityPoses) -> CityPoses:
-        """CityPoses in these frames as poses in the frame that these are in, row by row."""
+        """Poses in these frames as poses in the frame that these are in, row by row."""
         moved = np.einsum("nij,nj->ni", self.rotations, inner.translations) + self.translations
         return CityPoses(np.einsum("nij,njk->nik", self.rotations, inner.rotations), moved)
 

@@ -17,6 +17,8 @@ NANOSECONDS = 1_000_000_000
 _UNIT_NS = 10_000_000
 """Sweeps are a tenth of a second apart to within a millisecond; a step is whole hundredths."""
 
+_LONGEST_NS = 10 * NANOSECONDS
+
 _MOST_OFF = 0.25
 """How far a moment may lie off its step, as a part of it."""
 
@@ -31,7 +33,7 @@ def on_grid(path: Path, form: XmlFormat, moments: NDArray[int64]) -> tuple[NDArr
     apart = float(np.median(np.diff(moments)))
     step = max(round(apart / _UNIT_NS), 1) * _UNIT_NS
     since = (moments - moments[0]).astype(float)
-    if since[-1] / step > min(MOST_STEPS, SPARSEST * len(moments)):
+    if step > _LONGEST_NS or since[-1] / step > min(MOST_STEPS, SPARSEST * len(moments)):
         why = f"its {len(moments)} moments are spread over {since[-1] / NANOSECONDS:g} s"
         raise form.refused(path, why, help_text="look for a time that is wrong, or take a part")
     steps = np.rint(since / step).astype(int)

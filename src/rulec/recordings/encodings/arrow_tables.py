@@ -147,9 +147,11 @@ def _feather(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wante
 
 
 def _parquet(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wanted) -> Any:
-    # TextColumn as numbers in a dictionary: each may be there a million times
-    source = arrow.parquet.ParquetFile(arrow.BufferReader(data), read_dictionary=list(wanted.texts))
-    columns = _present(source.schema_arrow.names, path, form, wanted)
+    plain = arrow.parquet.ParquetFile(arrow.BufferReader(data))
+    columns = _present(plain.schema_arrow.names, path, form, wanted)
+    # Texts as numbers in a dictionary: each may be there a million times
+    texts = [name for name in wanted.texts if name in columns]
+    source = arrow.parquet.ParquetFile(arrow.BufferReader(data), read_dictionary=texts)
     about = source.metadata
     groups = [about.row_group(number) for number in range(about.num_row_groups)]
     parts = [group.column(at) for group in groups for at in range(group.num_columns)]
@@ -166,7 +168,9 @@ def _parquet(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wante
         if rows > MOST_ROWS:
             raise _too_much(path, form, rows)
         batches.append(batch)
-    return arrow.Table.from_batches(batches, schema=None if batches else source.schema_arrow)
+    if not batches:
+        return plain.schema_arrow.empty_table().select(columns)
+    return arrow.Table.from_batches(batches)
 
 
 def _too_much(path: Path, form: XmlFormat, rows: int) -> RulecError:
