@@ -24,6 +24,7 @@ NAMES = (
     "unknown",
     "graph",
     "world",
+    "recordings",
     "drives",
     "compiling",
     "starting",

@@ -12,7 +12,12 @@ from typing import Any
 
 from timing import Timed
 
-PINNED = {"rtamt": "0.4.10", "flloat": "0.3.0", "reelay": "25.0.0"}
+PINNED = {
+    "rtamt": "0.4.10",
+    "flloat": "0.3.0",
+    "reelay": "25.0.0",
+    "commonroad-io": "2026.1",
+}
 """Versions. flloat brings a module that overwrites lark's, rtamt an old antlr: hence the walls."""
 
 PROGRAMS = Path(__file__).with_name("peers")
