@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import cos, radians
 
@@ -26,6 +26,8 @@ _EVERY_M = 2.0
 _LIKE = cos(radians(30))
 _NAMED = 3
 
+_Indices = NDArray[np.intp]
+
 
 @dataclass(frozen=True, slots=True)
 class Bordering:
@@ -43,39 +45,73 @@ def bordering(lanelets: Iterable[Lanelet]) -> Iterator[Bordering]:
     Without those of which the map says so.
     """
     lanes = [lanelet for lanelet in lanelets if is_lane(lanelet)]
-    lefts = [shapely.LineString(lanelet.left) for lanelet in lanes]
-    rights = [shapely.LineString(lanelet.right) for lanelet in lanes]
     if not lanes:
         return
-    pairs = shapely.STRtree(rights).query(lefts, predicate="dwithin", distance=BORDER_M)
-    for own, other in pairs.T.tolist():
-        if own == other or lanes[own].left_of == lanes[other].id:
-            continue
-        near = _near(lefts[own], rights[other]), _near(rights[other], lefts[own])
-        part = float(min(flags.mean() for flags in near))
-        yield Bordering(lanes[own], lanes[other], part, float(near[0].mean() * lefts[own].length))
-
-
-def _near(line: shapely.LineString, other: shapely.LineString) -> NDArray[np.bool_]:
-    """Flags of places along a line that lie at another one, which leads the same way there."""
-    count = max(2, round(line.length / _EVERY_M)) + 1
-    at = np.linspace(0.0, line.length, count)
-    points = shapely.line_interpolate_point(line, at)
-    near = shapely.distance(other, points) <= BORDER_M
-    along = shapely.line_locate_point(other, points)
-    like = (_directions(line, at) * _directions(other, along)).sum(axis=1) >= _LIKE
-    flags: NDArray[np.bool_] = near & like
-    return flags
-
-
-def _directions(line: shapely.LineString, at: NDArray[float64]) -> Points:
-    ends = (
-        shapely.line_interpolate_point(line, np.clip(at + way, 0, line.length)) for way in (-1, 1)
+    lefts, rights = (
+        _Borders([getattr(lane, side) for lane in lanes]) for side in ("left", "right")
     )
-    before, after = (shapely.get_coordinates(points) for points in ends)
-    steps = after - before
-    directions: Points = steps / np.maximum(np.hypot(*steps.T), 1e-9)[:, None]
-    return directions
+    tree = shapely.STRtree(rights.lines)
+    owns, others = tree.query(lefts.lines, predicate="dwithin", distance=BORDER_M)
+    told = [lanes[own].left_of == lanes[other].id for own, other in zip(owns, others, strict=True)]
+    unsaid = (owns != others) & ~np.array(told, dtype=bool)
+    owns, others = owns[unsaid], others[unsaid]
+    if not len(owns):
+        return
+    shares = _near(lefts, owns, rights, others), _near(rights, others, lefts, owns)
+    parts, lengths = np.minimum(*shares), shares[0] * lefts.lengths[owns]
+    pairs = zip(owns.tolist(), others.tolist(), parts.tolist(), lengths.tolist(), strict=True)
+    for own, other, part, length in pairs:
+        yield Bordering(lanes[own], lanes[other], part, length)
+
+
+class _Borders:
+    """Many lines, with places along them by arc length (m)."""
+
+    def __init__(self, lines: Sequence[Points]) -> None:
+        counts = np.array([len(line) for line in lines])
+        self.lines = shapely.linestrings(
+            np.concatenate(lines), indices=np.repeat(np.arange(len(lines)), counts)
+        )
+        self._points = np.concatenate(lines)
+        ends = np.cumsum(counts)
+        self._first, self._last = ends - counts, ends - 1
+        steps = np.hypot(*np.diff(self._points, axis=0, prepend=self._points[:1]).T)
+        # From one line to the next it is a metre, so that no place is on two of them.
+        steps[self._first] = 1.0
+        self._along = np.cumsum(steps)
+        self.lengths = self._along[self._last] - self._along[self._first]
+
+    def points(self, lines: _Indices, at: NDArray[float64]) -> Points:
+        """The points at places along some of the lines."""
+        along = self._along[self._first[lines]] + np.clip(at, 0.0, self.lengths[lines])
+        before = np.searchsorted(self._along, along, "right") - 1
+        before = np.clip(before, self._first[lines], self._last[lines] - 1)
+        length = np.maximum(self._along[before + 1] - self._along[before], 1e-12)
+        share = np.clip((along - self._along[before]) / length, 0.0, 1.0)[:, None]
+        found: Points = (1 - share) * self._points[before] + share * self._points[before + 1]
+        return found
+
+    def directions(self, lines: _Indices, at: NDArray[float64]) -> Points:
+        """The directions there, from a metre before to one after."""
+        steps = self.points(lines, at + 1) - self.points(lines, at - 1)
+        directions: Points = steps / np.maximum(np.hypot(*steps.T), 1e-9)[:, None]
+        return directions
+
+
+def _near(lines: _Borders, ones: _Indices, others: _Borders, second: _Indices) -> NDArray[float64]:
+    """For which part of each line its other one lies at it, and leads the same way there."""
+    lengths = lines.lengths[ones]
+    counts = np.maximum(2, np.round(lengths / _EVERY_M)).astype(int) + 1
+    ends = np.cumsum(counts)
+    numbers = np.arange(ends[-1]) - np.repeat(ends - counts, counts)
+    at = numbers * np.repeat(lengths / (counts - 1), counts)
+    ones, second = np.repeat(ones, counts), np.repeat(second, counts)
+    points = shapely.points(lines.points(ones, at))
+    near = shapely.distance(others.lines[second], points) <= BORDER_M
+    along = shapely.line_locate_point(others.lines[second], points)
+    like = (lines.directions(ones, at) * others.directions(second, along)).sum(axis=1) >= _LIKE
+    shares: NDArray[float64] = np.add.reduceat(near & like, ends - counts, dtype=float) / counts
+    return shares
 
 
 def _crossed(lanelets: Iterable[Lanelet]) -> set[str]:

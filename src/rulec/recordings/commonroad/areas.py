@@ -14,7 +14,8 @@ import numpy as np
 import shapely
 from shapely import affinity
 
-from rulec.recordings.encodings.tree import Tree
+from rulec.recordings.encodings.tree import LONGEST_TEXT, SMALLEST, Tree
+from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.recording import Points
 
 _FEWEST_CORNERS = 3
@@ -131,7 +132,27 @@ def read_point(tree: Tree) -> tuple[float, float]:
 
 def read_points(tree: Tree) -> Points:
     """The places of all points in an element."""
-    return np.array(list(map(read_point, tree.all("point"))), dtype=float).reshape(-1, 2)
+    points = tree.all("point")
+    found = _usual_points(points)
+    if found is not None:
+        return found
+    return np.array(list(map(read_point, points)), dtype=float).reshape(-1, 2)
+
+
+def _usual_points(points: Sequence[Tree]) -> Points | None:
+    """The places of points that have `x` and `y` first, and nothing wrong; else None."""
+    if any([child.name for child in point.children[:2]] != ["x", "y"] for point in points):
+        return None
+    texts = [child.text for point in points for child in point.children[:2]]
+    if any(len(text) == LONGEST_TEXT for text in texts):
+        return None
+    try:
+        places = np.array([float(text) for text in texts]).reshape(-1, 2)
+    except ValueError:
+        return None
+    sizes = np.abs(places)
+    is_usual = (sizes < LARGEST) & ((sizes > SMALLEST) | (sizes == 0))
+    return places if is_usual.all() else None
 
 
 def turned_once(heading: float) -> float:

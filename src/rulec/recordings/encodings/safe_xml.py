@@ -47,22 +47,56 @@ def scan(
     Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
     """
     parser = ParserCreate()
-    rooted = False
 
     def element(name: str, attributes: dict[str, str]) -> None:
-        nonlocal rooted
-        if not rooted and name != form.root:
+        begin(XmlElement(name, attributes, parser, path, form))
+
+    _scan(parser, path, form, element, end=end, comment=comment, text=text)
+
+
+def scan_names(
+    path: Path,
+    form: XmlFormat,
+    begin: Callable[[str, dict[str, str], int], None],
+    *,
+    end: Callable[[str], None],
+    text: Callable[[str], None],
+) -> None:
+    """Scan an XML file once; elements begin with their name, attributes and line.
+
+    Raises RulecError: as for ``scan``.
+    """
+    parser = ParserCreate()
+
+    def element(name: str, attributes: dict[str, str]) -> None:
+        begin(name, attributes, parser.CurrentLineNumber)
+
+    _scan(parser, path, form, element, end=end, text=text)
+
+
+def _scan(
+    parser: XMLParserType,
+    path: Path,
+    form: XmlFormat,
+    element: Callable[[str, dict[str, str]], None],
+    *,
+    end: Callable[[str], None] | None = None,
+    comment: Callable[[str], None] | None = None,
+    text: Callable[[str], None] | None = None,
+) -> None:
+    def root(name: str, attributes: dict[str, str]) -> None:
+        if name != form.root:
             why = f"it is XML, but of `{short(name)}`, not of `{form.root}`"
             raise form.refused(path, why, parser.CurrentLineNumber)
-        rooted = True
-        begin(XmlElement(name, attributes, parser, path, form))
+        parser.StartElementHandler = element
+        element(name, attributes)
 
     def definition(*_: object) -> None:
         why = "it has a `DOCTYPE`, which this format has not, and which could define anything"
         way_out = "take the `<!DOCTYPE …>` out"
         raise form.refused(path, why, parser.CurrentLineNumber, help_text=way_out)
 
-    parser.StartElementHandler = element
+    parser.StartElementHandler = root
     parser.StartDoctypeDeclHandler = definition
     if end is not None:
         parser.EndElementHandler = end

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from rulec.recordings.encodings.safe_xml import scan
+from rulec.recordings.encodings.safe_xml import scan_names
 from rulec.recordings.encodings.tree import LONGEST_TEXT, MOST_ELEMENTS, Tree
-from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat, short
+from rulec.recordings.encodings.xml_element import XmlFormat, short
 
 
 def scan_trees(
@@ -27,10 +27,9 @@ def scan_trees(
     open_trees: list[Tree] = []
     count = 0
 
-    def begin(element: XmlElement) -> None:
+    def begin(name: str, attributes: dict[str, str], line: int) -> None:
         nonlocal count
-        line = element.parser.CurrentLineNumber
-        tree = Tree(element.name, element.attributes, line, path, form)
+        tree = Tree(name, attributes, line, path, form)
         count += 1
         if len(open_trees) > 1:
             open_trees[-1].children.append(tree)
@@ -50,8 +49,12 @@ def scan_trees(
             child(tree)
 
     def text(words: str) -> None:
+        if words.isspace():
+            return
         tree = open_trees[-1]
-        if not words.isspace() and len(tree.text) < LONGEST_TEXT:
+        if not tree.text and len(words) <= LONGEST_TEXT:
+            tree.text = words
+        elif len(tree.text) < LONGEST_TEXT:
             tree.text = (tree.text + words)[:LONGEST_TEXT]
 
-    scan(path, form, begin, end=end, text=text)
+    scan_names(path, form, begin, end=end, text=text)
