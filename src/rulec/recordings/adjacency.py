@@ -39,21 +39,21 @@ class Bordering:
     length: float
 
 
-def bordering(lanelets: Iterable[Lanelet]) -> Iterator[Bordering]:
+def bordering(lanelets: Iterable[Lanelet], *, alone: bool = False) -> Iterator[Bordering]:
     """The pairs of lanes of like direction with a stretch of border in common.
 
-    Without those of which the map says so.
+    Without those of which the map says so; ``alone``: without lanes that have another one there.
     """
     lanes = [lanelet for lanelet in lanelets if is_lane(lanelet)]
-    if not lanes:
+    right = [lane for lane in lanes if not alone or lane.left_of is None]
+    left = [lane for lane in lanes if not alone or lane.right_of is None]
+    if not right or not left:
         return
-    lefts, rights = (
-        _Borders([getattr(lane, side) for lane in lanes]) for side in ("left", "right")
-    )
+    lefts, rights = _Borders([x.left for x in right]), _Borders([x.right for x in left])
     tree = shapely.STRtree(rights.lines)
     owns, others = tree.query(lefts.lines, predicate="dwithin", distance=BORDER_M)
-    told = [lanes[own].left_of == lanes[other].id for own, other in zip(owns, others, strict=True)]
-    unsaid = (owns != others) & ~np.array(told, dtype=bool)
+    named = [(right[own], left[other]) for own, other in zip(owns, others, strict=True)]
+    unsaid = [one is not other and one.left_of != other.id for one, other in named]
     owns, others = owns[unsaid], others[unsaid]
     if not len(owns):
         return
@@ -61,7 +61,7 @@ def bordering(lanelets: Iterable[Lanelet]) -> Iterator[Bordering]:
     parts, lengths = np.minimum(*shares), shares[0] * lefts.lengths[owns]
     pairs = zip(owns.tolist(), others.tolist(), parts.tolist(), lengths.tolist(), strict=True)
     for own, other, part, length in pairs:
-        yield Bordering(lanes[own], lanes[other], part, length)
+        yield Bordering(right[own], left[other], part, length)
 
 
 class _Borders:
@@ -130,11 +130,16 @@ def with_neighbours(recording: Recording) -> Recording:
     Lanes that others cross are left out: side by side in a junction, they lead different ways.
     """
     lanelets = dict(recording.lanelets)
-    crossed = _crossed(lanelets.values())
+    pairs = [
+        pair
+        for pair in bordering(lanelets.values(), alone=True)
+        if pair.part >= WHOLE and pair.length >= LONG_M
+    ]
+    crossed = _crossed(lanelets.values()) if pairs else set()
     found = []
-    for pair in sorted(bordering(lanelets.values()), key=lambda pair: -pair.part):
+    for pair in sorted(pairs, key=lambda pair: -pair.part):
         right, left = lanelets[pair.right.id], lanelets[pair.left.id]
-        if pair.part < WHOLE or pair.length < LONG_M or crossed.intersection((right.id, left.id)):
+        if crossed.intersection((right.id, left.id)):
             continue
         if right.left_of is not None or left.right_of is not None:
             continue

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, copysign, pi
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import shapely
@@ -17,6 +17,12 @@ from shapely import affinity
 from rulec.recordings.encodings.tree import LONGEST_TEXT, SMALLEST, Tree
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.recording import Points
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+NOT_USUAL = "it takes a closer look"
+"""Said of what is then read anew with its lines, and by nobody else."""
 
 _FEWEST_CORNERS = 3
 _SMALLEST_M = 1e-6
@@ -132,27 +138,37 @@ def read_point(tree: Tree) -> tuple[float, float]:
 
 def read_points(tree: Tree) -> Points:
     """The places of all points in an element."""
-    points = tree.all("point")
-    found = _usual_points(points)
-    if found is not None:
-        return found
-    return np.array(list(map(read_point, points)), dtype=float).reshape(-1, 2)
+    if tree.raw:
+        places = _usual_points(tree.raw)
+        if places is None:
+            raise tree.wrong(NOT_USUAL)
+        return places
+    return np.array(list(map(read_point, tree.all("point"))), dtype=float).reshape(-1, 2)
 
 
-def _usual_points(points: Sequence[Tree]) -> Points | None:
+def _usual_points(points: Sequence[Element]) -> Points | None:
     """The places of points that have `x` and `y` first, and nothing wrong; else None."""
-    if any([child.name for child in point.children[:2]] != ["x", "y"] for point in points):
+    leaves = [leaf for point in points for leaf in point[:2]]
+    if [leaf.tag for leaf in leaves] != ["x", "y"] * len(points) or any(map(len, leaves)):
         return None
-    texts = [child.text for point in points for child in point.children[:2]]
-    if any(len(text) == LONGEST_TEXT for text in texts):
-        return None
+    numbers = usual_numbers([leaf.text for leaf in leaves])
+    return None if numbers is None else np.array(numbers).reshape(-1, 2)
+
+
+def usual_numbers(texts: Sequence[str | None]) -> list[float] | None:
+    """The numbers that texts spell, as ``Tree.number`` reads them; None if anything is wrong."""
     try:
-        places = np.array([float(text) for text in texts]).reshape(-1, 2)
-    except ValueError:
+        # What is -0 becomes 0.
+        numbers = [float(text) + 0.0 for text in texts]  # type: ignore[arg-type]
+    except (TypeError, ValueError):
         return None
-    sizes = np.abs(places)
-    is_usual = (sizes < LARGEST) & ((sizes > SMALLEST) | (sizes == 0))
-    return places if is_usual.all() else None
+    # A sum is not small where one of them is not, or is no number.
+    is_usual = (
+        sum(map(abs, numbers)) < LARGEST
+        and min(filter(None, map(abs, numbers)), default=1.0) > SMALLEST
+        and max(map(len, filter(None, texts)), default=0) < LONGEST_TEXT
+    )
+    return numbers if is_usual else None
 
 
 def turned_once(heading: float) -> float:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
+from rulec.diagnostics import RulecError
 from rulec.recordings.commonroad.countries import country_in
 from rulec.recordings.commonroad.scenario_content import Content, add, add_step, to_recording
 from rulec.recordings.encodings.tree import Tree
+from rulec.recordings.encodings.whole_xml import no_collection, whole_tree
 from rulec.recordings.encodings.xml_element import XmlFormat, short
 from rulec.recordings.encodings.xml_tree import scan_trees
 from rulec.recordings.recording import Recording
@@ -21,6 +24,9 @@ VERSIONS = ("2018b", "2020a")
 
 _SAME_STEP_S = 1e-6
 
+_ALIKE = {"trajectory": "state", "leftBound": "point", "rightBound": "point"}
+"""Elements with very many others in them."""
+
 
 def read_commonroad(path: Path) -> Recording:
     """Read the recording in a CommonRoad file.
@@ -28,8 +34,24 @@ def read_commonroad(path: Path) -> Recording:
     Raises RulecError R0610 for a file that cannot be read as CommonRoad, R0701 if it cannot be
     opened.
     """
+    with no_collection(), suppress(RulecError):
+        found = _read_whole(path)
+        if found is not None:
+            return found
+    # What is wrong is found again, and said with its line.
     content = Content()
     scan_trees(path, COMMONROAD, lambda tree: begin(content, tree), lambda tree: add(content, tree))
+    return to_recording(content, path, COMMONROAD)
+
+
+def _read_whole(path: Path) -> Recording | None:
+    whole = whole_tree(path, COMMONROAD, _ALIKE)
+    if whole is None:
+        return None
+    content = Content()
+    begin(content, whole)
+    for child in whole.children:
+        add(content, child)
     return to_recording(content, path, COMMONROAD)
 
 

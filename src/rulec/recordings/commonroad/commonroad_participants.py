@@ -22,7 +22,7 @@ from rulec.recordings.commonroad.areas import (
     outline_at,
     read_area,
 )
-from rulec.recordings.commonroad.states import State, read_state
+from rulec.recordings.commonroad.states import State, read_state, read_states
 from rulec.recordings.commonroad.time_extent import TimeExtent, read_steps
 from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
@@ -36,7 +36,7 @@ def read_body(tree: Tree, extent: TimeExtent, *, standing: bool) -> recorded.Par
     body = read_area(tree.child("shape"), body=True)
     states = [read_state(tree.child("initialState"), initial=True)]
     trajectory = None if standing else tree.first("trajectory")
-    states += [] if trajectory is None else map(read_state, trajectory.all("state"))
+    states += [] if trajectory is None else read_states(trajectory)
     if not standing:
         extent.add([state.step for state in states])
     lamps, shows = _lamps(tree, extent)

@@ -107,7 +107,7 @@ def _scan(
         parser.CharacterDataHandler = text
     size = 0
     try:
-        for block in _blocks(path, form):
+        for block in blocks_of(path, form):
             size += len(block)
             if size > form.largest_bytes:
                 why = f"it is too large: at most {form.largest_bytes:,} bytes are read"
@@ -138,10 +138,15 @@ def root_of(path: Path, form: XmlFormat) -> str:
     """
     parser = ParserCreate()
     names: list[str] = []
-    parser.StartElementHandler = lambda name, _: names.append(name)
+
+    def root(name: str, _: object) -> None:
+        names.append(name)
+        parser.StartElementHandler = None
+
+    parser.StartElementHandler = root
     size = 0
     try:
-        for block in _blocks(path, form):
+        for block in blocks_of(path, form):
             size += len(block)
             _parse(parser, block, path, form)
             if names:
@@ -174,7 +179,8 @@ def is_xml(path: Path) -> bool:
     return text.startswith((b"<", b"\xff\xfe<", b"\xfe\xff\0<"))
 
 
-def _blocks(path: Path, form: XmlFormat) -> Iterator[bytes]:
+def blocks_of(path: Path, form: XmlFormat) -> Iterator[bytes]:
+    """The bytes of a file, unpacked, in blocks. Raises RulecError R0610, R0701."""
     with opened(path) as raw, _unpacked(raw) as stream:
         try:
             while block := stream.read(_BLOCK):

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.xml_element import LARGEST, short
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
 
 MOST_ELEMENTS = 1_000_000
 """In one child of the root, some 300 MB of memory."""
@@ -43,7 +46,8 @@ class FileFormat(Protocol):
 class Tree:
     """An element with its text, and those in it. Its methods raise RulecError R0610.
 
-    ``place`` is the line or byte that it begins in, as its format counts.
+    ``place`` is the line or byte that it begins in, as its format counts; ``raw`` are children that
+    no trees have been made of, since there are very many alike.
     """
 
     # Not frozen: a recording has millions, whose text and children come later
@@ -54,6 +58,7 @@ class Tree:
     form: FileFormat
     text: str = ""
     children: list[Tree] = field(default_factory=list)
+    raw: list[Element] = field(default_factory=list)
 
     def first(self, name: str) -> Tree | None:
         """The first child of a name."""
