@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -58,7 +58,7 @@ class Tree:
     form: FileFormat
     text: str = ""
     children: list[Tree] = field(default_factory=list)
-    raw: list[Element] = field(default_factory=list)
+    raw: Sequence[Element] = ()
 
     def first(self, name: str) -> Tree | None:
         """The first child of a name."""

@@ -100,13 +100,15 @@ def _tree(
     text = element.text
     tree = Tree(element.tag, element.attrib, 0, path, form)
     alike = raw.get(element.tag)
+    left: list[ElementTree.Element] = []
     for child in element:
         if child.tag == alike:
-            tree.raw.append(child)
+            left.append(child)
         else:
             tree.children.append(_tree(child, path, form, raw, depth + 1))
         if child.tail is not None and not child.tail.isspace():
             text = (text or "") + child.tail
+    tree.raw = left or ()
     if text is not None and not text.isspace():
         tree.text = text[:LONGEST_TEXT]
     return tree
