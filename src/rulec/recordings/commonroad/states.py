@@ -129,7 +129,7 @@ def _usual_states(elements: Sequence[Element]) -> list[State] | None:
         return None
     rows = zip(*[iter(numbers)] * (len(_TEXTS) - 1), strict=True)
     return [
-        State(int(step or ""), x, y, (), Bounds(heading, heading), speed, acceleration, 0.0)
+        State._make((int(step or ""), x, y, (), Bounds(heading, heading), speed, acceleration, 0.0))
         for step, (x, y, heading, speed, acceleration) in zip(steps, rows, strict=True)
     ]
 
