@@ -9,9 +9,8 @@ from rulec.diagnostics import RulecError
 from rulec.recordings.commonroad.countries import country_in
 from rulec.recordings.commonroad.scenario_content import Content, add, add_step, to_recording
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.whole_xml import no_collection, whole_tree
 from rulec.recordings.encodings.xml_element import XmlFormat, short
-from rulec.recordings.encodings.xml_tree import scan_trees
+from rulec.recordings.encodings.xml_tree import no_collection, scan_trees, whole_tree
 from rulec.recordings.recording import Recording
 from rulec.recordings.road_map import RoadMap
 

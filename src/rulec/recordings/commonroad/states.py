@@ -20,7 +20,7 @@ from rulec.recordings.commonroad.areas import (
     usual_numbers,
 )
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.whole_xml import tree_of
+from rulec.recordings.encodings.xml_tree import tree_of
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
