@@ -71,14 +71,25 @@ _ON_ANY_MAP = frozenset(
 )
 """Tables take nets of SUMO's, too, which have every sign and track."""
 
+_BY_LAMPS = frozenset({"indicator", "warning_lights"})
+_BY_SIGNS_AND_LINES = frozenset(
+    (
+        *("crosses_stop_line", "give_way_sign", "lane_kind", "on_priority_road", "stop_sign"),
+        "turn_on_red_sign",
+    )
+)
+"""highD has neither signs nor stop lines, and no more of its ramps than their marks."""
+
 TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "commonroad": _EITHER | _COMMONROAD_ONLY,
     "commonroad-protobuf": _EITHER | _COMMONROAD_ONLY,
     "sumo": _EITHER | _SUMO_ONLY,
     "waymo": _EITHER - _NOT_BY_LANE_CENTRES,
     "tracks": _EITHER | _ON_ANY_MAP | {"boarding", "leaving_stop"},
-    **dict.fromkeys(("levelx", "interaction", "ngsim", "omega-prime"), _EITHER | _ON_ANY_MAP),
-    "highd": _EITHER,
+    **dict.fromkeys(
+        ("levelx", "interaction", "ngsim", "omega-prime"), (_EITHER | _ON_ANY_MAP) - _BY_LAMPS
+    ),
+    "highd": _EITHER - _BY_LAMPS - _BY_SIGNS_AND_LINES,
     "osi": _EITHER | {"icy", "no_overtaking_sign", "visibility", "wet"},
     "argoverse-motion": _ARGOVERSE,
     "argoverse-sensor": _ARGOVERSE,

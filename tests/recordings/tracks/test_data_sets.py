@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from rulec import RulecError, read_recording
+from rulec.extraction.selection import RequestedDrives, selected_drives
+from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
 from rulec.recordings.recording_files import is_recording, read_recordings
 from rulec.recordings.recording_format import RecordingSource
 from support.builders.sumo_files import ROAD_NET
@@ -62,6 +64,32 @@ def test_highd_names_the_upper_left_corner(tmp_path):
 def test_highd_without_a_limit(tmp_path):
     recording = read_recording(highd(tmp_path, [(2, 0.0, 26.0, 30.0, 26)], limit=-1))
     assert {lane.limit_mps for lane in recording.lanelets.values()} == {None}
+
+
+def told(recording):
+    drives = selected_drives(recording, RequestedDrives(), "some.csv", "right")
+    # Where nobody has doors or rails these are told, too
+    return told_words(drives) - {"boarding", "conflict_with_rail", "leaving_stop"}
+
+
+def test_what_highd_can_tell(tmp_path):
+    found = read_recording(highd(tmp_path, [(2, 0.0, 26.0, 30.0, 26)], limit=33.33))
+    assert told(found) == TELLABLE_WORDS["highd"]
+
+
+def test_what_others_can_tell(tmp_path):
+    """Words of lamps are told by tables with columns for them only."""
+    net = tmp_path / "road.net.xml"
+    net.write_text(ROAD_NET)
+    rows = [f"a,{k / 10},{20 + k},-4.8" for k in range(9)]
+    file = tmp_path / "cars.csv"
+    file.write_text(table("track,t,x,y", *rows))
+    without = told(read_recording(file, net))
+    lamps = "left_indicator,right_indicator,hazard_lights,blue_light"
+    file.write_text(table(f"track,t,x,y,{lamps}", *[f"{row},0,0,0,0" for row in rows]))
+    assert told(read_recording(file, net)) - without == {"indicator", "warning_lights"}
+    assert without <= TELLABLE_WORDS["levelx"]
+    assert without | {"indicator", "warning_lights"} <= TELLABLE_WORDS["tracks"]
 
 
 @pytest.mark.parametrize(
