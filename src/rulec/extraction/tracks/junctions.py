@@ -174,7 +174,9 @@ def junctions_of(recording: Recording) -> tuple[Junction, ...]:
 def _junction_ids(recording: Recording) -> dict[str, str]:
     """Lanelet -> junction: the map's own, or lanelets that overlap."""
     lanelets = recording.lanelets
-    inside = [number for number in lanelets if number in junction_lanelets(recording)]
+    # Looked for once: on maps without marked junctions that goes through all lanelets
+    crossing = junction_lanelets(recording)
+    inside = [number for number in lanelets if number in crossing]
     rails = [
         x.id
         for x in lanelets.values()
