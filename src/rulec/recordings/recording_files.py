@@ -28,10 +28,11 @@ _MOST_NAMED = 5
 def is_recording(file: str) -> bool:
     """True if a file's name or first bytes show recorded traffic.
 
-    XML that is of no format is taken for a recording, too: nothing else that is read is XML.
+    XML that is of no format is taken for a recording, too: nothing else that is read is XML. So
+    is a map, about which ``read_recordings`` has more to say than a reader of traces.
     """
     glance = Glance(Path(file))
-    return is_xml(glance.path) or any(form.recognises(glance) for form in FORMATS)
+    return is_xml(glance.path) or any(form.recognises(glance) for form in (*FORMATS, *MAP_FORMATS))
 
 
 def read_recordings(source: RecordingSource) -> Iterator[Recording]:

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rulec import RulecError, read_map
+from rulec import RulecError, read_map, read_recording
+from rulec.recordings.recording_files import is_recording
 from support.builders.track_tables import table
 
 
@@ -85,3 +86,12 @@ def test_ways_out(tmp_path):
     assert (
         message(tmp_path, "lane,x,y,type", "a,0,0,urbn", "a,9,0,").help == "did you mean `urban`?"
     )
+
+
+def test_a_map_is_no_recording(tmp_path):
+    """It is not read as traces, either, which have other columns."""
+    file = tmp_path / "lanes.csv"
+    file.write_text(table("lane,x,y", "a,0,0", "a,9,0"), encoding="utf-8")
+    assert is_recording(str(file))
+    with pytest.raises(RulecError, match="it is a map \\(lanes as a table\\)"):
+        read_recording(file)
