@@ -33,7 +33,8 @@ FILE_TOO_LARGE = Code(
 UNREADABLE_FILE = Code(
     "R0701",
     title="a file cannot be read",
-    why="There is no such file, it is a folder, or it may not be read; the message says which.",
+    why="There is no such file, it is a folder, or it may not be read, or it is "
+    "packed (gzip) and damaged; the message says which.",
     bad="rulec check ./no_such.rules",
     good="echo 'rulebook a signal p hard rule r { require p }' > such.rules\n"
     "rulec check ./such.rules",

@@ -1,14 +1,17 @@
-"""Files: read as bytes or UTF-8 text, written whole or never."""
+"""Files: read as bytes or UTF-8 text, unpacked on the way, written whole or never."""
 
 from __future__ import annotations
 
+import gzip
 import os
 import stat
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from errno import EACCES, EISDIR
+from io import SEEK_CUR, SEEK_END, BufferedReader, RawIOBase
 from pathlib import Path
-from typing import IO, Final
+from typing import IO, Any, Final, cast
 from unicodedata import normalize
 
 from rulec.diagnostics import Label, RulecError, Source, SourceLocation, Span
@@ -22,6 +25,12 @@ from rulec.file_messages import (
 
 MAX_SOURCE_BYTES: Final = 5_000_000
 """A rulebook has thousands of characters; millions are a mistake."""
+
+LARGEST_UNPACKED: Final = 4_000_000_000
+"""Bytes of a packed file, unpacked; a thousandth of them may hide so many."""
+
+PACKED: Final = b"\x1f\x8b"
+"""How files packed with gzip begin (RFC 1952)."""
 
 
 @contextmanager
@@ -90,19 +99,70 @@ def opened(
     way_out: str = "check its name and its permissions",
     labels: tuple[Label, ...] = (),
 ) -> Iterator[IO[bytes]]:
-    """A file opened for reading.
+    """A file opened for reading; one that is packed with gzip is unpacked on the way.
 
-    Raises RulecError: R0701, with this way out and these labels.
+    Raises RulecError: R0701, with this way out and these labels; while it is read, R0701 for what
+    is packed and damaged, or larger than ``LARGEST_UNPACKED``.
     """
     try:
         stream = path.open("rb")
-        stream.peek(1)
+        is_packed = stream.peek(len(PACKED)).startswith(PACKED)
     except (OSError, ValueError) as problem:  # ValueError: a null character in the name
         message = f"the file cannot be read: {reason_in_words(problem)}"
         place = SourceLocation(str(path))
         raise UNREADABLE_FILE.error(place, message, help=way_out, labels=labels) from None
     with stream:
-        yield stream
+        if is_packed:
+            with BufferedReader(_Unpacking(stream, path)) as unpacked:
+                yield cast("IO[bytes]", unpacked)
+        else:
+            yield stream
+
+
+class _Unpacking(RawIOBase):
+    """The content of a packed file, up to a limit."""
+
+    def __init__(self, stream: IO[bytes], path: Path) -> None:
+        self._gzip = gzip.GzipFile(fileobj=stream)
+        self._path = path
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def tell(self) -> int:
+        return self._gzip.tell()
+
+    def seek(self, offset: int, whence: int = 0) -> int:
+        if whence == SEEK_END:
+            # Where the end is shows only there.
+            while self.read(1 << 16):
+                pass
+            whence = SEEK_CUR
+        return self._gzip.seek(offset, whence)
+
+    def readinto(self, buffer: Any) -> int:
+        try:
+            data = self._gzip.read(len(buffer))
+        except EOFError:
+            raise self._refused("it is packed, and ends too soon") from None
+        except (gzip.BadGzipFile, zlib.error):
+            raise self._refused("it is packed, and damaged") from None
+        if self._gzip.tell() > LARGEST_UNPACKED:
+            raise self._refused(
+                f"it is packed, and larger than {LARGEST_UNPACKED:,} bytes when unpacked"
+            )
+        buffer[: len(data)] = data
+        return len(data)
+
+    def _refused(self, why: str) -> RulecError:
+        return UNREADABLE_FILE.error(
+            SourceLocation(str(self._path)),
+            f"the file cannot be read: {why}",
+            help="pack it anew, with `gzip`, or give it as it was before",
+        )
 
 
 def decoded(name: str, data: bytes) -> Source:

@@ -180,7 +180,7 @@ def test_every_link_of_the_page_leads_somewhere(folder, book, capsys):
     [
         ("b.html", [], "<!DOCTYPE html>\n"),
         ("b.md", [], "# Rules of the island\n"),
-        ("b.txt", [], "<!DOCTYPE html>\n"),
+        ("b.txt", ["--output-format", "html"], "<!DOCTYPE html>\n"),
         ("b.md", ["--format", "html"], "<!DOCTYPE html>\n"),
         ("b.html", ["--format", "markdown"], "# Rules of the island\n"),
     ],

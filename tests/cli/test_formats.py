@@ -99,10 +99,3 @@ def test_a_misspelt_format(listed):
     status, out, err = listed("comonroad")
     assert (status, out) == (2, "")
     assert "there is no format `comonroad`; did you mean `commonroad`?" in err
-
-
-def test_the_former_name_of_the_option_is_not_in_the_help(listed):
-    _, out, _ = listed("--help")
-    assert "--output-format" in out
-    assert "--format " not in out
-    assert json.loads(listed("--format", "json")[1])["version"] == 1

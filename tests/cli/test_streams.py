@@ -122,7 +122,7 @@ def test_a_device_is_written_to_and_stays_one():
 
 
 def test_a_link_that_leads_nowhere_is_replaced_and_one_that_leads_somewhere_is_followed(tmp_path):
-    loop, link, target = tmp_path / "loop", tmp_path / "link", tmp_path / "target"
+    loop, link, target = (tmp_path / f"{name}.jsonl" for name in ("loop", "link", "target"))
     loop.symlink_to(loop)
     link.symlink_to(target)
     target.write_text("old")

@@ -1,11 +1,14 @@
 """Texts from any editor, and files that appear whole or not at all."""
 
+import gzip
+import io
 import unicodedata
 
 import pytest
 
+from rulec import files
 from rulec.diagnostics import RulecError
-from rulec.files import decoded, written_whole
+from rulec.files import decoded, opened, written_whole
 
 
 @pytest.mark.parametrize("line_end", ["\n", "\r\n", "\r"])
@@ -60,3 +63,33 @@ def test_a_folder_in_the_way(tmp_path):
     with pytest.raises(RulecError) as caught, written_whole(tmp_path):
         pass
     assert caught.value.diagnostics[0].code == "R0702"
+
+
+def test_what_is_packed_is_unpacked_on_the_way(tmp_path):
+    file = tmp_path / "file.gz"
+    file.write_bytes(gzip.compress(b"0123456789"))
+    with opened(file) as stream:
+        assert stream.read(3) == b"012"
+        assert stream.seek(-2, io.SEEK_END) == 8
+        assert stream.read() == b"89"
+        stream.seek(0)
+        assert stream.peek(2)[:2] == b"01"
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (gzip.compress(bytes(range(256)))[:-30], "it is packed, and ends too soon"),
+        (gzip.compress(b"a")[:10] + b"\xff" * 20, "it is packed, and damaged"),
+        (gzip.compress(b"a" * 1001), "larger than 1,000 bytes when unpacked"),
+    ],
+)
+def test_what_is_packed_and_cannot_be_unpacked(tmp_path, monkeypatch, content, says):
+    monkeypatch.setattr(files, "LARGEST_UNPACKED", 1000)
+    file = tmp_path / "file.gz"
+    file.write_bytes(content)
+    with pytest.raises(RulecError) as refused, opened(file) as stream:
+        stream.read()
+    (found,) = refused.value.diagnostics
+    assert (found.code, found.place.file) == ("R0701", str(file))
+    assert says in found.message

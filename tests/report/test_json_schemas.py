@@ -59,6 +59,7 @@ DOCUMENTS = [
 ]
 LINES = [
     ("verdict", ["verify", TRACES, "-r", "esterle2019", "--json", "--explain", "1"]),
+    ("finding", ["verify", RECORDING, "-r", "de", "--output-format", "jsonl"]),
     ("verdict", ["verify", "BROKEN", "-r", "esterle2019", "--json"]),
     ("verdict", ["verify", RECORDING, "-r", "de", "--json", "--explain", "1"]),
     ("state", ["monitor", "esterle2019", "--json"]),

@@ -163,7 +163,7 @@ HEAD = "trace,step,object,type,other,p\n"
         (HEAD + "t,0,,,,true\n" * 100 + "t\0,0,,,,true\n", 102, "a null character", ""),
         (HEAD + "t,0,,", 2, "this row has 4 cells", "has the file been cut short?"),
         (HEAD + "t,0,,,,a, b\n", 2, "this row has 7 cells", "stands in quotes"),
-        ('{"states": [{}]}\n', None, "no CSV, but JSON", "add `--format jsonl`"),
+        ('{"states": [{}]}\n', None, "no CSV, but JSON", "add `--input-format jsonl`"),
     ],
 )
 def test_what_is_refused(text, line, words, way_out):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from glob import escape
 from typing import TYPE_CHECKING
 
 from rulec.recordings import table_heads as heads
@@ -125,6 +126,15 @@ def _omega_prime(source: RecordingSource) -> Iterator[Recording]:
     return read_omega_prime(source)
 
 
+def _is_part(glance: Glance) -> bool:
+    """True for the map of a scenario in parts, and for its planning problems."""
+    path, stem = glance.path, glance.path.name[: glance.name.rindex(".pb")]
+    traffic = stem[: -len("-SC")] + path.name[len(stem) :]
+    if stem.endswith("-SC") and path.with_name(traffic).is_file():
+        return True
+    return any(path.parent.glob(f"{escape(stem)}_*.pb*"))
+
+
 FORMATS = (
     RecordingFormat(
         name="commonroad",
@@ -138,6 +148,7 @@ FORMATS = (
         title="CommonRoad scenarios in Protocol Buffers",
         files="*.pb, their parts beside each other",
         recognises=_is_protobuf,
+        is_companion=_is_part,
         read=_commonroad_protobuf,
     ),
     RecordingFormat(

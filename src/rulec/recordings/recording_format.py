@@ -49,7 +49,7 @@ class Glance:
 
     @cached_property
     def head(self) -> bytes:
-        """Its first bytes, as they are in the file; none if it cannot be read."""
+        """Its first bytes, unpacked if need be; none if it is no file."""
         if not self.path.is_file():
             return b""
         with opened(self.path) as stream:
@@ -64,6 +64,10 @@ class Glance:
         return root_of(self.path, RECORDING) if is_xml(self.path) else ""
 
 
+def _reads_alone(_: Glance) -> bool:
+    return False
+
+
 @dataclass(frozen=True, slots=True)
 class RecordingFormat:
     """A format of recorded traffic.
@@ -71,6 +75,7 @@ class RecordingFormat:
     ``name`` is what ``--input-format`` calls it, ``title`` what people do, ``files`` says how its
     files are called. ``takes_map``: it has no roads of its own. ``read`` raises RulecError.
     ``names`` finds the names of a file's recordings, where that is much faster than reading them.
+    ``is_companion`` is true for a file that it recognises and reads along with another one.
     """
 
     name: str
@@ -80,3 +85,4 @@ class RecordingFormat:
     read: Callable[[RecordingSource], Iterator[Recording]]
     takes_map: bool = False
     names: Callable[[Path], Iterator[str]] | None = None
+    is_companion: Callable[[Glance], bool] = _reads_alone

@@ -57,7 +57,7 @@ PARQUET_UNAVAILABLE = Code(
     why="It takes the package `pyarrow`, which is installed on request: `pip install "
     "'rulec[parquet]'`. And it takes a file: a Parquet file has its table of contents at the "
     "end, so it cannot be read from a pipe.",
-    bad="echo PAR1 | rulec verify - --format parquet -r esterle2019",
-    good="echo '{\"states\": [{}]}' | rulec verify - --format jsonl -r esterle2019",
+    bad="echo PAR1 | rulec verify - --input-format parquet -r esterle2019",
+    good="echo '{\"states\": [{}]}' | rulec verify - --input-format jsonl -r esterle2019",
     kind="command",
 )

@@ -163,8 +163,6 @@ def test_degrees_of_longitude_and_latitude(tmp_path):
         (b"<fcd-export>\xff</fcd-export>", "not well-formed XML"),
         (b"<osm/>", "it is XML of `osm`"),
         (b"<net/>", "it is a map (nets of SUMO's), with nobody on its roads"),
-        (gzip.compress(GOOD.encode(), mtime=0)[:-40], "it is packed, and ends too soon"),
-        (gzip.compress(GOOD.encode(), mtime=0)[:10] + b"abcdefgh" * 9, "it is packed, and damaged"),
         (gzip.compress(b"", mtime=0), "it is empty"),
     ],
 )
@@ -173,6 +171,21 @@ def test_files_that_are_something_else(tmp_path, content, says):
     file.write_bytes(content)
     found = problem_with(file)
     assert (found.code, found.place.file) == ("R0610", str(file))
+    assert says in found.message
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (gzip.compress(GOOD.encode(), mtime=0)[:-40], "it is packed, and ends too soon"),
+        (gzip.compress(GOOD.encode(), mtime=0)[:10] + b"abcdefgh" * 9, "it is packed, and damaged"),
+    ],
+)
+def test_packed_files_that_are_broken(tmp_path, content, says):
+    file = written(tmp_path, GOOD)
+    file.write_bytes(content)
+    found = problem_with(file)
+    assert (found.code, found.place.file) == ("R0701", str(file))
     assert says in found.message
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from rulec.diagnostics import RulecError
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Picture, Polyline, corners
-from rulec.report.pictures.drawing.picture_formats import Drawing, as_bytes, format_of
+from rulec.report.pictures.drawing.picture_formats import Drawing, as_bytes
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -26,14 +26,6 @@ def drawing(number=2):
     return Drawing(
         "A title", pictures, Picture("", 120, 20, (LabelText("what it means", (0, 10)),))
     )
-
-
-@pytest.mark.parametrize(
-    ("file", "form"),
-    [("a.svg", "svg"), ("a.PNG", "png"), ("b/a.html", "html"), ("a", "svg"), ("a.txt", "svg")],
-)
-def test_the_name_says_the_format(file, form):
-    assert format_of(file) == form
 
 
 def test_svg():

@@ -10,11 +10,20 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import chosen_format, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import counted, errors_told, open_session
 from rulec.files import written_whole
 from rulec.report.text.console import print_aside, progress, put_result
 from rulec.settings import search_path
+
+FORMATS = {
+    "text": (".txt",),
+    "markdown": (".md",),
+    "json": (".json",),
+    "html": (".html", ".htm"),
+    "csv": (".csv",),
+}
 
 
 @click.command()
@@ -38,12 +47,7 @@ from rulec.settings import search_path
     most=100,
     default=3,
 )
-@shared.choice_option(
-    "--output-format",
-    ["text", "markdown", "json", "html", "csv"],
-    "Text, Markdown, JSON, a page, or a table with a line for each rule.",
-)
-@shared.text_output_option()
+@output_options(FORMATS, "the comparison: text, Markdown, JSON, a page, or a row for each rule")
 @click.option(
     "--witness",
     type=click.Path(dir_okay=False),
@@ -57,7 +61,7 @@ def command(
     patterns: tuple[str, ...],
     step_s: Fraction | None,
     n_witnesses: int,
-    output_format: str,
+    output_format: str | None,
     output: str | None,
     witness: str | None,
     at: str,
@@ -69,6 +73,7 @@ def command(
 
     Exit status: 0 no difference, 1 there are some, 2 a question could not be answered.
     """
+    output_format = chosen_format(FORMATS, output, output_format)
     # Rulebooks and their automata, 140 ms: not for --help.
     from rulec.analysis.diff.comparison_matrix import comparison_matrix, steps
     from rulec.report.rulebooks import diff_formats, matrix_report

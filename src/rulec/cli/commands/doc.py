@@ -3,32 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal, TypeAlias, get_args
+from typing import Literal, TypeAlias, cast
 
 import click
 
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import chosen_format, output_options
 from rulec.cli.output import open_session
 from rulec.report.text.console import put_result
 
 Format: TypeAlias = Literal["html", "markdown"]
 
-SUFFIXES: dict[str, Format] = {".md": "markdown", ".markdown": "markdown"}
+_FORMATS = {"html": (".html", ".htm"), "markdown": (".md", ".markdown")}
 
-OTHERS = (".pdf", ".doc", ".docx", ".odt", ".rtf")
-"""Ends of names that promise what is not written."""
+_PRINTED = (".pdf", ".doc", ".docx", ".odt", ".rtf")
+"""Ends of names that promise what a browser can make of the page."""
 
 
 @click.command()
 @shared.rulebook_argument
-@shared.text_output_option()
-@click.option(
-    "--format",
-    "output_format",
-    type=click.Choice(get_args(Format)),
-    help="One page for a browser and for paper, or Markdown.  [default: markdown for a FILE that "
-    "ends in .md, else html]",
-)
+@output_options(_FORMATS, "the document", former="--format")
 @shared.at_option
 def command(rulebook: str, output: str | None, output_format: Format | None, at: str) -> None:
     """Write a RULEBOOK (a name, or the path of a source) as a document for lawyers.
@@ -37,10 +31,9 @@ def command(rulebook: str, output: str | None, output_format: Format | None, at:
     was changed of inherited rules and what was left out; values, definitions, words and an index.
     """
     shared.only_sources([rulebook], "cannot be made a document of")
-    if output_format is None:
-        if Path(output or "").suffix.lower() in OTHERS:
-            raise click.UsageError(
-                f"{output} would be HTML: write FILE.html, which a browser prints and saves as PDF"
-            )
-        output_format = SUFFIXES.get(Path(output or "").suffix, "html")
-    put_result(open_session(at).doc(rulebook, output_format), output)
+    if output_format is None and Path(output or "").suffix.lower() in _PRINTED:
+        raise click.UsageError(
+            f"{output} would be HTML: write FILE.html, which a browser prints and saves as PDF"
+        )
+    form = cast("Format", chosen_format(_FORMATS, output, output_format))
+    put_result(open_session(at).doc(rulebook, form), output)

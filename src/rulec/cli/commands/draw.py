@@ -13,6 +13,7 @@ import click
 
 import rulec
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import chosen_format, output_options
 from rulec.cli.options.scenario_options import (
     drives_options,
     graph_options,
@@ -38,17 +39,9 @@ if TYPE_CHECKING:
 
     Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
 
-_picture_options = shared.combined(
-    [
-        shared.output_option,
-        click.option(
-            "--format",
-            "form",
-            type=click.Choice(["svg", "png", "pdf", "html"]),
-            help="The format of the picture.  [default: what the file's name ends with, else svg]",
-        ),
-    ]
-)
+_PICTURES = {form: (f".{form}",) for form in ("svg", "png", "pdf", "html")}
+
+_picture_options = output_options(_PICTURES, "the picture", required=True, former="--format")
 
 _judging_options = shared.combined(
     [
@@ -108,8 +101,8 @@ def trace(
     objects: tuple[str, ...],
     every_row: bool,
     at: str,
-    output: Path,
-    form: str | None,
+    output: str,
+    output_format: str | None,
 ) -> None:
     """Draw a trace of FILE (JSON Lines, CSV or Parquet): what violated rules read, over time.
 
@@ -128,7 +121,9 @@ def trace(
                 f"trace `{drawn.id}` has no object `{item}`; it has {named(list(drawn.objects))}."
             )
     used = _only(rulebook_for_trace(drawn, rules), patterns)
-    _write(trace_drawing(drawn, used, objects, patterns, every_row=every_row), output, form)
+    _write(
+        trace_drawing(drawn, used, objects, patterns, every_row=every_row), (output, output_format)
+    )
 
 
 @command.command()
@@ -170,8 +165,8 @@ def drive(
     at_s: float | None,
     theme: Theme,
     at: str,
-    output: Path,
-    form: str | None,
+    output: str,
+    output_format: str | None,
     **options: Any,
 ) -> None:
     """Draw a drive of the recording FILE from above: the road, everybody on it, the violations.
@@ -189,7 +184,7 @@ def drive(
     kept = frozenset(rule.name for rule in _only(rules, patterns).rules) if patterns else None
     recording = read_recording(recording_source(file, options))
     verdicts = rulec.verify_recording(recording, rules, wanted)
-    _write(drive_drawing(verdicts, ego if part else "", kept, at_s), output, form, theme)
+    _write(drive_drawing(verdicts, ego if part else "", kept, at_s), (output, output_format), theme)
 
 
 @command.command()
@@ -203,7 +198,7 @@ def drive(
     metavar="P",
 )
 @_picture_options
-def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: Any) -> None:
+def scene(layers: tuple[int, ...], output: str, output_format: str | None, **options: Any) -> None:
     """Draw SCENARIO (a name or a file) over time: cells with signatures, obstacles, a maneuver.
 
     With a rulebook the cheapest maneuver that satisfies it is shown by its cells, whose bounds are
@@ -217,14 +212,14 @@ def scene(layers: tuple[int, ...], output: Path, form: str | None, **options: An
     if layers and max(layers) > last:
         raise click.UsageError(f"There is no layer {max(layers)}; they are 0 to {last}.")
     number = options["number"] or 1
-    _write(scene_drawing(graph, maneuvers, maneuver, layers, number), output, form)
+    _write(scene_drawing(graph, maneuvers, maneuver, layers, number), (output, output_format))
 
 
 @command.command()
 @graph_options
 @_judging_options
 @_picture_options
-def graph(output: Path, form: str | None, **options: Any) -> None:
+def graph(output: str, output_format: str | None, **options: Any) -> None:
     """Draw the navigation graph of SCENARIO (a name or a file), layer by layer.
 
     With a rulebook the steps of satisfying maneuvers are told from those of rejected ones, and the
@@ -233,7 +228,7 @@ def graph(output: Path, form: str | None, **options: Any) -> None:
     # As for ``scene``.
     from rulec.api.pictures import graph_drawing
 
-    _write(graph_drawing(*_judged(**options)), output, form)
+    _write(graph_drawing(*_judged(**options)), (output, output_format))
 
 
 def _trace(file: str, trace_id: str | None) -> Trace:
@@ -289,11 +284,12 @@ def _judged(
     return maneuvers.graph, maneuvers, maneuver
 
 
-def _write(drawing: Drawing, output: Path, form: str | None, theme: Theme = "auto") -> None:
+def _write(drawing: Drawing, to: tuple[str, str | None], theme: Theme = "auto") -> None:
     # Fonts and layout, 5 ms: not for --help.
-    from rulec.report.pictures.drawing.picture_formats import as_bytes, format_of
+    from rulec.report.pictures.drawing.picture_formats import as_bytes
 
-    data = as_bytes(drawing, form or format_of(str(output)), str(output), theme)
-    with output_stream(output) as (stream, _):
+    output, output_format = to
+    data = as_bytes(drawing, chosen_format(_PICTURES, output, output_format), output, theme)
+    with output_stream(Path(output)) as (stream, _):
         stream.write(data)
-    print_written(str(output), output)
+    print_written(output, Path(output))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 
 import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import TABLES, chosen_format, output_options
 from rulec.cli.options.scenario_options import (
     graph_options,
     read_scene,
@@ -26,19 +27,18 @@ if TYPE_CHECKING:
 @click.command()
 @graph_options
 @shared.rulebook_option()
-@shared.output_option
+@output_options(TABLES, "the table", required=True, former="--format")
 @shared.number_option(
     "--list", "number", "Write the N cheapest satisfying maneuvers.", least=1, default=1
 )
-@shared.table_format_option("table")
 @reading_options
 @shared.at_option
 def command(
     scenario: str,
     rulebook: str,
-    output: Path,
+    output: str,
+    output_format: Format | None,
     number: int,
-    form: Format | None,
     at: str,
     **options: Any,
 ) -> int:
@@ -50,16 +50,17 @@ def command(
     """
     # Maneuvers and the formats of tables, 100 ms: not for --help.
     from rulec.report.maneuvers.envelope_table import write_envelopes
-    from rulec.trace.formats.trace_files import format_of
 
+    form = cast("Format", chosen_format(TABLES, output, output_format))
     rules = read_machines(rulebook, at)
     reading = scene_reading(options, rules.vocabulary)
     scene = read_scene(scenario, options)
     maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
     cheapest = maneuvers.cheapest(number)
-    form = form or format_of(str(output))
-    with output_stream(output) as (stream, name):
+    with output_stream(Path(output)) as (stream, name):
         write_envelopes(maneuvers.graph, cheapest, stream, name, form)
     satisfying = shown_count(maneuvers.satisfying)
-    print_written(f"{len(cheapest):,} of {satisfying} satisfying maneuvers to {output}", output)
+    print_written(
+        f"{len(cheapest):,} of {satisfying} satisfying maneuvers to {output}", Path(output)
+    )
     return ExitStatus.OK if cheapest else ExitStatus.VIOLATED

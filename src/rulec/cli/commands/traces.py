@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 
 import rulec
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import TABLES, chosen_format, output_options
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.diagnostics import SourceLocation
 from rulec.report.text.console import progress
@@ -29,7 +30,7 @@ MOST_TRACES = 10_000_000
 @shared.rulebook_option(
     "Write the traces in this rulebook's words, with the partition that it reads.", required=False
 )
-@shared.output_option
+@output_options(TABLES, "the traces", required=True, former="--format")
 @shared.number_option(
     "--limit",
     "limit",
@@ -42,15 +43,14 @@ MOST_TRACES = 10_000_000
     help="Of recorded traffic: write what its vehicles did, every one or that of --ego, instead of "
     "what ego could do.",
 )
-@shared.table_format_option("traces")
 @scenario_options.drives_options
 def command(
     scenario: str,
     rulebook: str | None,
-    output: Path,
+    output: str,
+    output_format: Format | None,
     limit: int | None,
     recorded: bool,
-    form: Format | None,
     **options: Any,
 ) -> None:
     """Write every maneuver of SCENARIO (a name or a file) as a trace: JSON Lines, CSV or Parquet.
@@ -58,9 +58,10 @@ def command(
     With --recorded, what the vehicles of recorded traffic did. `rulec verify` reads the file. It
     appears whole or not at all.
     """
+    form = cast("Format", chosen_format(TABLES, output, output_format))
     if recorded:
         _write_drives(
-            Path(scenario), output, rulebook=rulebook, limit=limit, form=form, options=options
+            Path(scenario), Path(output), rulebook=rulebook, limit=limit, form=form, options=options
         )
         return
     about = {name: options.pop(name) for name in ("thresholds", "assumed", "as_recorded")}
@@ -69,7 +70,7 @@ def command(
     # Maneuvers and the formats of traces, 130 ms: not for --help, and not for recordings.
     from rulec.monitoring.state_validation import partial_names
     from rulec.planning.product.graph_product import count_paths
-    from rulec.trace.formats.trace_files import format_of, kinds_in, write_traces
+    from rulec.trace.formats.trace_files import kinds_in, write_traces
     from rulec.trace.trace_model import all_traces
 
     scene = scenario_options.read_scene(scenario, options)
@@ -87,12 +88,11 @@ def command(
     wanted = total if limit is None else min(limit, total)
     with progress(f"writing {output}", wanted) as tell:
         traces = _counted_aloud(all_traces(graph, scene.name, wanted), tell)
-        form = form or format_of(str(output))
         kinds = kinds_in(chain.from_iterable(graph.states))
         partial = graph.told is not None or bool(partial_names(chain.from_iterable(graph.states)))
-        with output_stream(output) as (stream, name):
+        with output_stream(Path(output)) as (stream, name):
             write_traces(traces, stream, name, form, kinds, partial=partial)
-    print_written(f"{wanted:,} of {shown_count(total)} traces to {output}", output)
+    print_written(f"{wanted:,} of {shown_count(total)} traces to {output}", Path(output))
 
 
 _OF_DRIVES = {"ego", "thresholds", "assumed", "as_recorded"}
@@ -106,7 +106,7 @@ def _write_drives(
     *,
     rulebook: str | None,
     limit: int | None,
-    form: Format | None,
+    form: Format,
     options: dict[str, Any],
 ) -> None:
     # numpy and shapely, 200 ms: only for recordings.
@@ -114,7 +114,7 @@ def _write_drives(
     from rulec.extraction.to_trace import Drive
     from rulec.recordings.recording_files import read_recording
     from rulec.recordings.recording_messages import NOT_IN_RECORDING
-    from rulec.trace.formats.trace_files import format_of, with_bounds, write_traces
+    from rulec.trace.formats.trace_files import with_bounds, write_traces
     from rulec.trace.vocabulary_projection import MEASURED
 
     if (option := _given_maneuvers_option(options)) is not None:
@@ -144,10 +144,11 @@ def _write_drives(
     if not kinds:
         message = "nobody in this recording drives on a lane"
         raise NOT_IN_RECORDING.error(SourceLocation(str(file)), message)
-    with progress(f"writing {output}", len(result.egos)) as tell:
-        form = form or format_of(str(output))
-        with output_stream(output) as (stream, name):
-            write_traces(traces(), stream, name, form, kinds, partial=True)
+    with (
+        progress(f"writing {output}", len(result.egos)) as tell,
+        output_stream(output) as (stream, name),
+    ):
+        write_traces(traces(), stream, name, form, kinds, partial=True)
     print_written(f"{count:,} drives to {output}", output)
 
 

@@ -3,39 +3,31 @@
 from __future__ import annotations
 
 import os
-import stat
-import sys
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from types import MappingProxyType
-from typing import IO, TYPE_CHECKING, Any, cast
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
-from rulec.cli.output import read_machines
+from rulec.cli.options.output_options import output_options
+from rulec.cli.output import counted, read_machines
+from rulec.cli.verdict_outputs import FORMATS, chosen_sinks, verdict_outputs
 from rulec.diagnostics import RulecError
-from rulec.files import opened
 from rulec.report.findings.diagnostics_text import Complaints
-from rulec.report.text.console import page_width, print_result, progress
+from rulec.report.text.console import page_width, print_aside
 
 if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.extraction.selection import RequestedDrives
-    from rulec.monitoring.assumptions import Assumptions
-    from rulec.monitoring.explain.explanation import Deciding, Explanation
     from rulec.monitoring.verdict import NotJudged, Verdict
-    from rulec.recordings.recording import Recording
-    from rulec.recordings.recording_format import RecordingSource
+    from rulec.recordings.recording_inputs import InputFiles
     from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
     from rulec.trace.trace_model import Ending
 
     Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
+
+MOST_JOBS = 256
 
 
 @click.command()
@@ -44,7 +36,8 @@ if TYPE_CHECKING:
 @shared.number_option(
     "--explain",
     "n_explained",
-    "Explain the first N violations state by state.  [default: 1; with --json 0]",
+    "Explain the first N violations of each file state by state.  [default: 1 of a single file; "
+    "with --json 0]",
 )
 @click.option(
     "--every-part",
@@ -56,7 +49,6 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Count hard rules that are open, for want of values or of an end, as violated.",
 )
-@shared.table_format_option("traces")
 @click.option(
     "--end",
     "ends",
@@ -72,8 +64,17 @@ if TYPE_CHECKING:
     help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
 )
 @scenario_options.drives_options
-@scenario_options.recording_options
-@shared.json_option
+@scenario_options.recording_or_trace_options
+@click.option(
+    "-j",
+    "--jobs",
+    type=click.IntRange(0, MOST_JOBS),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="Judge so many recordings at a time; 0 is as many as there are processors.",
+)
+@output_options(FORMATS, "the answer", json=True, multiple=True)
 @shared.at_option
 def command(
     files: tuple[str, ...],
@@ -81,11 +82,13 @@ def command(
     n_explained: int | None,
     every_part: bool,
     strict: bool,
-    form: Format | None,
     ends: Ending | None,
+    outputs: tuple[str, ...],
+    output_format: str | None,
     json_output: bool,
     at: str,
     egos: tuple[str, ...],
+    jobs: int,
     **options: Any,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
@@ -94,183 +97,83 @@ def command(
     cannot be judged is reported and does not stop the others.
 
     FILE may also be recorded traffic, of any format that `rulec formats` lists. Then every vehicle
-    is judged by what it did, and a table says who violated what.
+    is judged by what it did, and a table says who violated what. A folder is all recordings in and
+    below it, and a pattern such as 'drives/*.xml' all files that are called so; of several there is
+    a line each, and one table of all.
+
+    -o FILE writes the findings, one for each violation and for what is open or not judged: .jsonl,
+    .csv, .parquet, .xml (JUnit), .sarif, .xqar (ASAM's Quality Checker) or .mcap (events beside the
+    recording); with .json verdicts, as --json does, with .txt the text.
 
     Exit status: 0 no hard rule is violated, 1 one is, 2 a trace could not be judged, or no rule.
     """
     # Formats of recordings, 80 ms: not for --help.
-    from rulec.recordings.recording_files import is_recording
+    from rulec.recordings.recording_inputs import input_files
 
+    sinks = chosen_sinks(outputs, output_format, files, json_output=json_output)
+    inputs = input_files(files)
     rules = read_machines(rulebook, at)
-    named = options["input_format"] is not None
-    recordings = [file for file in files if named or is_recording(file)]
+    form = scenario_options.trace_format(options)
+    recordings = _recordings(inputs, form, named=options["input_format"] is not None)
     about = {name: value for name, value in options.items() if name != "assumed"}
+    about["input_format"] = None
     option = scenario_options.given_drives_option({"egos": egos, **about})
-    if option and not recordings:
+    if option and not recordings and not inputs.problems:
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
-    to_explain = n_explained if n_explained is not None else 0 if json_output else 1
-    run = _Run(rules, json_output, Complaints(), to_explain, every_part=every_part, strict=strict)
     if ends is not None and recordings:
         raise click.UsageError("--end is for traces; a recording is always cut.")
-    if recordings:
-        request = scenario_options.requested_drives(egos, options, rules.vocabulary)
-        for file in recordings:
-            run.recordings(scenario_options.recording_source(file, dict(options)), request)
-    if len(recordings) < len(files):
-        assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
-        run.traces([file for file in files if file not in recordings], form, assumed)
-    run.complaints.close()
-    return ExitStatus.after(answered=run.judged and not run.not_answered, failed=run.violated)
+    if len(recordings) > 1 and any(kind == "mcap" for _, kind in sinks):
+        raise click.UsageError("MCAP has one time line: give one recording.")
+    traces = [path for path in inputs.paths if path not in recordings]
+    usual = 0 if json_output or len(inputs.paths) > 1 else 1
+    to_explain = usual if n_explained is None else n_explained
+    for searched in inputs.searched:
+        found = counted(searched.recordings, "recording")
+        more = f", {counted(searched.others, 'other file')} passed over" if searched.others else ""
+        print_aside(f"rulec: {found} in {searched.path}{more}")
+    # Tables of automata and recordings, 250 ms: not for --help.
+    from rulec.batch.recording_judge import JudgeSettings
+    from rulec.cli.recording_run import RecordingRun
+    from rulec.cli.trace_run import TraceRun
+
+    with verdict_outputs(sinks, rules) as to:
+        complaints = Complaints()
+        settings = JudgeSettings(
+            rules,
+            scenario_options.requested_drives(egos, options, rules.vocabulary),
+            scenario_options.recording_source("-", options),
+            to_explain=to_explain,
+            every_part=every_part,
+            width=page_width(),
+            text=to.wants_text,
+            lines=to.wants_lines,
+            findings=to.wants_findings,
+        )
+        recorded = RecordingRun(settings, to, complaints)
+        traced = TraceRun(rules, to, complaints, to_explain, every_part)
+        for problem in inputs.problems:
+            recorded.not_read(problem)
+        if recordings:
+            recorded.files(recordings, jobs or os.cpu_count() or 1)
+        if traces:
+            assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
+            traced.files(traces, form, assumed)
+    complaints.close()
+    violated = bool(recorded.total.violated or traced.counts[False])
+    if strict:
+        violated |= recorded.open_hard or traced.open_hard
+    answered = (recorded.judged or traced.judged) and recorded.complete and not traced.not_judged
+    return ExitStatus.after(answered=answered, failed=violated)
 
 
-@dataclass
-class _Run:
-    """Settings for every file, and the results so far."""
+def _recordings(inputs: InputFiles, form: Format | None, *, named: bool) -> list[str]:
+    """The files that are recorded traffic; with a format that is named, all or none of them."""
+    # Formats of recordings, 80 ms: not for --help.
+    from rulec.recordings.recording_files import is_recording
+    from rulec.recordings.recording_inputs import STANDARD_INPUT
 
-    rules: CompiledRulebook
-    json_output: bool
-    complaints: Complaints
-    to_explain: int
-    every_part: bool
-    strict: bool
-    violated: bool = False
-    judged: bool = False
-    not_answered: bool = False
-
-    def traces(self, files: Sequence[str], form: Format | None, assumed: Assumptions) -> None:
-        """Judge the traces of files, with one summary for all of them."""
-        # Tables of automata and verdicts, 230 ms: not for --help, and not for recordings alone.
-        from rulec.monitoring.batch.batch_verify import rulebook_for
-        from rulec.monitoring.verdict import NotJudged
-        from rulec.report.verdicts import verdict_json, verdict_report
-
-        counts: Counter[bool | None] = Counter()
-        not_judged = 0
-        for traces, place, answer in _answers(files, form, self.rules, assumed):
-            if isinstance(answer, NotJudged):
-                not_judged += 1
-                self._complain(answer.error)
-                if self.json_output:
-                    print_result(verdict_json.not_judged_as_json(answer))
-                continue
-            counts[answer.satisfied] += 1
-            self.violated |= self.strict and any(x.strength == "hard" for x in answer.open)
-            self.judged |= len(answer.not_judged) < max(len(self.rules.rules), 1)
-            if answer.violations or answer.open or answer.not_judged or self.json_output:
-                used = rulebook_for(traces, place, self.rules)
-                # A trace of a table is made only if it is looked at.
-                explained = self._explained(answer, traces[place], used) if self.to_explain else []
-                print_result(
-                    verdict_json.as_json(answer, used, explained)
-                    if self.json_output
-                    else verdict_report.as_text(
-                        answer, used, explained, every_part=self.every_part, width=page_width()
-                    )
-                )
-        if not self.json_output:
-            print_result(verdict_report.summary(counts, not_judged))
-        self.violated |= counts[False] > 0
-
-    def recordings(self, source: RecordingSource, request: RequestedDrives) -> None:
-        """Judge every recording in a file."""
-        # numpy and shapely, 250 ms: only for recordings.
-        from rulec.recordings.recording_files import read_recordings
-
-        try:
-            for recording in read_recordings(source):
-                self._recording(recording, str(source.path), request)
-        except RulecError as error:
-            self._complain(error)
-
-    def _recording(self, recording: Recording, file: str, request: RequestedDrives) -> None:
-        """Judge every drive of a recording. Raises RulecError."""
-        # numpy and shapely, 250 ms: as for ``recordings``.
-        from rulec.extraction import recording_verdicts as recorded
-        from rulec.monitoring.verdict import NotJudged
-        from rulec.report.verdicts import recording_table, verdict_report
-
-        drives = recorded.RecordingVerdicts(recording, self.rules, request, file)
-        tally, blocks = recorded.ViolationTally(), []
-        names = [rule.name for rule in self.rules.rules]
-        with progress(f"judging {file}", len(drives.egos)) as tell:
-            for number, answer in enumerate(drives.answers(), 1):
-                tell(number)
-                tally.add(answer, names)
-                explained: list[Explanation] = []
-                if isinstance(answer, recorded.DriveVerdict):
-                    verdict = answer.answer
-                    if isinstance(verdict, NotJudged):
-                        self._complain(verdict.error)
-                    elif explained := self._explained(
-                        verdict, answer.drive.trace, drives.rules, answer.drive.decided_by
-                    ):
-                        details = verdict_report.as_text(
-                            verdict,
-                            drives.rules,
-                            explained,
-                            every_part=self.every_part,
-                            width=page_width(),
-                            doubts=False,
-                        )
-                        blocks.append(f"\n{details}")
-                if self.json_output:
-                    print_result(recording_table.as_json(answer, drives, explained))
-        if not self.json_output:
-            table, summary = recording_table.as_text(drives, tally), recording_table.summary(tally)
-            print_result("\n".join([table, *blocks, summary]))
-        self.violated |= bool(tally.violated) or (self.strict and bool(tally.open_hard))
-        self.judged |= bool(tally.judged_in) or not names
-        self.not_answered |= not tally.judged
-
-    def _explained(
-        self,
-        verdict: Verdict,
-        trace: Trace | RulecError,
-        rules: CompiledRulebook,
-        decided_by: Mapping[str, Deciding] = MappingProxyType({}),
-    ) -> list[Explanation]:
-        """The first violations explained, as many as are still to be."""
-        # Tables of automata, as for ``traces``.
-        from rulec.monitoring.explain.explanation import explain
-
-        chosen = verdict.violations[: self.to_explain]
-        self.to_explain -= len(chosen)
-        given = cast("Trace", trace)
-        return [explain(violation, given, rules, decided_by) for violation in chosen]
-
-    def _complain(self, error: RulecError) -> None:
-        self.complaints.add(error)
-        self.not_answered = True
-
-
-def _answers(
-    files: Sequence[str], form: Format | None, rules: CompiledRulebook, assumed: Assumptions
-) -> Iterator[Answer]:
-    """Traces, which of them, and its verdict, or why there is none."""
-    # Tables of automata, 160 ms: as for ``_Run.traces``.
-    from rulec.monitoring.batch.batch_verify import verify_items
-    from rulec.monitoring.verdict import NotJudged
-    from rulec.trace.formats.trace_files import format_of, read_chunks
-
-    def answers_in(
-        stream: IO[bytes], name: str, form: Format, size: int | None
-    ) -> Iterator[Answer]:
-        with progress(f"judging {name}", size) as tell:
-            for chunk in read_chunks(stream, name, form):
-                traces, answers = verify_items(assumed.of(chunk), rules)
-                for place, answer in enumerate(answers):
-                    yield traces, place, answer
-                if size is not None:
-                    tell(stream.tell())
-
-    for file in files:
-        try:
-            if file == "-":
-                yield from answers_in(sys.stdin.buffer, "standard input", form or "jsonl", None)
-                continue
-            with opened(Path(file)) as stream:
-                about = os.fstat(stream.fileno())
-                size = about.st_size if stat.S_ISREG(about.st_mode) else None
-                yield from answers_in(stream, file, form or format_of(file), size)
-        except RulecError as error:
-            yield [error], 0, NotJudged(None, error)
+    if form is not None:
+        return []
+    if named:
+        return list(inputs.paths)
+    return [path for path in inputs.paths if path != STANDARD_INPUT and is_recording(path)]

@@ -1,7 +1,6 @@
 """Where an answer goes, and in which format: one rule for all verbs.
 
-The ending of the file decides, `--output-format` where it is given. `--json` is its short form, and
-`--format` what it was called once.
+The ending of the file decides, `--output-format` where it is given, whose short form is `--json`.
 """
 
 from __future__ import annotations
@@ -29,11 +28,20 @@ class _Renamed(click.Option):
             self.opts = shown
 
 
-def input_format_option(names: Sequence[str], what: str) -> Callable[[Decorated], Decorated]:
-    """``--input-format NAME``, once ``--format``."""
+TABLES: Endings = {
+    "jsonl": (".jsonl", ".ndjson"),
+    "csv": (".csv",),
+    "parquet": (".parquet", ".pq"),
+}
+"""The formats of traces and of tables."""
+
+
+def input_format_option(
+    names: Sequence[str], what: str, former: str = ""
+) -> Callable[[Decorated], Decorated]:
+    """``--input-format NAME``, which was called ``former``."""
     return click.option(
-        "--input-format",
-        "--format",
+        *filter(None, ("--input-format", former)),
         "input_format",
         cls=_Renamed,
         metavar="NAME",
@@ -43,26 +51,35 @@ def input_format_option(names: Sequence[str], what: str) -> Callable[[Decorated]
 
 
 def output_options(
-    endings: Endings, what: str, *, required: bool = False, json: bool = False
+    endings: Endings,
+    what: str,
+    *,
+    required: bool = False,
+    json: bool = False,
+    multiple: bool = False,
+    former: str = "",
 ) -> Callable[[Decorated], Decorated]:
     """``-o FILE`` and ``--output-format NAME`` of an answer; with ``json`` also ``--json``.
 
-    ``required``: it goes to a file; standard output has to be asked for.
+    ``required``: it goes to a file; standard output has to be asked for. ``multiple``: to several.
+    ``former`` is what ``--output-format`` was called.
     """
     default = next(iter(endings))
     options = [
         click.option(
             "-o",
             "--output",
+            "outputs" if multiple else "output",
             required=required,
+            multiple=multiple,
             metavar="FILE",
             type=click.Path(dir_okay=False, allow_dash=True),
             help=f"Write {what} to FILE, whose ending says the format; `-` is standard output."
+            + (" May be given several times." if multiple else "")
             + ("" if required else "  [default: standard output]"),
         ),
         click.option(
-            "--output-format",
-            "--format",
+            *filter(None, ("--output-format", former)),
             "output_format",
             cls=_Renamed,
             type=click.Choice(list(endings)),

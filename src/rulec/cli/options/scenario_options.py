@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from rulec.cli.options.output_options import input_format_option
 from rulec.cli.options.shared_options import choice_option, combined
 from rulec.cli.options.shell_completion import complete_scenarios
 from rulec.recordings.format_table import FORMATS
@@ -20,8 +21,12 @@ if TYPE_CHECKING:
     from rulec.monitoring.assumptions import Assumptions
     from rulec.scenario import Scenario
     from rulec.trace import Value
+    from rulec.trace.formats.trace_files import Format
     from rulec.trace.trace_model import Ending
     from rulec.vocabulary import Vocabulary
+
+TRACE_FORMATS: tuple[Format, ...] = ("jsonl", "csv", "parquet")
+"""The formats of traces, which are not imported for --help."""
 
 _WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
 
@@ -48,7 +53,7 @@ def _prediction(
     return fractions
 
 
-recording_options = combined(
+_roads_options = combined(
     [
         click.option(
             "--map",
@@ -60,13 +65,6 @@ recording_options = combined(
             "data the net that they name, or the only one ending in .net.xml beside them]",
         ),
         click.option(
-            "--input-format",
-            metavar="NAME",
-            type=click.Choice([form.name for form in FORMATS]),
-            help="The format of recorded traffic, one of `rulec formats`.  [default: the one that "
-            "the file shows]",
-        ),
-        click.option(
             "--scenario",
             "scenario_id",
             metavar="ID",
@@ -74,7 +72,38 @@ recording_options = combined(
         ),
     ]
 )
+
+_RECORDING_FORMATS = tuple(form.name for form in FORMATS)
+_SHOWN = "[default: the one that the file shows]"
+
+recording_options = combined(
+    [
+        _roads_options,
+        input_format_option(
+            _RECORDING_FORMATS, f"recorded traffic, one of `rulec formats`.  {_SHOWN}"
+        ),
+    ]
+)
 """Where recorded traffic is read from; ``recording_source`` takes their values out."""
+
+recording_or_trace_options = combined(
+    [
+        _roads_options,
+        input_format_option(
+            (*_RECORDING_FORMATS, *TRACE_FORMATS),
+            "traces: jsonl, csv or parquet; or of recorded traffic, one of `rulec formats`.  "
+            "[default: what the file shows, of traces what it ends with, else jsonl]",
+            former="--format",
+        ),
+    ]
+)
+"""The same, for files that may also be traces."""
+
+
+def trace_format(options: Mapping[str, Any]) -> Format | None:
+    """The format of traces that ``--input-format`` names, if it names one."""
+    name = options["input_format"]
+    return name if name in TRACE_FORMATS else None
 
 
 def recording_source(file: str | Path, options: dict[str, Any]) -> RecordingSource:

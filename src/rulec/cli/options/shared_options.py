@@ -110,16 +110,6 @@ def rulebook_option(
     )
 
 
-output_option = click.option(
-    "-o",
-    "--output",
-    required=True,
-    metavar="FILE",
-    type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
-    help="The file to write; `-` is standard output.",
-)
-
-
 def text_output_option(help_text: str = "Write to FILE.") -> Callable[[Decorated], Decorated]:
     """``--output FILE`` of an answer that else goes to standard output."""
     return click.option(
@@ -159,13 +149,3 @@ findings_options = combined(
 """How findings are written, and which of them make the exit status 1."""
 
 json_option = click.option("--json", "json_output", is_flag=True, help="Print JSON.")
-
-
-def table_format_option(content: str) -> Callable[[Decorated], Decorated]:
-    """``--format`` of files of traces and tables."""
-    return click.option(
-        "--format",
-        "form",
-        type=click.Choice(["jsonl", "csv", "parquet"]),
-        help=f"The format of the {content}.  [default: what the file's name ends with, else jsonl]",
-    )

@@ -1,19 +1,16 @@
 """XML as a stream, safe against harmful files and in little memory.
 
 Documents that define entities are refused at the definition, before anything is expanded or
-fetched. Packed files (gzip) are unpacked on the way, up to the same limit.
+fetched. Packed files are unpacked on the way (`rulec.files.opened`), up to the same limit.
 """
 
 from __future__ import annotations
 
-import gzip
-import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, cast
 from xml.parsers.expat import ExpatError, ParserCreate, XMLParserType, errors
 
+from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat, short
 
@@ -21,7 +18,6 @@ LONGEST_TAG = 1_000_000
 """Bytes; expat keeps a tag in memory until it ends."""
 
 _BLOCK = 1 << 16
-_PACKED = b"\x1f\x8b"
 _SUFFIXES = (".xml", ".xml.gz")
 _ENDS_EARLY = (
     errors.XML_ERROR_NO_ELEMENTS,
@@ -107,7 +103,7 @@ def _scan(
         parser.CharacterDataHandler = text
     size = 0
     try:
-        for block in blocks_of(path, form):
+        for block in blocks_of(path):
             size += len(block)
             if size > form.largest_bytes:
                 why = f"it is too large: at most {form.largest_bytes:,} bytes are read"
@@ -146,7 +142,7 @@ def root_of(path: Path, form: XmlFormat) -> str:
     parser.StartElementHandler = root
     size = 0
     try:
-        for block in blocks_of(path, form):
+        for block in blocks_of(path):
             size += len(block)
             _parse(parser, block, path, form)
             if names:
@@ -171,36 +167,19 @@ def is_xml(path: Path) -> bool:
     try:
         if not path.is_file():
             return False  # what comes through a pipe can be read only once
-        with path.open("rb") as stream, _unpacked(stream) as content:
-            start = content.read(64)
-    except (OSError, ValueError, EOFError, zlib.error):
+        with opened(path) as stream:
+            start = stream.read(64)
+    except RulecError:
         return False
     text = start.removeprefix(b"\xef\xbb\xbf").lstrip()
     return text.startswith((b"<", b"\xff\xfe<", b"\xfe\xff\0<"))
 
 
-def blocks_of(path: Path, form: XmlFormat) -> Iterator[bytes]:
-    """The bytes of a file, unpacked, in blocks. Raises RulecError R0610, R0701."""
-    with opened(path) as raw, _unpacked(raw) as stream:
-        try:
-            while block := stream.read(_BLOCK):
-                yield block
-        except EOFError:
-            raise form.refused(path, "it is packed, and ends too soon") from None
-        except (gzip.BadGzipFile, zlib.error):
-            raise form.refused(path, "it is packed, and damaged") from None
-
-
-@contextmanager
-def _unpacked(raw: IO[bytes]) -> Iterator[IO[bytes]]:
-    start = raw.read(len(_PACKED)) if raw.seekable() else b""
-    if raw.seekable():
-        raw.seek(0)
-    if start != _PACKED:
-        yield raw
-        return
-    with gzip.open(raw, "rb") as stream:
-        yield cast("IO[bytes]", stream)
+def blocks_of(path: Path) -> Iterator[bytes]:
+    """The bytes of a file, unpacked, in blocks. Raises RulecError R0701."""
+    with opened(path) as stream:
+        while block := stream.read(_BLOCK):
+            yield block
 
 
 def _parse(parser: XMLParserType, block: bytes, path: Path, form: XmlFormat) -> None:

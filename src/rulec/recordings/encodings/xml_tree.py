@@ -84,7 +84,7 @@ def whole_tree(path: Path, form: XmlFormat, raw: Mapping[str, str]) -> Tree | No
     read.
     """
     data = bytearray()
-    for block in blocks_of(path, form):
+    for block in blocks_of(path):
         data += block
         if len(data) > LARGEST_BYTES:
             return None

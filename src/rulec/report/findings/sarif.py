@@ -79,7 +79,7 @@ def _result(diagnostic: Diagnostic, index: int) -> dict[str, Any]:
 
 
 def _location(place: SourceLocation) -> dict[str, Any]:
-    location: dict[str, Any] = {"artifactLocation": {"uri": _uri(place.file)}}
+    location: dict[str, Any] = {"artifactLocation": {"uri": uri_of(place.file)}}
     if place.line is not None:
         region = {
             "startLine": place.line,
@@ -91,7 +91,7 @@ def _location(place: SourceLocation) -> dict[str, Any]:
     return location
 
 
-def _uri(file: str) -> str:
+def uri_of(file: str) -> str:
     """A file's URI; relative to the working directory if the path is."""
     path = Path(file)
     if path.is_absolute():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
@@ -11,9 +10,7 @@ from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.report.tests.example_text import coverage_lines, failure
-
-_NOT_XML = re.compile("[^\t\n\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""What XML 1.0 cannot hold, not even escaped (section 2.2)."""
+from rulec.report.text.xml_text import HEAD, xml_text
 
 
 def as_junit(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
@@ -21,7 +18,7 @@ def as_junit(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage
     root = ElementTree.Element("testsuites", {"name": "rulec", **_counts(runs)})
     for number, run in enumerate(runs):
         suite = ElementTree.SubElement(
-            root, "testsuite", {"name": _text(run.rulebook.name), **_counts([run])}
+            root, "testsuite", {"name": xml_text(run.rulebook.name), **_counts([run])}
         )
         if covered is not None:
             properties = ElementTree.SubElement(suite, "properties")
@@ -32,10 +29,10 @@ def as_junit(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage
         if covered is not None:
             lines = coverage_lines(covered[number], run.rulebook.vocabulary)
             output = ElementTree.SubElement(suite, "system-out")
-            output.text = _text("\n".join(lines))
+            output.text = xml_text("\n".join(lines))
     ElementTree.indent(root)
     written = ElementTree.tostring(root, encoding="unicode")
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{written}'
+    return f"{HEAD}{written}"
 
 
 def _counts(runs: Sequence[ExampleRun]) -> dict[str, str]:
@@ -53,14 +50,10 @@ def _case(suite: ElementTree.Element, rulebook: str, example_outcome: ExampleOut
     if place is not None:
         attributes |= {"file": place.file, "line": str(place.line)}
     case = ElementTree.SubElement(
-        suite, "testcase", {name: _text(value) for name, value in attributes.items()}
+        suite, "testcase", {name: xml_text(value) for name, value in attributes.items()}
     )
     if not example_outcome.passed:
         problem = failure(example_outcome, rulebook)
-        attributes = {"type": problem.code, "message": _text(problem.message)}
+        attributes = {"type": problem.code, "message": xml_text(problem.message)}
         element = ElementTree.SubElement(case, "failure", attributes)
-        element.text = _text(render_diagnostics([problem], summary=False))
-
-
-def _text(text: str) -> str:
-    return _NOT_XML.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+        element.text = xml_text(render_diagnostics([problem], summary=False))

@@ -45,7 +45,7 @@ def put_result(text: str, output: str | None) -> None:
 
     Raises RulecError R0702.
     """
-    if output is None:
+    if output in (None, "-"):
         print_result(text)
         return
     with written_whole(Path(output)) as stream:

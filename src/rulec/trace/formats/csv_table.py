@@ -58,7 +58,7 @@ def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
         )
     if beginning.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
         return tables.problem(
-            "this is no CSV, but JSON", SourceLocation(file), "add `--format jsonl`"
+            "this is no CSV, but JSON", SourceLocation(file), "add `--input-format jsonl`"
         )
     return None
 

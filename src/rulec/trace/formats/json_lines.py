@@ -118,7 +118,7 @@ def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
             f"these are no traces, but {result.noun}", SourceLocation(place.file), result.help
         )
     if {b"trace", b"step"} <= set(first[:_LONGEST_HEAD_BYTES].strip().split(b",")):
-        return _TRACE.bad("these are no traces in JSON, but CSV", place, "add `--format csv`")
+        return _TRACE.bad("these are no traces in JSON, but CSV", place, "add `--input-format csv`")
     if first.startswith(b"[") and json_line_problems.is_beginning(first):
         message = "these are no traces, a line each, but a list in JSON"
         return _TRACE.bad(message, place, _TRACE.no_list)

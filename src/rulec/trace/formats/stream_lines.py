@@ -67,7 +67,7 @@ _BEGINNINGS = {
     b"\x1f\x8b": Foreign("data compressed with gzip", "unpack it with `gunzip`"),
     b"\x28\xb5\x2f\xfd": Foreign("data compressed with Zstandard", "unpack it with `unzstd`"),
     b"PK\x03\x04": Foreign("a ZIP archive", "unpack it with `unzip`"),
-    b"PAR1": Foreign("Parquet", "add `--format parquet`"),
+    b"PAR1": Foreign("Parquet", "add `--input-format parquet`"),
     b"\xff\xfe": _UTF16,
     b"\xfe\xff": _UTF16,
 }

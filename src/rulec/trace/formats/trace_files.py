@@ -27,8 +27,8 @@ An interval's bounds have names of their own, as columns of tables have.
 
 
 def format_of(file: str) -> Format:
-    """Format by the ending of a file's name, else JSON Lines."""
-    match PurePath(file).suffix.lower():
+    """Format by the ending of a file's name, packed or not, else JSON Lines."""
+    match PurePath(file.lower().removesuffix(".gz")).suffix:
         case ".csv":
             return "csv"
         case ".parquet" | ".pq":

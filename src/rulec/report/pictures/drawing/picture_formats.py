@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import Literal, cast, get_args
+from typing import Literal, cast
 
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
@@ -39,12 +39,6 @@ class Drawing:
     pictures: Sequence[Picture]
     legend: Picture | None = None
     page: Callable[[Theme], str] | None = None
-
-
-def format_of(file: str) -> Format:
-    """The format that a file's name asks for."""
-    ending = Path(file).suffix.lower().lstrip(".")
-    return cast("Format", ending) if ending in get_args(Format) else "svg"
 
 
 def as_bytes(drawing: Drawing, form: str, file: str, theme: Theme = "auto") -> bytes:

@@ -1,0 +1,188 @@
+"""Work in several processes, with results in the order of the tasks."""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from typing import Generic, TypeVar
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+TASKS_AHEAD = 4
+"""So many tasks for each process may be done before an earlier one is."""
+
+MOST_WAITING = 256
+"""A task whose results are not wanted yet pauses once so many of them wait."""
+
+_STOP_S = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class LostTask:
+    """A task whose process was killed, by a signal for one, before it was done."""
+
+    signal_number: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Raised:
+    """What a task raised, which is a mistake of the program's."""
+
+    error: Exception
+
+
+class _Done:
+    """The end of a task's results."""
+
+
+def in_order(
+    work: Callable[[Task], Iterator[Result]],
+    tasks: Sequence[Task],
+    jobs: int,
+    tell: Callable[[int], object],
+) -> Iterator[tuple[Task, Result | LostTask]]:
+    """Every task with each of its results, in the order of the tasks.
+
+    ``work`` goes to other processes, so it has to be a function of a module, or a partial one. With
+    one job, or one task, it is called here. ``tell`` is told how many tasks are done.
+    """
+    if min(jobs, len(tasks)) <= 1:
+        for number, task in enumerate(tasks, 1):
+            for result in work(task):
+                yield task, result
+            tell(number)
+        return
+    pool = _Pool(work, tasks, min(jobs, len(tasks)))
+    try:
+        for number, task in enumerate(tasks):
+            for found in pool.results(number):
+                if isinstance(found, _Raised):
+                    raise found.error
+                yield task, found
+            tell(number + 1)
+    finally:
+        pool.stop()
+
+
+class _Worker(Generic[Task, Result]):
+    """A process, and the number of the task that it works on."""
+
+    def __init__(self, work: Callable[[Task], Iterator[Result]]) -> None:
+        # A forked process would have locks of threads that are not in it.
+        context = multiprocessing.get_context("spawn")
+        self.connection, theirs = context.Pipe()
+        self.process: BaseProcess = context.Process(target=_serve, args=(work, theirs), daemon=True)
+        self.process.start()
+        theirs.close()
+        self.number: int | None = None
+
+
+class _Pool(Generic[Task, Result]):
+    """Processes, and the results that are not yet wanted, by the number of their task."""
+
+    def __init__(
+        self, work: Callable[[Task], Iterator[Result]], tasks: Sequence[Task], jobs: int
+    ) -> None:
+        self._work = work
+        self._tasks = tasks
+        self._jobs = jobs
+        self._workers: list[_Worker[Task, Result]] = []
+        self._next = 0
+        self._waiting: dict[int, deque[object]] = {}
+
+    def results(self, number: int) -> Iterator[Result | LostTask | _Raised]:
+        """The results of a task; those of later ones are kept meanwhile."""
+        while True:
+            self._hand_out(number)
+            waiting = self._waiting[number]
+            while waiting:
+                result = waiting.popleft()
+                if isinstance(result, _Done):
+                    del self._waiting[number]
+                    return
+                yield result  # type: ignore[misc]
+            self._receive(number)
+
+    def stop(self) -> None:
+        """End all processes, whatever they are doing."""
+        for worker in self._workers:
+            worker.process.terminate()
+            worker.connection.close()
+        for worker in self._workers:
+            worker.process.join(_STOP_S)
+            if worker.process.exitcode is None:
+                worker.process.kill()
+                worker.process.join()
+
+    def _hand_out(self, wanted: int) -> None:
+        """Give tasks to processes that have none."""
+        last = min(len(self._tasks), wanted + self._jobs * TASKS_AHEAD)
+        while self._next < last:
+            worker = next((one for one in self._workers if one.number is None), None)
+            if worker is None:
+                if len(self._workers) == self._jobs:
+                    return
+                worker = _Worker(self._work)
+                self._workers.append(worker)
+            worker.number = self._next
+            self._waiting[self._next] = deque()
+            self._next += 1
+            try:
+                worker.connection.send(self._tasks[worker.number])
+            except OSError:
+                self._lose(worker)
+
+    def _receive(self, wanted: int) -> None:
+        """Wait for results of some process, and take one from each that has some."""
+        busy = {
+            worker.connection: worker
+            for worker in self._workers
+            if worker.number is not None
+            and (worker.number == wanted or len(self._waiting[worker.number]) < MOST_WAITING)
+        }
+        for connection in wait(list(busy)):
+            worker = busy[connection]  # type: ignore[index]
+            assert worker.number is not None, "it is busy"
+            try:
+                result = worker.connection.recv()
+            except (EOFError, OSError):
+                self._lose(worker)
+                continue
+            self._waiting[worker.number].append(result)
+            if isinstance(result, _Done):
+                worker.number = None
+
+    def _lose(self, worker: _Worker[Task, Result]) -> None:
+        """Note that a process is gone; another one takes its place where there is work."""
+        assert worker.number is not None, "it was busy"
+        worker.process.join(_STOP_S)
+        code = worker.process.exitcode
+        killed = -code if code is not None and code < 0 else None
+        self._waiting[worker.number] += (LostTask(killed), _Done())
+        self._workers.remove(worker)
+        worker.connection.close()
+
+
+def _serve(work: Callable[[Task], Iterator[Result]], connection: Connection) -> None:
+    """Do tasks until nobody is there to give any."""
+    # Ctrl-C goes to all processes of a terminal; it is for the first one to end the others.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        while True:
+            task = connection.recv()
+            try:
+                for result in work(task):
+                    connection.send(result)
+            except OSError:
+                raise
+            except Exception as error:
+                connection.send(_Raised(error))
+            connection.send(_Done())
+    except (EOFError, OSError):
+        return

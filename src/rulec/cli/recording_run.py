@@ -1,0 +1,112 @@
+"""Files of recorded traffic, judged one after the other or side by side."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from rulec.batch.recording_batch import judged_files
+from rulec.batch.recording_judge import (
+    DriveProblem,
+    JudgedRecording,
+    JudgeSettings,
+    Piece,
+    in_a_line,
+    judge_aloud,
+)
+from rulec.cli.verdict_outputs import VerdictOutputs
+from rulec.diagnostics import RulecError
+from rulec.recordings.recording_inputs import STANDARD_INPUT
+from rulec.report.findings.diagnostics_text import Complaints
+from rulec.report.text.console import progress
+from rulec.report.verdict_findings.found_in_drives import not_judged_file
+from rulec.report.verdicts.batch_table import BatchTally, as_text
+from rulec.report.verdicts.recording_table import summary
+
+
+@dataclass
+class RecordingRun:
+    """Judges files of recorded traffic, and adds up what comes out."""
+
+    settings: JudgeSettings
+    to: VerdictOutputs
+    complaints: Complaints
+    total: BatchTally = field(default_factory=BatchTally)
+    unread: list[str] = field(default_factory=list)
+    judged: bool = False
+    complete: bool = True
+    open_hard: bool = False
+
+    def files(self, paths: Sequence[str], jobs: int) -> None:
+        """Judge files, with one table for all of them if there are several."""
+        with _without_standard_input(paths) as (files, labels):
+            self.settings = replace(self.settings, labels=labels)
+            several = len(files) > 1
+            for file, piece in self._aloud(files, jobs):
+                self._take(labels.get(file, file), piece, several=several)
+        if several or self.total.judged_recordings > 1:
+            self.to.text(f"\n{as_text(self.total, self.settings.rules, self.unread)}")
+
+    def not_read(self, error: RulecError, file: str = "") -> None:
+        """Note that a file, by default the one that the error is about, could not be read."""
+        self.complete = False
+        self.complaints.add(error)
+        place = error.diagnostics[0].place
+        file = file or (place.file if place is not None else "")
+        if file not in self.unread:
+            self.unread.append(file)
+            if self.to.wants_findings:
+                self.to.found(not_judged_file(file, error, self.settings.rules.name))
+
+    def _aloud(self, files: Sequence[str], jobs: int) -> Iterator[tuple[str, Piece]]:
+        """The pieces of all files, and how far it is."""
+        if len(files) > 1:
+            with progress(f"judging {len(files):,} files", len(files)) as tell:
+                yield from judged_files(self.settings, files, jobs, tell)
+            return
+        (file,) = files
+        with progress(f"judging {self.settings.labels.get(file, file)}", 1) as tell:
+            for piece in judge_aloud(self.settings, file, lambda done, all_: tell(done / all_)):
+                yield file, piece
+
+    def _take(self, file: str, piece: Piece, *, several: bool) -> None:
+        if isinstance(piece, str):
+            self.to.line(piece)
+        elif isinstance(piece, DriveProblem):
+            self.complete = False
+            self.complaints.add(piece.error)
+        elif isinstance(piece, JudgedRecording):
+            self.total.add(piece.file, piece.tally)
+            self.judged |= bool(piece.tally.judged_in) or not self.settings.rules.rules
+            self.complete &= bool(piece.tally.judged)
+            self.open_hard |= bool(piece.tally.open_hard)
+            if self.to.wants_text:
+                first = in_a_line(piece) if several else piece.table
+                last = [] if several else [summary(piece.tally)]
+                self.to.text("\n".join([first, *piece.explained, *last]))
+            if piece.found is not None:
+                self.to.found(piece.found)
+        else:
+            self.not_read(piece, file)
+
+
+@contextmanager
+def _without_standard_input(
+    paths: Sequence[str],
+) -> Iterator[tuple[list[str], dict[str, str]]]:
+    """The files, standard input being written to one, and what that is called."""
+    if STANDARD_INPUT not in paths:
+        yield list(paths), {}
+        return
+    # Recordings are read more than once, and from the middle.
+    with TemporaryDirectory(prefix="rulec-") as folder:
+        file = Path(folder, "standard input")
+        with file.open("wb") as copy:
+            shutil.copyfileobj(sys.stdin.buffer, copy)
+        names = [str(file) if path == STANDARD_INPUT else path for path in paths]
+        yield names, {str(file): "standard input"}

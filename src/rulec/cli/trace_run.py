@@ -1,0 +1,137 @@
+"""Traces of files, judged one after the other."""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from io import UnsupportedOperation
+from pathlib import Path
+from typing import IO, Any, cast
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.cli.verdict_outputs import VerdictOutputs
+from rulec.diagnostics import RulecError
+from rulec.files import opened
+from rulec.monitoring.assumptions import Assumptions
+from rulec.monitoring.batch.batch_verify import rulebook_for, verify_items
+from rulec.monitoring.explain.explanation import Explanation, explain
+from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.report.findings.diagnostics_text import Complaints
+from rulec.report.text.console import page_width, progress
+from rulec.report.verdict_findings.found_in_traces import not_judged_trace, trace_findings
+from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
+from rulec.report.verdicts import verdict_json, verdict_report
+from rulec.trace import Trace
+from rulec.trace.formats.trace_files import Format, format_of, read_chunks
+
+Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
+"""Traces, which of them, and its verdict, or why there is none."""
+
+
+@dataclass
+class TraceRun:
+    """Judges the traces of files, and adds up what comes out.
+
+    The first ``to_explain`` violations of each file are explained.
+    """
+
+    rules: CompiledRulebook
+    to: VerdictOutputs
+    complaints: Complaints
+    to_explain: int
+    every_part: bool
+    counts: Counter[bool | None] = field(default_factory=Counter)
+    not_judged: int = 0
+    judged: bool = False
+    open_hard: bool = False
+
+    def files(self, files: Sequence[str], form: Format | None, assumed: Assumptions) -> None:
+        """Judge the traces of files, with one summary for all of them."""
+        for file in files:
+            findings: list[VerdictFinding] = []
+            left, traces_before = self.to_explain, self.counts.total()
+            for traces, place, answer in _answers(file, form, self.rules, assumed):
+                if isinstance(answer, NotJudged):
+                    self._not_judged(file, answer, findings)
+                else:
+                    left -= self._judged(file, (traces, place, answer), left, findings)
+            if self.to.wants_findings:
+                drives = self.counts.total() - traces_before
+                self.to.found(FoundInRecording(file, "", drives, tuple(findings)))
+        self.to.text(verdict_report.summary(self.counts, self.not_judged))
+
+    def _not_judged(self, file: str, answer: NotJudged, findings: list[VerdictFinding]) -> None:
+        self.not_judged += 1
+        self.complaints.add(answer.error)
+        if self.to.wants_lines:
+            self.to.line(verdict_json.not_judged_as_json(answer))
+        if self.to.wants_findings:
+            findings.append(not_judged_trace(file, answer, self.rules.name))
+
+    def _judged(self, file: str, answer: Any, left: int, findings: list[VerdictFinding]) -> int:
+        """Say a verdict; how many violations have been explained."""
+        traces, place, verdict = answer
+        self.counts[verdict.satisfied] += 1
+        self.open_hard |= any(result.strength == "hard" for result in verdict.open)
+        self.judged |= len(verdict.not_judged) < max(len(self.rules.rules), 1)
+        says = bool(verdict.violations or verdict.open or verdict.not_judged)
+        if not says and not self.to.wants_lines:
+            return 0
+        used = rulebook_for(traces, place, self.rules)
+        explained: list[Explanation] = []
+        # A trace of a table is made only if it is looked at.
+        if left and verdict.violations:
+            trace = cast("Trace", traces[place])
+            explained = [explain(one, trace, used) for one in verdict.violations[:left]]
+        if self.to.wants_lines:
+            self.to.line(verdict_json.as_json(verdict, used, explained))
+        if says and self.to.wants_text:
+            text = verdict_report.as_text(
+                verdict, used, explained, every_part=self.every_part, width=page_width()
+            )
+            self.to.text(text)
+        if self.to.wants_findings:
+            findings += trace_findings(file, traces[place], verdict, used, explained)
+        return len(explained)
+
+
+def _answers(
+    file: str, form: Format | None, rules: CompiledRulebook, assumed: Assumptions
+) -> Iterator[Answer]:
+    try:
+        if file == "-":
+            stream = sys.stdin.buffer
+            yield from _in_stream(stream, "standard input", form or "jsonl", rules, assumed)
+            return
+        with opened(Path(file)) as stream:
+            yield from _in_stream(stream, file, form or format_of(file), rules, assumed)
+    except RulecError as error:
+        yield [error], 0, NotJudged(None, error)
+
+
+def _in_stream(
+    stream: IO[bytes], name: str, form: Format, rules: CompiledRulebook, assumed: Assumptions
+) -> Iterator[Answer]:
+    size = _size(stream)
+    with progress(f"judging {name}", size) as tell:
+        for chunk in read_chunks(stream, name, form):
+            traces, answers = verify_items(assumed.of(chunk), rules)
+            for place, answer in enumerate(answers):
+                yield traces, place, answer
+            if size is not None:
+                tell(stream.tell())
+
+
+def _size(stream: IO[bytes]) -> int | None:
+    """Bytes of a file; None of a pipe, and of what is packed."""
+    if stream is sys.stdin.buffer:
+        return None
+    try:
+        about = os.fstat(stream.fileno())
+    except UnsupportedOperation:
+        return None
+    return about.st_size if stat.S_ISREG(about.st_mode) else None

@@ -1,0 +1,116 @@
+"""The files that are meant by paths, folders and patterns."""
+
+from __future__ import annotations
+
+import glob
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.file_messages import UNREADABLE_FILE
+from rulec.recordings.format_table import FORMATS
+from rulec.recordings.recording_format import RECORDING, Glance
+
+STANDARD_INPUT = "-"
+
+
+@dataclass(frozen=True, slots=True)
+class SearchedFolder:
+    """A folder that was searched: how many recordings it has, and how many other files."""
+
+    path: str
+    recordings: int
+    others: int
+
+
+@dataclass(frozen=True, slots=True)
+class InputFiles:
+    """What was meant: ``paths`` in order, each once, and why others cannot be meant."""
+
+    paths: tuple[str, ...]
+    searched: tuple[SearchedFolder, ...] = ()
+    problems: tuple[RulecError, ...] = ()
+
+
+def input_files(arguments: Sequence[str]) -> InputFiles:
+    """The files that are meant by these arguments, of which nothing else is read yet.
+
+    A folder stands for all recordings in and below it, by name; hidden folders, maps and files that
+    are read along with others are passed over. Where no file is called so, ``*``, ``?`` and ``[…]``
+    are wild, and ``**`` is any number of folders. Everything else is a file, ``-`` standard input.
+    """
+    paths: dict[str, None] = {}
+    searched: list[SearchedFolder] = []
+    problems: list[RulecError] = []
+    for argument in arguments:
+        for path in _matching(argument, problems):
+            if path == STANDARD_INPUT or not _is_searched(Path(path)):
+                paths[path] = None
+                continue
+            found, others = _recordings_below(path)
+            if not found:
+                why = "there is no recorded traffic in this folder, nor below it"
+                problems.append(RECORDING.refused(Path(path), why))
+            paths |= dict.fromkeys(found)
+            searched.append(SearchedFolder(path, len(found), others))
+    return InputFiles(tuple(paths), tuple(searched), tuple(problems))
+
+
+def _matching(argument: str, problems: list[RulecError]) -> Sequence[str]:
+    """The paths that a pattern matches, in order; anything else as it is."""
+    if not glob.has_magic(argument) or os.path.lexists(argument):
+        return [argument]
+    # As the shell does it: what begins with a point has to be named so.
+    found = sorted(glob.glob(argument, recursive=True))  # noqa: PTH207
+    # What is in a folder that matches, too, counts as the folder's.
+    files = [path for path in found if not Path(path).is_dir()]
+    if not found:
+        message = "no file is called like that; `*`, `?` and `[…]` stand for other letters"
+        problems.append(
+            UNREADABLE_FILE.error(
+                SourceLocation(argument), message, help="check the pattern and the working folder"
+            )
+        )
+    return files or found
+
+
+def _is_searched(path: Path) -> bool:
+    """True for a folder, unless that is itself a recording of some format."""
+    return path.is_dir() and not _is_recording(path)
+
+
+def _recordings_below(folder: str) -> tuple[list[str], int]:
+    """The recordings in and below a folder, by name, and the number of other files."""
+    found: list[str] = []
+    others = 0
+    for path in _walk(folder):
+        if _is_recording(path):
+            found.append(str(path))
+        else:
+            others += 1
+    return found, others
+
+
+def _walk(folder: str) -> Iterator[Path]:
+    """Files, and folders that are recordings, in and below a folder; links are not followed."""
+    for at, folders, names in os.walk(folder):
+        kept = sorted(name for name in folders if not name.startswith("."))
+        whole = [name for name in kept if _is_recording(Path(at, name))]
+        folders[:] = [name for name in kept if name not in whole]
+        files = (name for name in names if name[0] != "." and Path(at, name).is_file())
+        yield from (Path(at, name) for name in sorted([*whole, *files]))
+
+
+def _is_recording(path: Path) -> bool:
+    """True for what some format recognises, unless it is read along with another file.
+
+    A file that cannot be looked at is one, so that whoever reads it says why it cannot.
+    """
+    glance = Glance(path)
+    try:
+        form = next((form for form in FORMATS if form.recognises(glance)), None)
+        return form is not None and not form.is_companion(glance)
+    except RulecError:
+        return not path.is_dir()

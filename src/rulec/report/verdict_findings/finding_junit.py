@@ -1,0 +1,83 @@
+"""Findings of verdicts as JUnit XML, for continuous integration."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import IO
+from xml.etree import ElementTree
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.report.text.xml_text import HEAD, element, written, xml_text
+from rulec.report.verdict_findings.verdict_finding import (
+    FindingsOf,
+    FoundInRecording,
+    VerdictFinding,
+)
+
+
+class JUnitWriter:
+    """A suite for each recording, in it a case for each rule.
+
+    A case fails if a hard rule is violated, as the exit status does; what soft rules find is its
+    output. It is skipped if the rule could be judged for nobody.
+    """
+
+    def __init__(self, stream: IO[bytes], about: FindingsOf) -> None:
+        self._stream = stream
+        self._about = about
+        stream.write(f'{HEAD}<testsuites name="rulec">\n'.encode())
+
+    def add(self, found: FoundInRecording) -> None:
+        """Write the suite of a recording."""
+        by_rule: dict[str, list[VerdictFinding]] = {}
+        for finding in found.findings:
+            by_rule.setdefault(finding.rule, []).append(finding)
+        suite = element(None, "testsuite", name=found.title)
+        name = self._about.rulebook.name
+        if found.failure:
+            case = element(suite, "testcase", classname=name, name="reading", file=found.file)
+            element(case, "error", type="not judged", message=found.failure)
+        else:
+            for rule in self._about.rules.values():
+                _case(suite, name, rule, by_rule.get(rule.name, ()), found)
+            lines = [f"{one.vehicle}: not judged: {one.because}" for one in by_rule.get("", ())]
+            if lines:
+                element(suite, "system-out").text = xml_text("\n".join(lines))
+        counts = {
+            "tests": len(suite.findall("testcase")),
+            "failures": len(suite.findall("testcase/failure")),
+            "errors": len(suite.findall("testcase/error")),
+            "skipped": len(suite.findall("testcase/skipped")),
+        }
+        suite.attrib.update({name: str(number) for name, number in counts.items()})
+        self._stream.write(written(suite, 1))
+
+    def close(self) -> None:
+        """Write the end."""
+        self._stream.write(b"</testsuites>\n")
+
+
+def _case(
+    suite: ElementTree.Element,
+    rulebook: str,
+    rule: CompiledRule,
+    findings: Sequence[VerdictFinding],
+    found: FoundInRecording,
+) -> None:
+    case = element(suite, "testcase", classname=rulebook, name=rule.name, file=found.file)
+    violated = [one for one in findings if one.outcome == "violated"]
+    others = [one for one in findings if one.outcome == "open"]
+    nowhere = [one for one in findings if one.outcome == "not_judged" and not one.vehicle]
+    lines = [one.says for one in violated]
+    if violated and rule.strength == "hard":
+        drives = len({one.vehicle for one in violated})
+        what = f"violated in {drives:,} of {found.drives:,} drives"
+        failure = element(case, "failure", type="hard rule", message=f"{what}: {lines[0]}")
+        failure.text = xml_text("\n".join(lines))
+        lines = []
+    elif nowhere and not violated and not others:
+        words = ", ".join(nowhere[0].open_on)
+        element(case, "skipped", message=nowhere[0].because or f"not told: {words}")
+    lines += [one.says for one in others]
+    if lines:
+        element(case, "system-out").text = xml_text("\n".join(lines))

@@ -1,0 +1,192 @@
+"""Findings of verdicts as events in MCAP, which viewers show beside the recording.
+
+What Lichtblick and Foxglove show is of their types ``foxglove.Log`` and ``foxglove.SceneUpdate``:
+https://docs.foxglove.dev/docs/sdk/schemas. Places are in the frame that viewers of OSI call global.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import IO, Any
+
+from rulec.diagnostics import SourceLocation
+from rulec.file_messages import UNWRITABLE_FILE
+from rulec.report.verdict_findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
+from rulec.report.verdict_findings.verdict_finding import (
+    COLUMNS,
+    FindingsOf,
+    FoundInRecording,
+    VerdictFinding,
+    as_json,
+)
+
+FRAME = "global"
+"""The frame of the recording's coordinates, as the converter of OSI for viewers has it."""
+
+LEAST_SHOWN_S = 1.0
+"""A violation of one moment is shown for so long."""
+
+_NS = 1_000_000_000
+_TEXT_HEIGHT_M = 3.0
+_LEVELS = {"hard": 4, "soft": 3}
+_INFO = 2
+_COLOURS = {"hard": (0.84, 0.15, 0.16, 1.0), "soft": (0.93, 0.6, 0.0, 1.0)}
+
+
+class McapWriter:
+    """Three topics: each finding as data, as a line of a log, and as a label where the vehicle is.
+
+    A file has one time line, so it is about one recording.
+    """
+
+    def __init__(self, stream: IO[bytes], about: FindingsOf, name: str) -> None:
+        self._stream = stream
+        self._about = about
+        self._name = name
+        self._found: FoundInRecording | None = None
+
+    def add(self, found: FoundInRecording) -> None:
+        """Keep the findings of the recording. Raises RulecError R0702 for a second one."""
+        if self._found is not None:
+            raise UNWRITABLE_FILE.error(
+                SourceLocation(self._name),
+                "MCAP has one time line, and there are several recordings to write into the file",
+                help="give one recording, or choose one with --scenario",
+            )
+        self._found = found
+
+    def close(self) -> None:
+        """Write the file."""
+        found = self._found or FoundInRecording("", "", 0, ())
+        not_judged = sorted({one.rule for one in found.findings if one.outcome == "not_judged"})
+        about = {
+            "file": found.file,
+            "recording": found.recording,
+            "rulebook": self._about.rulebook.name,
+            "drives": str(found.drives),
+            "not_judged": ", ".join(name for name in not_judged if name),
+        }
+        messages = (one for finding in found.findings for one in _messages(finding))
+        write_mcap(
+            self._stream, f"rulec {self._about.version}", _channels(), messages, {"rulec": about}
+        )
+
+
+def _channels() -> tuple[JsonChannel, ...]:
+    return (
+        JsonChannel("/rulec/findings", "rulec.Finding", json.dumps(_FINDING)),
+        JsonChannel("/rulec/log", "foxglove.Log", json.dumps(_LOG)),
+        JsonChannel("/rulec/scene", "foxglove.SceneUpdate", json.dumps(_SCENE_UPDATE)),
+    )
+
+
+def _messages(finding: VerdictFinding) -> Iterator[TimedMessage]:
+    """The messages of a finding; what has no time is none."""
+    if finding.from_s is None:
+        return
+    begin_ns = max(0, round(finding.from_s * _NS))
+    yield TimedMessage(0, begin_ns, as_json(finding))
+    yield TimedMessage(1, begin_ns, json.dumps(_log(finding, begin_ns)))
+    if finding.outcome == "violated" and finding.x is not None and finding.y is not None:
+        yield TimedMessage(2, begin_ns, json.dumps(_scene_update(finding, begin_ns)))
+
+
+def _log(finding: VerdictFinding, begin_ns: int) -> dict[str, Any]:
+    return {
+        "timestamp": _time(begin_ns),
+        "level": _LEVELS[finding.strength] if finding.outcome == "violated" else _INFO,
+        "message": finding.says,
+        "name": f"rulec {finding.rulebook}",
+        "file": finding.file,
+        "line": 0,
+    }
+
+
+def _scene_update(finding: VerdictFinding, begin_ns: int) -> dict[str, Any]:
+    lasts_s = max((finding.to_s or 0.0) - (finding.from_s or 0.0), LEAST_SHOWN_S)
+    position = {"x": finding.x, "y": finding.y, "z": _TEXT_HEIGHT_M}
+    label = {
+        "pose": {"position": position, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}},
+        "billboard": True,
+        "font_size": 14,
+        "scale_invariant": True,
+        "color": dict(zip("rgba", _COLOURS[finding.strength], strict=True)),
+        "text": finding.says,
+    }
+    entity = {
+        "timestamp": _time(begin_ns),
+        "frame_id": FRAME,
+        "id": "/".join((finding.rule, finding.vehicle, *finding.other)),
+        "lifetime": _time(round(lasts_s * _NS)),
+        "frame_locked": False,
+        "metadata": [
+            {"key": "rule", "value": finding.rule},
+            {"key": "provision", "value": finding.provision},
+        ],
+        **{name: [] for name in _NO_SHAPES},
+        "texts": [label],
+    }
+    return {"deletions": [], "entities": [entity]}
+
+
+def _time(time_ns: int) -> dict[str, int]:
+    return {"sec": time_ns // _NS, "nsec": time_ns % _NS}
+
+
+_NO_SHAPES = ("arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "models")
+
+
+def _object(**properties: Any) -> dict[str, Any]:
+    return {"type": "object", "properties": properties}
+
+
+def _list(items: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "array", "items": items}
+
+
+_NUMBER, _WHOLE, _STRING, _YES_OR_NO = (
+    {"type": name} for name in ("number", "integer", "string", "boolean")
+)
+_TYPES = {str: _STRING, float: _NUMBER, list: _list(_STRING)}
+_FINDING = {
+    "title": "rulec.Finding",
+    # Viewers know no alternatives: what may be null is of its other type here.
+    **_object(version=_WHOLE, **{name: _TYPES[kind] for name, kind in COLUMNS.items()}),
+}
+_TIME = _object(sec=_WHOLE, nsec=_WHOLE)
+_LOG = {
+    "title": "foxglove.Log",
+    **_object(
+        timestamp=_TIME, level=_WHOLE, message=_STRING, name=_STRING, file=_STRING, line=_WHOLE
+    ),
+}
+_POSE = _object(
+    position=_object(x=_NUMBER, y=_NUMBER, z=_NUMBER),
+    orientation=_object(x=_NUMBER, y=_NUMBER, z=_NUMBER, w=_NUMBER),
+)
+_LABEL = _object(
+    pose=_POSE,
+    billboard=_YES_OR_NO,
+    font_size=_NUMBER,
+    scale_invariant=_YES_OR_NO,
+    color=_object(r=_NUMBER, g=_NUMBER, b=_NUMBER, a=_NUMBER),
+    text=_STRING,
+)
+_ENTITY = _object(
+    timestamp=_TIME,
+    frame_id=_STRING,
+    id=_STRING,
+    lifetime=_TIME,
+    frame_locked=_YES_OR_NO,
+    metadata=_list(_object(key=_STRING, value=_STRING)),
+    **{name: _list({"type": "object"}) for name in _NO_SHAPES},
+    texts=_list(_LABEL),
+)
+_SCENE_UPDATE = {
+    "title": "foxglove.SceneUpdate",
+    **_object(
+        deletions=_list(_object(timestamp=_TIME, type=_WHOLE, id=_STRING)),
+        entities=_list(_ENTITY),
+    ),
+}

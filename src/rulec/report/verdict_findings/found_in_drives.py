@@ -1,0 +1,124 @@
+"""The findings of recorded drives."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.diagnostics import RulecError
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
+from rulec.extraction.to_trace import Drive
+from rulec.extraction.violation_evidence import evidence_of
+from rulec.monitoring.explain.explanation import Explanation
+from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Violation
+from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
+
+
+@dataclass
+class DriveFindings:
+    """The findings of a recording, gathered drive by drive."""
+
+    verdicts: RecordingVerdicts
+    file: str
+    _found: list[VerdictFinding] = field(default_factory=list)
+    _not_judged: dict[str, dict[str, RuleNotJudged]] = field(default_factory=dict)
+    _drives: Counter[bool] = field(default_factory=Counter)
+
+    def add(self, result: DriveVerdict | NoDrive, explained: list[Explanation]) -> None:
+        """Take what was found of a drive; ``explained`` are its first violations."""
+        if isinstance(result, NoDrive):
+            own = self._own(vehicle=result.ego, because=result.why)
+            self._found.append(VerdictFinding(outcome="not_judged", **own))
+            return
+        drive, answer = result.drive, result.answer
+        if isinstance(answer, NotJudged):
+            why = answer.error.diagnostics[0].message
+            own = self._own(vehicle=drive.trace.id, because=why)
+            self._found.append(VerdictFinding(outcome="not_judged", **own))
+            return
+        self._drives[True] += 1
+        for number, violation in enumerate(answer.violations):
+            explanation = explained[number] if number < len(explained) else None
+            self._found.append(self._violated(violation, drive, explanation))
+        rules = {rule.name: rule for rule in self.verdicts.rules.rules}
+        for result_ in answer.open:
+            own = self._about(rules[result_.rule])
+            self._found.append(
+                VerdictFinding(
+                    outcome="open",
+                    vehicle=drive.trace.id,
+                    other=tuple(result_.binding.values()),
+                    from_s=drive.time_s(0),
+                    to_s=drive.time_s(None),
+                    open_on=tuple(result_.depends_on),
+                    because=", ".join(result_.because),
+                    **own,
+                )
+            )
+        for rule in answer.not_judged:
+            self._not_judged.setdefault(rule.rule, {})[drive.trace.id] = rule
+
+    def whole(self) -> FoundInRecording:
+        """All findings; a rule that is judged in no drive is one finding."""
+        drives = self._drives[True]
+        return FoundInRecording(
+            self.file,
+            self.verdicts.recording.name,
+            drives,
+            (*self._found, *self._rules_not_judged(drives)),
+        )
+
+    def _rules_not_judged(self, drives: int) -> Iterator[VerdictFinding]:
+        rules = {rule.name: rule for rule in self.verdicts.rules.rules}
+        for name, by_drive in self._not_judged.items():
+            everywhere = len(by_drive) == drives
+            for vehicle, rule in [*by_drive.items()][: 1 if everywhere else None]:
+                yield VerdictFinding(
+                    outcome="not_judged",
+                    vehicle="" if everywhere else vehicle,
+                    open_on=tuple(rule.untold),
+                    because=rule.why,
+                    **self._about(rules[name]),
+                )
+
+    def _own(self, **fields: Any) -> dict[str, Any]:
+        where = {"file": self.file, "recording": self.verdicts.recording.name}
+        return {**where, "rulebook": self.verdicts.rules.name, **fields}
+
+    def _about(self, rule: CompiledRule) -> dict[str, Any]:
+        return self._own(rule=rule.name, provision=rule.cite, strength=rule.strength)
+
+    def _violated(
+        self, violation: Violation, drive: Drive, explanation: Explanation | None
+    ) -> VerdictFinding:
+        verdicts = self.verdicts
+        evidence = evidence_of(
+            violation, drive, verdicts.rules, verdicts.request.assumed, explanation
+        )
+        margin = min(evidence.margins, key=lambda one: one.by, default=None)
+        rules = {rule.name: rule for rule in verdicts.rules.rules}
+        return VerdictFinding(
+            outcome="violated",
+            vehicle=drive.trace.id,
+            other=tuple(violation.binding.values()),
+            from_s=evidence.from_s,
+            to_s=evidence.to_s,
+            by=None if margin is None else margin.by,
+            unit="" if margin is None else margin.unit,
+            measure="" if margin is None else str(margin),
+            x=None if evidence.place is None else evidence.place.x,
+            y=None if evidence.place is None else evidence.place.y,
+            lanelet="" if evidence.place is None else evidence.place.lanelet,
+            **self._about(rules[violation.rule]),
+        )
+
+
+def not_judged_file(file: str, error: RulecError, rulebook: str) -> FoundInRecording:
+    """The finding that a file could not be judged."""
+    why = error.diagnostics[0].message
+    finding = VerdictFinding(file=file, rulebook=rulebook, outcome="not_judged", because=why)
+    return FoundInRecording(file, "", 0, (finding,))

@@ -1,0 +1,77 @@
+"""The findings of traces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.monitoring.explain.explanation import Explanation, explain
+from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.report.verdict_findings.verdict_finding import VerdictFinding
+from rulec.trace import Trace
+
+
+def trace_findings(
+    file: str,
+    trace: Trace,
+    answer: Verdict,
+    rulebook: CompiledRulebook,
+    explained: list[Explanation],
+) -> Iterator[VerdictFinding]:
+    """What was found of a trace; ``explained`` are its first violations."""
+    rules = {rule.name: rule for rule in rulebook.rules}
+
+    def about(rule: CompiledRule) -> dict[str, Any]:
+        own = {"file": file, "vehicle": answer.trace, "rulebook": rulebook.name}
+        return {**own, "rule": rule.name, "provision": rule.cite, "strength": rule.strength}
+
+    for number, violation in enumerate(answer.violations):
+        explanation = (
+            explained[number] if number < len(explained) else explain(violation, trace, rulebook)
+        )
+        first, last = explanation.lasts
+        margin = min(explanation.margins(), key=lambda one: one.by, default=None)
+        yield VerdictFinding(
+            outcome="violated",
+            other=tuple(violation.binding.values()),
+            from_s=_time_s(trace, first),
+            to_s=_time_s(trace, last),
+            by=None if margin is None else margin.by,
+            unit="" if margin is None else margin.unit,
+            measure="" if margin is None else str(margin),
+            **about(rules[violation.rule]),
+        )
+    for result in answer.open:
+        yield VerdictFinding(
+            outcome="open",
+            other=tuple(result.binding.values()),
+            from_s=_time_s(trace, 0),
+            to_s=_time_s(trace, len(trace.states) - 1),
+            open_on=tuple(result.depends_on),
+            because=", ".join(result.because),
+            **about(rules[result.rule]),
+        )
+    for rule in answer.not_judged:
+        yield VerdictFinding(
+            outcome="not_judged",
+            open_on=tuple(rule.untold),
+            because=rule.why,
+            **about(rules[rule.rule]),
+        )
+
+
+def not_judged_trace(file: str, answer: NotJudged, rulebook: str) -> VerdictFinding:
+    """The finding that a trace could not be judged."""
+    return VerdictFinding(
+        file=file,
+        vehicle=answer.trace or "",
+        rulebook=rulebook,
+        outcome="not_judged",
+        because=answer.error.diagnostics[0].message,
+    )
+
+
+def _time_s(trace: Trace, state: int) -> float:
+    """The time of a state, counted from the first one."""
+    return round(state * trace.step_s, 9)

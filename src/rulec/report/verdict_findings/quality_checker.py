@@ -1,0 +1,122 @@
+"""Findings of verdicts as results of ASAM's Quality Checker Framework (``.xqar``).
+
+https://github.com/asam-ev/qc-framework, the result format of version 1.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from datetime import date
+from typing import IO
+from xml.etree import ElementTree
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.report.text.xml_text import HEAD, element, written
+from rulec.report.verdict_findings.verdict_finding import (
+    FindingsOf,
+    FoundInRecording,
+    VerdictFinding,
+)
+
+_LEVELS = {"hard": 1, "soft": 2}
+_INFORMATION = 3
+
+_ENTITY = "rulec.rulebooks"
+_STANDARD = "law"
+
+
+class QualityCheckerWriter:
+    """A bundle for each recording, in it a checker for each rule with its issues.
+
+    Hard rules are errors, soft ones warnings, and what is open is information.
+    """
+
+    def __init__(self, stream: IO[bytes], about: FindingsOf) -> None:
+        self._stream = stream
+        self._about = about
+        self._issues = 0
+        stream.write(f'{HEAD}<CheckerResults version="1.0.0">\n'.encode())
+
+    def add(self, found: FoundInRecording) -> None:
+        """Write the bundle of a recording."""
+        by_rule: dict[str, list[VerdictFinding]] = {}
+        for finding in found.findings:
+            by_rule.setdefault(finding.rule, []).append(finding)
+        rulebook = self._about.rulebook
+        issues = sum(one.outcome != "not_judged" for one in found.findings)
+        bundle = element(
+            None,
+            "CheckerBundle",
+            build_date=date.today().isoformat(),  # noqa: DTZ011 - the day where this runs
+            description=rulebook.title or rulebook.name,
+            name=f"rulec {rulebook.name}",
+            version=self._about.version,
+            summary=found.failure or f"{issues:,} issues in {found.drives:,} drives",
+        )
+        element(bundle, "Param", name="InputFile", value=found.file)
+        if found.recording:
+            element(bundle, "Param", name="Recording", value=found.recording)
+        for rule in self._about.rules.values():
+            self._checker(bundle, rule, by_rule.get(rule.name, []), found.failure)
+        self._stream.write(written(bundle, 1))
+
+    def close(self) -> None:
+        """Write the end."""
+        self._stream.write(b"</CheckerResults>\n")
+
+    def _checker(
+        self,
+        bundle: ElementTree.Element,
+        rule: CompiledRule,
+        findings: Iterable[VerdictFinding],
+        failure: str,
+    ) -> None:
+        issues = [one for one in findings if one.outcome != "not_judged"]
+        left_out = next((one for one in findings if one.outcome == "not_judged"), None)
+        skipped = left_out is not None and not left_out.vehicle and not issues
+        checker = element(
+            bundle,
+            "Checker",
+            checkerId=rule.name,
+            description=f"{rule.says or rule.name} [{rule.cite}]" if rule.cite else rule.says,
+            summary=left_out.says if skipped and left_out else failure or f"{len(issues)} issues",
+            status="error" if failure else "skipped" if skipped else "completed",
+        )
+        uid = self._uid(rule)
+        for finding in issues:
+            is_open = finding.outcome == "open"
+            issue = element(
+                checker,
+                "Issue",
+                issueId=self._issues,
+                description=finding.says,
+                level=_INFORMATION if is_open else _LEVELS[rule.strength],
+                ruleUID=uid,
+            )
+            self._issues += 1
+            _locations(issue, finding)
+        element(checker, "AddressedRule", ruleUID=uid)
+
+    def _uid(self, rule: CompiledRule) -> str:
+        """The rule's name as the framework writes it, with the law's day as its version.
+
+        doc/manual/rule_uid_schema.md there: entity, standard, numbers with points, and a name.
+        """
+        rulebook = self._about.rulebook
+        day = (rulebook.at or rulebook.as_of).replace("-", ".")
+        version = day if re.fullmatch(r"[0-9]+(\.[0-9]+)+", day) else "0.0"
+        names = (re.sub(r"\W", "_", name) for name in (rulebook.name, rule.name))
+        full = ".".join(name if name[:1].isalpha() else f"r{name}" for name in names)
+        return f"{_ENTITY}:{_STANDARD}:{version}:{full}"
+
+
+def _locations(issue: ElementTree.Element, finding: VerdictFinding) -> None:
+    """When it begins, and where the vehicle is then."""
+    if finding.from_s is None:
+        return
+    about = f"{finding.vehicle} at {finding.from_s:g} s"
+    locations = element(issue, "Locations", description=about)
+    element(locations, "TimeLocation", time=finding.from_s)
+    if finding.x is not None and finding.y is not None:
+        element(locations, "InertialLocation", x=finding.x, y=finding.y, z=0.0)

@@ -1,0 +1,160 @@
+"""A finding: what is violated, open or not judged, by whom, when and by how much."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.report.json_document import JsonDocument, as_line, filled
+from rulec.value_display import short_repr
+from rulec.version import __version__
+
+Outcome = Literal["violated", "open", "not_judged"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VerdictFinding:
+    """A rule that a vehicle violates, whose outcome is open, or that could not be judged.
+
+    ``file`` and ``recording`` say where; of traces ``recording`` is empty. ``vehicle`` is the drive
+    or the trace, empty for all of them, ``other`` whom the rule is about. It lasts ``from_s`` to
+    ``to_s`` (s of the recording); what is open does somewhere in between. ``measure`` is the
+    comparison that decides most narrowly, ``by`` how much, in ``unit``. What is open or not judged
+    is so on ``open_on``, names that are not told, ``because`` of something. ``x`` and ``y`` (m)
+    and ``lanelet`` are where the vehicle is then. Without a rule the file was not judged.
+    """
+
+    __repr__ = short_repr
+
+    file: str
+    recording: str = ""
+    rulebook: str = ""
+    rule: str = ""
+    provision: str = ""
+    strength: Literal["hard", "soft", ""] = ""
+    outcome: Outcome
+    vehicle: str = ""
+    other: tuple[str, ...] = ()
+    from_s: float | None = None
+    to_s: float | None = None
+    by: float | None = None
+    unit: str = ""
+    measure: str = ""
+    open_on: tuple[str, ...] = ()
+    because: str = ""
+    x: float | None = None
+    y: float | None = None
+    lanelet: str = ""
+
+    @property
+    def says(self) -> str:
+        """The finding in a sentence."""
+        if not self.rule:
+            return self.because
+        title = f"{self.rule} [{self.provision}]" if self.provision else self.rule
+        about = f" towards {', '.join(self.other)}" if self.other else ""
+        who = self.vehicle or "every vehicle"
+        if self.outcome == "violated":
+            narrow = f": {self.measure}" if self.measure else ""
+            return f"{who} violates {title}{about}{when(self)}{narrow}"
+        on = f": depends on {', '.join(self.open_on)}" if self.open_on else ""
+        why = f" ({self.because})" if self.because else ""
+        if self.outcome == "open":
+            return f"whether {who} violates {title}{about} is open{on}{why}"
+        return f"{title} is not judged for {who}{on}{why}"
+
+
+def when(finding: VerdictFinding) -> str:
+    """From when to when, in words."""
+    if finding.from_s is None:
+        return ""
+    if finding.to_s in (None, finding.from_s):
+        return f" at {finding.from_s:g} s"
+    return f" from {finding.from_s:g} s to {finding.to_s:g} s"
+
+
+class FindingLine(JsonDocument, frozen=True, kw_only=True):
+    """A finding: a rule that is ``violated``, ``open`` or ``not_judged``.
+
+    See docs/commands.md, Findings; null is what does not apply.
+    """
+
+    file: str
+    recording: str
+    rulebook: str
+    rule: str
+    provision: str
+    strength: Literal["hard", "soft", ""]
+    outcome: Outcome
+    vehicle: str
+    other: tuple[str, ...]
+    from_s: float | None
+    to_s: float | None
+    by: float | None
+    unit: str
+    measure: str
+    open_on: tuple[str, ...]
+    because: str
+    x: float | None
+    y: float | None
+    lanelet: str
+
+
+COLUMNS: Mapping[str, type] = {
+    **dict.fromkeys(("file", "recording", "rulebook", "rule", "provision"), str),
+    **dict.fromkeys(("strength", "outcome", "vehicle"), str),
+    "other": list,
+    **dict.fromkeys(("from_s", "to_s", "by"), float),
+    **dict.fromkeys(("unit", "measure"), str),
+    "open_on": list,
+    "because": str,
+    **dict.fromkeys(("x", "y"), float),
+    "lanelet": str,
+}
+"""The columns of tables of findings, with the types of their values."""
+
+
+def as_json(finding: VerdictFinding) -> str:
+    """Write a finding on one line."""
+    return as_line(filled(FindingLine, finding))
+
+
+@dataclass(frozen=True, slots=True)
+class FoundInRecording:
+    """The findings of a recording, or of a file of traces, with the number of its ``drives``.
+
+    Without drives, and with one finding without a rule, it could not be judged at all.
+    """
+
+    __repr__ = short_repr
+
+    file: str
+    recording: str
+    drives: int
+    findings: tuple[VerdictFinding, ...]
+
+    @property
+    def title(self) -> str:
+        """The file, and the recording's name where that says more."""
+        return f"{self.file}: {self.recording}" if self.recording else self.file
+
+    @property
+    def failure(self) -> str:
+        """Why it could not be judged, empty if it was."""
+        whole = (finding.because for finding in self.findings if not finding.rule)
+        return next(whole, "") if not self.drives else ""
+
+
+@dataclass(frozen=True)
+class FindingsOf:
+    """What all findings are of: a rulebook, judged by a version of rulec."""
+
+    rulebook: CompiledRulebook
+    version: str = __version__
+
+    @property
+    def rules(self) -> Mapping[str, CompiledRule]:
+        """The rules by their names."""
+        return {rule.name: rule for rule in self.rulebook.rules}

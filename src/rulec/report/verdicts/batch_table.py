@@ -1,0 +1,98 @@
+"""The verdicts on many recordings, added up in one table."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.extraction.recording_verdicts import ViolationTally
+from rulec.report.text.terminal_text import table_lines, visible
+from rulec.report.verdicts import verdict_report
+
+
+@dataclass
+class BatchTally:
+    """Verdicts on recordings, added up rule by rule.
+
+    ``drives`` and ``recordings``: rule -> in how many of them it is violated; ``first``: rule ->
+    file, drive and time (s) of the first one. ``satisfied`` and the like count drives.
+    """
+
+    satisfied: int = 0
+    violated: int = 0
+    doubtful: int = 0
+    not_judged: int = 0
+    judged_recordings: int = 0
+    drives: Counter[str] = field(default_factory=Counter)
+    recordings: Counter[str] = field(default_factory=Counter)
+    open_in: Counter[str] = field(default_factory=Counter)
+    judged_in: Counter[str] = field(default_factory=Counter)
+    first: dict[str, tuple[str, str, float]] = field(default_factory=dict)
+
+    def add(self, file: str, tally: ViolationTally) -> None:
+        """Add a recording."""
+        self.judged_recordings += 1
+        self.satisfied += len(tally.satisfied)
+        self.violated += len(tally.violated)
+        self.doubtful += len(tally.doubtful)
+        self.not_judged += len(tally.not_judged)
+        self.judged_in.update(tally.judged_in)
+        self.open_in.update(dict.fromkeys(tally.open_rules, 1))
+        for rule, times in tally.first_s.items():
+            self.drives[rule] += len(times)
+            self.recordings[rule] += 1
+            ego = min(times, key=lambda name: times[name])
+            self.first.setdefault(rule, (file, ego, times[ego]))
+
+    @property
+    def judged(self) -> int:
+        """The number of drives that have a verdict."""
+        return self.satisfied + self.violated + self.doubtful
+
+
+def as_text(total: BatchTally, rules: CompiledRulebook, unread: Sequence[str]) -> str:
+    """A table of what was violated in all recordings, and the line that ends a run."""
+    recordings = _number(total.judged_recordings, "recording")
+    lines = [f"altogether  {recordings} with {_number(total.judged, 'drive')}"]
+    if unread:
+        lines.append(f"not read    {_number(len(unread), 'file')}, as said above")
+    lines.append(f"rules       {_rules(total, rules)}")
+    rows = [
+        (
+            f"{rule.name} [{rule.cite}]" if rule.cite else rule.name,
+            rule.strength,
+            f"{total.drives[rule.name]:,}/{total.judged:,}",
+            f"{total.recordings[rule.name]:,}/{total.judged_recordings:,}",
+            _first(total.first[rule.name]),
+        )
+        for rule in rules.rules
+        if rule.name in total.drives
+    ]
+    if rows:
+        head = ("violated", "", " drives", " recordings", "first")
+        lines += ["", *table_lines([head, *rows], right=(2, 3))]
+    counts = {True: total.satisfied, False: total.violated, None: total.doubtful}
+    end = verdict_report.summary(counts, total.not_judged)
+    lines.append(end.replace("traces", "drives").replace("trace", "drive"))
+    return "\n".join(visible(line) for line in lines)
+
+
+def _rules(total: BatchTally, rules: CompiledRulebook) -> str:
+    names = [rule.name for rule in rules.rules]
+    never = [name for name in names if not total.judged_in[name] and not total.open_in[name]]
+    some_open = [name for name in names if total.open_in[name] and name not in never]
+    parts = [f"{len(names) - len(never) - len(some_open):,} judged"]
+    parts += [f"{len(some_open):,} open in some drive"] if some_open else []
+    parts += [f"{len(never):,} cannot be judged from these recordings"] if never else []
+    return f"{_number(len(names), 'rule')}: {', '.join(parts)}"
+
+
+def _first(first: tuple[str, str, float]) -> str:
+    file, ego, at = first
+    return f"{ego} at {at:g} s in {file}"
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"

@@ -1,0 +1,198 @@
+"""``rulec verify`` of many files, and what it writes into files."""
+
+import csv
+import gzip
+import io
+import json
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from rulec.cli.main import main
+from support.builders.recorded_cars import three_cars
+
+BOOK = """\
+rulebook tiny
+use road
+
+hard rule slow {
+  cite "Art. 1"
+  require always speed <= 45 km/h
+}
+
+hard rule quiet { require never wet }
+"""
+
+
+@pytest.fixture
+def verify(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("tiny.rules").write_text(BOOK)
+    (tmp_path / "drives").mkdir()
+    text = Path(three_cars(tmp_path / "drives")).read_text()
+    Path("drives/b.xml.gz").write_bytes(gzip.compress(text.encode()))
+    Path("drives/broken.xml").write_text(text[:-300])
+    Path("drives/notes.txt").write_text("no traffic")
+
+    def run(*arguments):
+        status = main(["verify", *arguments, "-r", "./tiny.rules"])
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return run
+
+
+A = "drives/DEU_Road-1_1_T-1.xml"
+# 3 drives 43.2 km/h, 4 drives 50.4 km/h; whether it is wet the file does not say.
+TABLE = """\
+drives/DEU_Road-1_1_T-1.xml: 3 drives: 0 satisfied, 1 violated, 2 open (slow 1)
+drives/b.xml.gz: 3 drives: 0 satisfied, 1 violated, 2 open (slow 1)
+
+altogether  2 recordings with 6 drives
+not read    1 file, as said above
+rules       2 rules: 1 judged, 1 cannot be judged from these recordings
+
+violated              drives   recordings  first
+slow [Art. 1]  hard      2/6          2/2  4 at 0 s in drives/DEU_Road-1_1_T-1.xml
+6 drives: 0 satisfied, 2 violated, 4 open
+"""
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_a_folder_is_a_line_for_each_recording_and_one_table(verify, jobs):
+    status, out, err = verify("drives", "-j", jobs)
+    assert (status, out) == (2, TABLE)
+    assert err.startswith("rulec: 3 recordings in drives, 1 other file passed over\n")
+    assert "error[R0610]" in err
+    assert "drives/broken.xml" in err
+
+
+def test_a_single_recording_is_shown_as_ever(verify):
+    status, out, _ = verify(A)
+    assert status == 1
+    assert out.startswith("recording   DEU_Road-1_1_T-1: 3 drives")
+    assert "altogether" not in out
+    # The first violation is explained.
+    assert "kept if" in out
+
+
+def test_explanations_are_counted_by_file(verify):
+    _, out, _ = verify("drives/[Db]*", "--explain", "1")
+    assert out.count("kept if") == 2
+
+
+def test_output_does_not_depend_on_the_number_of_processes(verify):
+    _, alone, _ = verify("drives", "--json")
+    _, beside, _ = verify("drives", "--json", "-j", "3")
+    assert alone == beside
+    assert len(alone.splitlines()) == 6
+
+
+def test_several_files_at_once(verify):
+    outputs = [f"found.{end}" for end in ("jsonl", "csv", "parquet", "xml", "sarif", "xqar")]
+    options = [word for name in outputs for word in ("-o", name)]
+    status, out, _ = verify("drives", *options)
+    assert status == 2
+    # In each recording 4 violates `slow` and `quiet` is not judged; a third could not be read.
+    assert out == TABLE + "".join(f"wrote 5 findings to {name}\n" for name in outputs)
+    lines = [json.loads(line) for line in Path("found.jsonl").read_text().splitlines()]
+    assert [(line["file"], line["rule"], line["outcome"]) for line in lines] == [
+        (A, "slow", "violated"),
+        (A, "quiet", "not_judged"),
+        ("drives/b.xml.gz", "slow", "violated"),
+        ("drives/b.xml.gz", "quiet", "not_judged"),
+        ("drives/broken.xml", "", "not_judged"),
+    ]
+    # 50.4 km/h instead of 45 all along, 2.9 s in steps of 0.1 s, from x = 2 m on
+    first = lines[0]
+    assert (first["vehicle"], first["from_s"], first["to_s"]) == ("4", 0.0, 2.9)
+    assert first["by"] == pytest.approx(5.4)
+    assert (first["unit"], first["x"], first["provision"]) == ("km/h", 2.0, "Art. 1")
+    with Path("found.csv").open(newline="") as stream:
+        assert [row["rule"] for row in csv.DictReader(stream)] == [one["rule"] for one in lines]
+    suites = ElementTree.parse("found.xml").getroot().findall("testsuite")
+    assert [suite.get("failures") for suite in suites] == ["1", "1", "0"]
+    (run,) = json.loads(Path("found.sarif").read_text())["runs"]
+    assert len(run["results"]) == 2
+
+
+def test_findings_on_standard_output(verify):
+    status, out, _ = verify(A, "--output-format", "csv")
+    assert status == 1
+    assert [row["rule"] for row in csv.DictReader(out.splitlines())] == ["slow", "quiet"]
+
+
+def test_text_and_json_go_to_files_too(verify):
+    status, out, _ = verify(A, "-o", "a.txt", "-o", "a.json")
+    assert (status, out) == (1, "wrote the answer to a.txt\nwrote the answer to a.json\n")
+    assert Path("a.txt").read_text().endswith("3 drives: 0 satisfied, 1 violated, 2 open\n")
+    assert len(Path("a.json").read_text().splitlines()) == 3
+
+
+def test_traces_have_findings_too(verify):
+    Path("t.jsonl").write_text(
+        '{"id": "t1", "step_s": 0.5, "states": [{"speed": 9}, {"speed": 50}, {"speed": 9}]}\n'
+        '{"id": "t2", "states": 3}\n'
+    )
+    status, _, _ = verify("t.jsonl", "-o", "t.csv")
+    assert status == 2
+    with Path("t.csv").open(newline="") as stream:
+        violated, broken = csv.DictReader(stream)
+    assert (violated["vehicle"], violated["rule"], violated["from_s"]) == ("t1", "slow", "0.5")
+    assert (broken["rule"], broken["outcome"]) == ("", "not_judged")
+
+
+def test_packed_traces(verify):
+    Path("t.jsonl.gz").write_bytes(gzip.compress(b'{"states": [{"speed": 50}]}\n'))
+    assert verify("t.jsonl.gz")[0] == 1
+
+
+def test_a_recording_on_standard_input(verify, monkeypatch):
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(Path(A).read_bytes())))
+    status, out, _ = verify("-", "--input-format", "commonroad", "--json")
+    assert status == 1
+    assert len(out.splitlines()) == 3
+
+
+def test_a_broken_recording_on_standard_input_has_that_name(verify, monkeypatch):
+    broken = io.BytesIO(Path("drives/broken.xml").read_bytes())
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(broken))
+    status, _, err = verify("-", "--input-format", "commonroad")
+    assert status == 2
+    assert "--> standard input" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ((A, "-o", A, "--output-format", "jsonl"), "is read, and would be overwritten"),
+        ((A, "-o", "a.csv", "-o", "b.csv", "--json"), "each says its own format"),
+        ((A, "-o", "-", "-o", "-"), "standard output takes one format"),
+        (("drives", "-o", "a.mcap"), "MCAP has one time line"),
+        ((A, "-o", "a.xls"), "one of .txt, .json, .jsonl, .ndjson, .csv, .parquet, .pq, .xml"),
+    ],
+)
+def test_what_is_refused(verify, arguments, says):
+    before = Path(A).read_text()
+    status, out, err = verify(*arguments)
+    assert (status, out) == (2, "")
+    assert says in err
+    assert Path(A).read_text() == before
+    assert not list(Path().glob("a.*"))
+
+
+def test_nothing_is_written_where_the_run_fails(verify):
+    Path("a.csv").write_text("old")
+    status, _, _ = verify(A, "-o", "a.csv", "-o", "no/folder/b.csv")
+    assert status == 2
+    assert Path("a.csv").read_text() == "old"
+
+
+def test_parquet_without_its_package(verify, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    status, out, err = verify(A, "-o", "a.parquet")
+    assert (status, out) == (2, "")
+    assert "pip install 'rulec[parquet]'" in err
+    assert not Path("a.parquet").exists()

@@ -1,0 +1,81 @@
+"""The files that are meant by paths, folders and patterns."""
+
+import gzip
+import os
+
+import pytest
+
+from rulec.recordings.recording_inputs import input_files
+from support.builders.recordings import ROAD_XML
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Two scenarios, one of them packed and deeper; a net, notes, and a hidden scenario."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "drives" / "deep").mkdir(parents=True)
+    (tmp_path / "drives" / ".git").mkdir()
+    (tmp_path / "drives" / "b.xml").write_text(ROAD_XML)
+    (tmp_path / "drives" / "deep" / "a.xml.gz").write_bytes(gzip.compress(ROAD_XML.encode()))
+    (tmp_path / "drives" / "road.net.xml").write_text("<net/>")
+    (tmp_path / "drives" / "notes.txt").write_text("no traffic")
+    (tmp_path / "drives" / ".git" / "c.xml").write_text(ROAD_XML)
+    (tmp_path / "drives" / ".d.xml").write_text(ROAD_XML)
+    return tmp_path
+
+
+def test_a_folder_stands_for_the_recordings_in_and_below_it(folder):
+    found = input_files(["drives"])
+    assert found.paths == ("drives/b.xml", "drives/deep/a.xml.gz")
+    (searched,) = found.searched
+    assert (searched.path, searched.recordings, searched.others) == ("drives", 2, 2)
+    assert found.problems == ()
+
+
+def test_a_pattern_is_wild_where_no_file_is_called_so(folder):
+    assert input_files(["drives/*.xml"]).paths == ("drives/b.xml", "drives/road.net.xml")
+    assert input_files(["drives/**/*.gz"]).paths == ("drives/deep/a.xml.gz",)
+    (folder / "drives" / "[1].xml").write_text(ROAD_XML)
+    assert input_files(["drives/[1].xml"]).paths == ("drives/[1].xml",)
+
+
+def test_every_file_once_and_in_the_order_that_is_given(folder):
+    found = input_files(["drives/deep/a.xml.gz", "-", "drives", "no_such.xml"])
+    assert found.paths == ("drives/deep/a.xml.gz", "-", "drives/b.xml", "no_such.xml")
+
+
+def test_a_pattern_like_which_nothing_is_called(folder):
+    found = input_files(["drives/b.xml", "*.osi"])
+    assert found.paths == ("drives/b.xml",)
+    (problem,) = found.problems
+    assert (problem.diagnostics[0].code, problem.diagnostics[0].place.file) == ("R0701", "*.osi")
+
+
+def test_a_folder_without_recordings(folder):
+    (folder / "empty").mkdir()
+    found = input_files(["empty"])
+    (problem,) = found.problems
+    assert found.paths == ()
+    assert "there is no recorded traffic in this folder" in problem.diagnostics[0].message
+
+
+def test_a_broken_file_of_a_folder_is_not_passed_over(folder):
+    # Whoever reads it says what is wrong with it.
+    (folder / "drives" / "c.xml").write_text("<commonRoad")
+    (folder / "drives" / "d.xml").write_bytes(gzip.compress(ROAD_XML.encode())[:9])
+    paths = input_files(["drives"]).paths
+    assert {"drives/c.xml", "drives/d.xml"} <= set(paths)
+
+
+def test_parts_of_a_scenario_are_one_recording(folder):
+    parts = folder / "parts"
+    parts.mkdir()
+    for name in ("DEU_A-1.pb", "DEU_A-1_1_T-1.pb", "DEU_A-1_1_T-1-SC.pb", "DEU_B-2_1_T-1.pb"):
+        (parts / name).write_bytes(b"\n")
+    assert input_files(["parts"]).paths == ("parts/DEU_A-1_1_T-1.pb", "parts/DEU_B-2_1_T-1.pb")
+
+
+def test_links_are_not_followed_and_pipes_not_opened(folder):
+    (folder / "drives" / "loop").symlink_to(folder / "drives", target_is_directory=True)
+    os.mkfifo(folder / "drives" / "pipe.xml")
+    assert input_files(["drives"]).paths == ("drives/b.xml", "drives/deep/a.xml.gz")

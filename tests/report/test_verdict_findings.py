@@ -1,0 +1,298 @@
+"""Findings of verdicts in every format, also with names that mean to do harm."""
+
+import csv
+import io
+import json
+import re
+from xml.etree import ElementTree
+
+import pyarrow.parquet
+import pytest
+from mcap.reader import make_reader
+
+import rulec
+from rulec.diagnostics import RulecError
+from rulec.report.verdict_findings.finding_writers import ENDINGS, finding_writer
+from rulec.report.verdict_findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
+from rulec.report.verdict_findings.verdict_finding import (
+    COLUMNS,
+    FindingsOf,
+    FoundInRecording,
+    VerdictFinding,
+)
+
+BOOK = """\
+rulebook tiny
+use road
+
+hard rule slow {
+  cite "Art. 1"
+  says "Drive slowly."
+  require always speed <= 45 km/h
+}
+
+soft rule distance (v: vehicle) {
+  require always (behind(v) and same_lane(v) implies gap(v) >= 5 m)
+}
+
+hard rule quiet { require never wet }
+"""
+
+EVIL = '=HYPERLINK("http://x")<b>&\x1b[31m\x00\n|'
+
+
+@pytest.fixture(scope="module")
+def rules():
+    return rulec.compile_rulebook(rulec.parse_rulebook(BOOK))
+
+
+def of(rule, outcome="violated", **fields):
+    own = {"file": "a b.xml", "recording": "A", "rulebook": "tiny", "strength": "hard"}
+    return VerdictFinding(**{**own, "rule": rule, "outcome": outcome, **fields})
+
+
+SLOW = of(
+    "slow",
+    provision="Art. 1",
+    vehicle="4",
+    from_s=0.5,
+    to_s=2.5,
+    by=5.4,
+    unit="km/h",
+    measure="speed 50.4 km/h > 45 km/h",
+    x=2.0,
+    y=-1.5,
+    lanelet="7",
+)
+DISTANCE = of("distance", strength="soft", vehicle="4", other=("3",), from_s=1.0, to_s=1.0)
+OPEN = of("distance", "open", strength="soft", vehicle="5", other=("3",), open_on=("gap",))
+UNTOLD = of("quiet", "not_judged", open_on=("wet",))
+FOUND = FoundInRecording("a b.xml", "A", 3, (SLOW, DISTANCE, OPEN, UNTOLD))
+BROKEN = FoundInRecording(
+    "b.xml", "", 0, (VerdictFinding(file="b.xml", outcome="not_judged", because="it is empty"),)
+)
+
+
+def written(rules, form, *found):
+    stream = io.BytesIO()
+    writer = finding_writer(form, stream, FindingsOf(rules, "9.9"), "f")
+    for one in found:
+        writer.add(one)
+    writer.close()
+    return stream.getvalue()
+
+
+def test_json_lines_have_every_field(rules):
+    lines = [json.loads(line) for line in written(rules, "jsonl", FOUND, BROKEN).splitlines()]
+    assert [line["rule"] for line in lines] == ["slow", "distance", "distance", "quiet", ""]
+    assert list(lines[0]) == ["version", *COLUMNS]
+    assert lines[0]["by"] == 5.4
+    assert lines[2]["open_on"] == ["gap"]
+    assert lines[4]["because"] == "it is empty"
+
+
+def test_csv_has_a_row_for_each_finding(rules):
+    text = written(rules, "csv", FOUND, BROKEN).decode()
+    head, *rows = csv.reader(io.StringIO(text, newline=""))
+    assert head == list(COLUMNS)
+    first = dict(zip(head, rows[0], strict=True))
+    assert (first["rule"], first["from_s"], first["by"], first["unit"]) == (
+        "slow",
+        "0.5",
+        "5.4",
+        "km/h",
+    )
+    # A number below 0 stays one.
+    assert first["y"] == "-1.5"
+    assert [row[head.index("outcome")] for row in rows] == [
+        *("violated", "violated", "open", "not_judged", "not_judged"),
+    ]
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(A1)", "'=1", "\t=1", "\r=1"])
+def test_no_cell_of_csv_is_a_formula(rules, text):
+    found = FoundInRecording("f", "A", 1, (of("slow", vehicle=text, other=(text, "x")),))
+    _, row = csv.reader(io.StringIO(written(rules, "csv", found).decode(), newline=""))
+    for cell in (row[7], row[8]):
+        assert cell[0] in "'\\"
+        assert not re.match(r"[=+\-@\t\r]", cell)
+
+
+def test_parquet_has_the_same_rows_with_types(rules):
+    table = pyarrow.parquet.read_table(io.BytesIO(written(rules, "parquet", FOUND, BROKEN)))
+    assert table.column_names == list(COLUMNS)
+    rows = table.to_pylist()
+    assert (rows[0]["by"], rows[0]["other"], rows[1]["other"]) == (5.4, [], ["3"])
+    assert rows[3]["from_s"] is None
+
+
+def test_junit_fails_for_hard_rules_alone(rules):
+    root = ElementTree.fromstring(written(rules, "junit", FOUND, BROKEN))
+    first, second = root.findall("testsuite")
+    assert first.attrib == {
+        "name": "a b.xml: A",
+        "tests": "3",
+        "failures": "1",
+        "errors": "0",
+        "skipped": "1",
+    }
+    slow, distance, quiet = first.findall("testcase")
+    assert (slow.get("classname"), slow.get("name")) == ("tiny", "slow")
+    assert slow.find("failure").get("message").startswith("violated in 1 of 3 drives: 4 violates")
+    assert distance.find("failure") is None
+    assert distance.findtext("system-out").splitlines() == [
+        "4 violates distance towards 3 at 1 s",
+        "whether 5 violates distance towards 3 is open: depends on gap",
+    ]
+    assert quiet.find("skipped").get("message") == "not told: wet"
+    assert second.find("testcase/error").get("message") == "it is empty"
+    assert second.get("errors") == "1"
+
+
+def test_sarif_has_results_for_what_is_violated_or_open(rules):
+    document = json.loads(written(rules, "sarif", FOUND, BROKEN))
+    (run,) = document["runs"]
+    assert document["version"] == "2.1.0"
+    assert [rule["id"] for rule in run["tool"]["driver"]["rules"]] == ["slow", "distance", "quiet"]
+    assert [(one["ruleId"], one["kind"], one["level"]) for one in run["results"]] == [
+        ("slow", "fail", "error"),
+        ("distance", "fail", "warning"),
+        ("distance", "open", "none"),
+    ]
+    for result in run["results"]:
+        rule = run["tool"]["driver"]["rules"][result["ruleIndex"]]
+        assert rule["id"] == result["ruleId"]
+    (location,) = run["results"][0]["locations"]
+    assert location["physicalLocation"]["artifactLocation"]["uri"] == "a%20b.xml"
+    (invocation,) = run["invocations"]
+    assert invocation["executionSuccessful"] is False
+    notes = invocation["toolExecutionNotifications"]
+    assert [note["level"] for note in notes] == ["note", "error"]
+    prints = [one["partialFingerprints"]["rulec/v1"] for one in run["results"]]
+    assert len(set(prints)) == 3
+
+
+def test_sarif_without_findings(rules):
+    (run,) = json.loads(written(rules, "sarif"))["runs"]
+    assert run["results"] == []
+    assert run["invocations"][0]["executionSuccessful"] is True
+
+
+UID = re.compile(r"(\w+(\.\w+)+):([a-z]+):([0-9]+(\.[0-9]+)+):(([^\W\d_]\w*)\.)*([^\W\d_]\w*)")
+"""A rule's UID, as doc/manual/rule_uid_schema.md of the framework has it."""
+
+IN_ORDER = ["Param", "Issue", "AddressedRule", "Metadata"]
+"""The elements of a checker, in the order of xqar_result_format.xsd."""
+
+
+def test_the_quality_checkers_results(rules):
+    root = ElementTree.fromstring(written(rules, "xqar", FOUND, BROKEN))
+    assert root.tag == "CheckerResults"
+    first, second = root.findall("CheckerBundle")
+    assert set(first.attrib) == {"build_date", "description", "name", "version", "summary"}
+    assert [(one.get("name"), one.get("value")) for one in first.findall("Param")] == [
+        ("InputFile", "a b.xml"),
+        ("Recording", "A"),
+    ]
+    slow, distance, quiet = first.findall("Checker")
+    assert [one.get("status") for one in (slow, distance, quiet)] == [
+        "completed",
+        "completed",
+        "skipped",
+    ]
+    (issue,) = slow.findall("Issue")
+    assert (issue.get("level"), issue.get("ruleUID")) == (
+        "1",
+        slow.find("AddressedRule").get("ruleUID"),
+    )
+    assert issue.find("Locations/TimeLocation").get("time") == "0.5"
+    assert issue.find("Locations/InertialLocation").attrib == {"x": "2.0", "y": "-1.5", "z": "0.0"}
+    assert [one.get("level") for one in distance.findall("Issue")] == ["2", "3"]
+    assert {one.get("status") for one in second.findall("Checker")} == {"error"}
+    for checker in root.iter("Checker"):
+        order = [IN_ORDER.index(child.tag) for child in checker]
+        assert order == sorted(order)
+        assert UID.fullmatch(checker.find("AddressedRule").get("ruleUID"))
+    numbers = [one.get("issueId") for one in root.iter("Issue")]
+    assert len(set(numbers)) == len(numbers) == 3
+
+
+def messages(content):
+    reader = make_reader(io.BytesIO(content))
+    found = {}
+    for schema, channel, message in reader.iter_messages():
+        assert channel.message_encoding == "json"
+        assert json.loads(schema.data)["type"] == "object"
+        found.setdefault(channel.topic, []).append((message.log_time, json.loads(message.data)))
+    return found
+
+
+def test_mcap_has_an_event_for_each_finding_with_a_time(rules):
+    content = written(rules, "mcap", FOUND)
+    found = messages(content)
+    half, one = 500_000_000, 1_000_000_000
+    assert [(at, line["rule"]) for at, line in found["/rulec/findings"]] == [
+        (half, "slow"),
+        (one, "distance"),
+    ]
+    assert [(at, line["level"]) for at, line in found["/rulec/log"]] == [(half, 4), (one, 3)]
+    assert found["/rulec/log"][0][1]["timestamp"] == {"sec": 0, "nsec": half}
+    # Of the other one nobody knows where it was.
+    ((at, update),) = found["/rulec/scene"]
+    (entity,) = update["entities"]
+    assert (at, entity["frame_id"], entity["lifetime"]) == (half, "global", {"sec": 2, "nsec": 0})
+    (label,) = entity["texts"]
+    assert label["pose"]["position"] == {"x": 2.0, "y": -1.5, "z": 3.0}
+    assert label["text"] == SLOW.says
+    summary = make_reader(io.BytesIO(content)).get_summary()
+    assert summary.statistics.message_count == 5
+    assert {schema.name for schema in summary.schemas.values()} == {
+        "rulec.Finding",
+        "foxglove.Log",
+        "foxglove.SceneUpdate",
+    }
+    (record,) = make_reader(io.BytesIO(content)).iter_metadata()
+    assert record.metadata["not_judged"] == "quiet"
+
+
+def test_mcap_without_events_is_a_whole_file(rules):
+    assert messages(written(rules, "mcap", FoundInRecording("f", "A", 3, ()))) == {}
+    assert messages(written(rules, "mcap")) == {}
+
+
+def test_mcap_has_one_time_line(rules):
+    with pytest.raises(RulecError, match="MCAP has one time line"):
+        written(rules, "mcap", FOUND, FOUND)
+
+
+def test_messages_are_found_by_their_time():
+    stream = io.BytesIO()
+    channels = (JsonChannel("/a", "A", "{}"), JsonChannel("/b", "B", "{}"))
+    given = [TimedMessage(0, 30, "3"), TimedMessage(1, 10, "1"), TimedMessage(0, 20, "2")]
+    write_mcap(stream, "x", channels, given, {})
+    reader = make_reader(io.BytesIO(stream.getvalue()), validate_crcs=True)
+    whole = [(channel.topic, message.data) for _, channel, message in reader.iter_messages()]
+    assert whole == [("/b", b"1"), ("/a", b"2"), ("/a", b"3")]
+    some = reader.iter_messages(topics=["/a"], starting_at=15, ending_before=30)
+    assert [message.data for _, _, message in some] == [b"2"]
+
+
+@pytest.mark.parametrize("form", ENDINGS)
+def test_hostile_names_do_no_harm(rules, form):
+    evil = of("slow", vehicle=EVIL, other=(EVIL, "\ud800"), from_s=1.0, to_s=1.0, x=1.0, y=1.0)
+    content = written(rules, form, FoundInRecording(EVIL, EVIL, 1, (evil,)))
+    if form in ("parquet", "mcap"):
+        assert content
+        return
+    text = content.decode("utf-8")
+    # No control character, and nothing that is taken for an element of XML.
+    assert not re.search("[\x00-\x08\x0b\x0c\x0e-\x1f]", text)
+    if form in ("junit", "xqar"):
+        tags = {one.tag for one in ElementTree.fromstring(text).iter()}
+        assert "b" not in tags
+    if form == "csv":
+        assert len(list(csv.reader(io.StringIO(text, newline="")))) == 2
+    if form == "jsonl":
+        assert json.loads(text)["vehicle"] == EVIL
+    if form == "sarif":
+        assert json.loads(text)["runs"][0]["results"][0]["properties"]["vehicle"] == EVIL

@@ -1,0 +1,94 @@
+"""Work in several processes: the order of results, what is lost, and what is left behind."""
+
+import os
+import signal
+import time
+from functools import partial
+
+import pytest
+
+from rulec.batch import worker_pool
+from rulec.batch.worker_pool import LostTask, in_order
+
+
+def squares(most, number):
+    """So many results for each number; the first number takes the longest."""
+    if number == 0:
+        time.sleep(0.3)
+    for k in range(most):
+        yield number * number + k
+
+
+def none(_):
+    return iter(())
+
+
+def die(number):
+    yield "begun"
+    if number == 1:
+        os.kill(os.getpid(), signal.SIGKILL)
+    yield "done"
+
+
+def fail(number):
+    yield "begun"
+    if number == 1:
+        raise ValueError("a mistake of the program's")
+
+
+def ignore(_):
+    pass
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_results_are_in_the_order_of_the_tasks(jobs):
+    told = []
+    found = list(in_order(partial(squares, 3), range(5), jobs, told.append))
+    assert found == [(n, n * n + k) for n in range(5) for k in range(3)]
+    assert told == [1, 2, 3, 4, 5]
+
+
+def test_more_results_than_may_wait(monkeypatch):
+    monkeypatch.setattr(worker_pool, "MOST_WAITING", 2)
+    found = list(in_order(partial(squares, 40), range(4), 3, ignore))
+    assert found == [(n, n * n + k) for n in range(4) for k in range(40)]
+
+
+def test_tasks_without_results():
+    assert list(in_order(none, range(3), 2, ignore)) == []
+    assert list(in_order(none, [], 2, ignore)) == []
+
+
+def test_a_process_that_is_killed_loses_its_task_alone():
+    found = list(in_order(die, range(3), 2, ignore))
+    assert found == [
+        (0, "begun"),
+        (0, "done"),
+        (1, "begun"),
+        (1, LostTask(signal.SIGKILL)),
+        (2, "begun"),
+        (2, "done"),
+    ]
+
+
+def test_a_mistake_is_raised_where_it_belongs():
+    found = []
+    with pytest.raises(ValueError, match="a mistake of the program's"):
+        found += (one for one in in_order(fail, range(3), 2, ignore))
+
+
+def test_no_process_stays_behind_when_the_caller_leaves():
+    pools = []
+
+    class Noted(worker_pool._Pool):
+        def __init__(self, *arguments):
+            super().__init__(*arguments)
+            pools.append(self)
+
+    results = worker_pool.in_order(partial(squares, 3), range(9), 2, ignore)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(worker_pool, "_Pool", Noted)
+        assert next(results) == (0, 0)
+        results.close()
+    (pool,) = pools
+    assert [worker.process.is_alive() for worker in pool._workers] == [False, False]
