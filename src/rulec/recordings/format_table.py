@@ -44,6 +44,17 @@ def _waymo(source: RecordingSource) -> Iterator[Recording]:
     return read_waymo(source.path, source.scenario_id)
 
 
+def _scenarionet(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.scenarionet.scenarionet_file import read_scenarionet
+
+    yield read_scenarionet(source.path)
+
+
+def _is_scenarionet(glance: Glance) -> bool:
+    return glance.name.endswith((".pkl", ".pickle"))
+
+
 def _waymo_ids(path: Path) -> Iterator[str]:
     # As above.
     from rulec.recordings.waymo.waymo_file import waymo_ids
@@ -237,5 +248,12 @@ FORMATS = (
         recognises=_is_osi,
         read=_osi,
         takes_map=True,
+    ),
+    RecordingFormat(
+        name="scenarionet",
+        title="scenarios of ScenarioNet's: Waymo, nuScenes, nuPlan and others in one form",
+        files="*.pkl",
+        recognises=_is_scenarionet,
+        read=_scenarionet,
     ),
 )

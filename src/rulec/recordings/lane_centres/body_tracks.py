@@ -30,6 +30,11 @@ class BoxTrack(NamedTuple):
     velocities: NDArray[float64]
     sizes: NDArray[float64]
 
+    def first(self) -> BoxTrack:
+        """Its first box alone."""
+        rows = self.centres[:1], self.headings[:1], self.velocities[:1], self.sizes[:1]
+        return BoxTrack(self.steps[:1], *rows)
+
 
 def bridged(boxes: BoxTrack, step_s: float) -> BoxTrack:
     """A track without gaps of up to ``BRIDGED_S``: places, headings and speeds change evenly."""
@@ -65,7 +70,9 @@ def gaps_remark(bridged_states: int) -> tuple[str, ...]:
     return (f"{lost}: {bridged_states:,} states",)
 
 
-def participant(name: str, kind: str, boxes: BoxTrack, step_s: float) -> Participant:
+def participant(
+    name: str, kind: str, boxes: BoxTrack, step_s: float, *, standing: bool = False
+) -> Participant:
     """A participant with a rigid body, whose size is the median of its boxes'.
 
     A ``vehicle`` that is as large as a car is taken for one.
@@ -86,7 +93,7 @@ def participant(name: str, kind: str, boxes: BoxTrack, step_s: float) -> Partici
     return Participant(
         id=name,
         type=kind,
-        standing=False,
+        standing=standing,
         states=TrackStates(track),
         outlines=TrackOutlines(track),
         shows=frozenset(),

@@ -1,0 +1,1 @@
+"""ScenarioNet's scenarios, read as recordings, without unpickling what might run."""

@@ -1,0 +1,155 @@
+"""Values of ScenarioNet's dictionaries, checked, with the way to each.
+
+https://scenarionet.readthedocs.io/en/latest/description.html says what there is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.encodings.xml_element import LARGEST, short
+
+MOST_NUMBERS = 20_000_000
+"""In all arrays and lists of a scenario that are looked at; one of 20 s has some 100,000."""
+
+_TWO_AXES = 2
+
+
+@dataclass(slots=True)
+class NumbersLeft:
+    """How many numbers may still be looked at: values may lie in many places at once."""
+
+    count: int = MOST_NUMBERS
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A value with the keys that lead to it. Its methods raise RulecError R0610."""
+
+    value: Any
+    way: tuple[str, ...]
+    path: Path
+    form: WireFormat
+    left: NumbersLeft = field(default_factory=NumbersLeft)
+
+    def wrong(self, why: str) -> RulecError:
+        """The error for a value."""
+        where = " / ".join(self.way)
+        return self.form.refused(self.path, f"`{where}` {why}" if where else f"it {why}")
+
+    def get(self, key: str) -> Entry | None:
+        """What a key of a dictionary leads to, None if it is not there or there is None."""
+        if not isinstance(self.value, dict):
+            raise self.wrong("is no dictionary")
+        value = self.value.get(key)
+        return None if value is None else self._below(key, value)
+
+    def child(self, key: str) -> Entry:
+        """What a key of a dictionary leads to."""
+        found = self.get(key)
+        if found is None:
+            raise self.wrong(f"has no `{key}`")
+        return found
+
+    def items(self) -> list[tuple[str, Entry]]:
+        """The keys, as texts, and what they lead to."""
+        if not isinstance(self.value, dict):
+            raise self.wrong("is no dictionary")
+        self._spend(len(self.value))
+        return [(str(key), self._below(str(key), value)) for key, value in self.value.items()]
+
+    def elements(self) -> list[Entry]:
+        """The elements of a list, a tuple, or an array along its first axis."""
+        value = self.value
+        if not isinstance(value, list | tuple | np.ndarray) or np.ndim(value) == 0:
+            raise self.wrong("is no list")
+        self._spend(len(value))
+        return [self._below(str(number), one) for number, one in enumerate(value)]
+
+    def text(self) -> str:
+        """A text; whole numbers count as such."""
+        if isinstance(self.value, str | int | np.integer | np.str_):
+            return str(self.value)
+        raise self.wrong("is no text")
+
+    def whole(self) -> int:
+        """A whole number, which may be written as a text."""
+        text = self.text()
+        if not (text.isascii() and text.lstrip("-").isdigit() and len(text) < 19):
+            raise self.wrong(f"is `{short(text)}`, no whole number")
+        return int(text)
+
+    def numbers(self) -> NDArray[float64]:
+        """The finite numbers in an array, or in a list or tuple of at most two levels."""
+        value = self.value
+        if not isinstance(value, np.ndarray):
+            value = self._as_array()
+        self._spend(value.size)
+        if value.dtype.kind not in "biuf":
+            raise self.wrong("has other things than numbers in it")
+        numbers: NDArray[float64] = value.astype(float64)
+        if numbers.size and not (np.abs(numbers) < LARGEST).all():
+            raise self.wrong(f"has a number that is none below {LARGEST:.0e}")
+        return numbers
+
+    def column(self) -> NDArray[float64]:
+        """Numbers in one row or one column."""
+        numbers = self.numbers()
+        if numbers.ndim == _TWO_AXES and numbers.shape[1] == 1:
+            numbers = numbers[:, 0]
+        if numbers.ndim != 1:
+            raise self.wrong(f"has the shape {numbers.shape}, not that of a list")
+        return numbers
+
+    def places(self) -> NDArray[float64]:
+        """Points in rows: x, y and z, which is NaN where there is none."""
+        numbers = self.numbers()
+        if not numbers.size:
+            return np.empty((0, 3))
+        if numbers.ndim != _TWO_AXES or numbers.shape[1] < _TWO_AXES:
+            raise self.wrong(f"has the shape {numbers.shape}, not that of points")
+        if numbers.shape[1] == _TWO_AXES:
+            return np.column_stack((numbers, np.full(len(numbers), np.nan)))
+        return numbers[:, :3]
+
+    def _as_array(self) -> NDArray[float64]:
+        if not isinstance(self.value, list | tuple):
+            raise self.wrong("is no array")
+        self._spend(len(self.value))
+        rows = []
+        for row in self.value:
+            if isinstance(row, int | float):
+                rows.append((row,))
+            elif isinstance(row, list | tuple | np.ndarray) and np.ndim(row) == 1:
+                self._spend(len(row))
+                rows.append(tuple(row))
+            else:
+                raise self.wrong("has other things than numbers in it")
+        if len({len(row) for row in rows}) > 1:
+            raise self.wrong("has rows of different lengths")
+        if not all(isinstance(one, int | float | np.number) for row in rows for one in row):
+            raise self.wrong("has other things than numbers in it")
+        try:
+            table = np.array(rows, dtype=float64)
+        except OverflowError:
+            raise self.wrong(f"has a number that is none below {LARGEST:.0e}") from None
+        flat = bool(rows) and all(isinstance(row, int | float) for row in self.value)
+        return table[:, 0] if flat else table
+
+    def _spend(self, count: int) -> None:
+        self.left.count -= count
+        if self.left.count < 0:
+            raise self.wrong(
+                f"is one of more than {MOST_NUMBERS:,} values, or some come many times"
+            )
+
+    def _below(self, key: str, value: Any) -> Entry:
+        return Entry(value, (*self.way, short(key)), self.path, self.form, self.left)

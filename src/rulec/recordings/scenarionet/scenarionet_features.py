@@ -1,0 +1,207 @@
+"""Map features and lights of ScenarioNet's scenarios."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+import shapely
+
+from rulec.recordings.lane_centres.road_features import (
+    BoundaryPart,
+    CentreLane,
+    LaneLight,
+    LaneSide,
+    NeighbourPart,
+    RoadFeatures,
+)
+from rulec.recordings.recording import LONGEST_M, LaneMark
+from rulec.recordings.scenarionet.data_sets import DataSet
+from rulec.recordings.scenarionet.scenario_dictionary import Entry
+
+MPS_OF_MPH = 0.44704
+JOINED_M = 0.1
+"""Lanes without successors in the file lead to those that begin so near their end."""
+
+_TURNED_RAD = np.radians(60.0)
+_FEWEST_CORNERS = 3
+_MOST_INDEX = 1 << 31
+
+_MARKS: Mapping[str, LaneMark | None] = MappingProxyType(
+    {
+        **dict.fromkeys(
+            ("BROKEN_SINGLE_WHITE", "BROKEN_SINGLE_YELLOW", "BROKEN_DOUBLE_YELLOW"), "broken"
+        ),
+        **dict.fromkeys(("SOLID_SINGLE_WHITE", "SOLID_SINGLE_YELLOW"), "solid"),
+        **dict.fromkeys(("SOLID_DOUBLE_WHITE", "SOLID_DOUBLE_YELLOW"), "double_solid"),
+    }
+)
+_LANE_TYPES = {"LANE_FREEWAY": "highway", "LANE_BIKE_LANE": "bicycleLane"}
+_COLOURS = {
+    **dict.fromkeys(("LANE_STATE_STOP", "LANE_STATE_ARROW_STOP", "TRAFFIC_LIGHT_RED"), "red"),
+    **dict.fromkeys(
+        ("LANE_STATE_CAUTION", "LANE_STATE_ARROW_CAUTION", "TRAFFIC_LIGHT_YELLOW"), "yellow"
+    ),
+    **dict.fromkeys(("LANE_STATE_GO", "LANE_STATE_ARROW_GO", "TRAFFIC_LIGHT_GREEN"), "green"),
+}
+
+
+def road_features(scenario: Entry, known: DataSet, steps: Iterable[int]) -> RoadFeatures:
+    """All of a scenario's road; ``steps`` are the time steps of its times."""
+    features = RoadFeatures()
+    told = False
+    for name, entry in scenario.child("map_features").items():
+        kind = entry.child("type").text()
+        if kind.startswith("LANE"):
+            told |= "exit_lanes" in entry.value
+            features.lanes[name] = _lane(name, kind, entry, known)
+        elif kind.startswith(("ROAD_LINE", "ROAD_EDGE")):
+            points = _points(entry, "polyline")
+            if len(points) > 1:
+                features.lines[name] = points[:, :2]
+        elif kind == "STOP_SIGN" and known.whole_map:
+            features.stop_lanes.update(lane.text() for lane in entry.child("lane").elements())
+        elif kind == "CROSSWALK":
+            corners = _points(entry, "polygon")[:, :2]
+            if len(corners) < _FEWEST_CORNERS:
+                raise entry.wrong(f"has fewer than {_FEWEST_CORNERS} corners")
+            features.crosswalks[name] = corners
+    if not told:
+        features = replace(features, lanes=joined(features.lanes))
+    _add_lights(features, scenario, known, list(steps))
+    return features
+
+
+def _points(entry: Entry, key: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    points = entry.child(key).places()
+    if len(points) and np.ptp(points[:, :2], axis=0).max() > LONGEST_M:
+        raise entry.wrong(f"is longer than {LONGEST_M / 1000:g} km")
+    return points
+
+
+def _lane(name: str, kind: str, entry: Entry, known: DataSet) -> CentreLane:
+    # Points of nuScenes' have their direction for a height
+    centre = _points(entry, "polyline")
+    heights = centre[:, 2] if known.whole_map else np.full(len(centre), np.nan)
+    centre = np.column_stack((centre[:, :2], heights))
+    mph = entry.get("speed_limit_mph") if known.whole_map else None
+    limit = 0.0 if mph is None else float(mph.column()[0]) if np.ndim(mph.value) else _number(mph)
+    outline = entry.get("polygon")
+    area = None if outline is None else outline.places()[:, :2]
+    sides = [
+        LaneSide(
+            boundaries=_boundaries(entry.get(f"{side}_boundaries"), len(centre), known),
+            neighbours=_neighbours(entry.get(f"{side}_neighbor"), len(centre)),
+        )
+        for side in ("left", "right")
+    ]
+    return CentreLane(
+        id=name,
+        centre=centre,
+        types=frozenset({_LANE_TYPES[kind]} if kind in _LANE_TYPES else ()),
+        limit_mps=limit * MPS_OF_MPH if limit > 0 else None,
+        follows=_ids(entry.get("entry_lanes")),
+        leads_to=_ids(entry.get("exit_lanes")),
+        left=sides[0],
+        right=sides[1],
+        area=area if area is not None and _is_area(area) else None,
+    )
+
+
+def _number(entry: Entry) -> float:
+    if not isinstance(entry.value, int | float | np.number) or not abs(entry.value) < np.inf:
+        raise entry.wrong("is no number")
+    return float(entry.value)
+
+
+def _is_area(corners: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> bool:
+    return len(corners) >= _FEWEST_CORNERS and float(shapely.Polygon(corners).area) > 0
+
+
+def _ids(entry: Entry | None) -> tuple[str, ...]:
+    return () if entry is None else tuple([one.text() for one in entry.elements()])
+
+
+def _boundaries(entry: Entry | None, count: int, known: DataSet) -> tuple[BoundaryPart, ...]:
+    if entry is None or not known.whole_map:
+        return ()
+    parts = []
+    for part in entry.elements():
+        kind = part.get("boundary_type")
+        word = "" if kind is None else kind.text().removeprefix("ROAD_LINE_")
+        start, end = _range(part, "lane_start_index", "lane_end_index", count)
+        line = part.child("boundary_feature_id").text()
+        parts.append(BoundaryPart(start, end, line, _MARKS.get(word)))
+    return tuple(parts)
+
+
+def _neighbours(entry: Entry | None, count: int) -> tuple[NeighbourPart, ...]:
+    """Parts of lanes beside, as of Waymo's, or ids of lanes that are so all along."""
+    parts = []
+    for part in () if entry is None else entry.elements():
+        if not isinstance(part.value, dict):
+            parts.append(NeighbourPart(part.text(), 0, max(count - 1, 0), 0, _MOST_INDEX))
+            continue
+        own = _range(part, "self_start_index", "self_end_index", count)
+        other = _range(part, "neighbor_start_index", "neighbor_end_index", _MOST_INDEX)
+        parts.append(NeighbourPart(part.child("feature_id").text(), *own, *other))
+    return tuple(parts)
+
+
+def _range(part: Entry, first: str, last: str, count: int) -> tuple[int, int]:
+    indices = (part.child(first).whole(), part.child(last).whole())
+    start, end = sorted(min(max(index, 0), max(count - 1, 0)) for index in indices)
+    return start, end
+
+
+def joined(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
+    """The lanes with those that they lead to, by where they begin and end."""
+    there = [lane for lane in lanes.values() if len(lane.centre) > 1]
+    if not there:
+        return dict(lanes)
+    starts = shapely.points([lane.centre[0, :2] for lane in there])
+    ends = shapely.points([lane.centre[-1, :2] for lane in there])
+    pairs = shapely.STRtree(starts).query(ends, predicate="dwithin", distance=JOINED_M)
+    after: dict[str, list[str]] = {}
+    before: dict[str, list[str]] = {}
+    for one, other in sorted(pairs.T.tolist()):
+        own, following = there[one], there[other]
+        turned = _heading(following, 0) - _heading(own, -2)
+        if own is not following and abs((turned + np.pi) % (2 * np.pi) - np.pi) < _TURNED_RAD:
+            after.setdefault(own.id, []).append(following.id)
+            before.setdefault(following.id, []).append(own.id)
+    return {
+        name: replace(
+            lane, leads_to=tuple(after.get(name, ())), follows=tuple(before.get(name, ()))
+        )
+        for name, lane in lanes.items()
+    }
+
+
+def _heading(lane: CentreLane, start: int) -> float:
+    x, y = lane.centre[start + 1, :2] - lane.centre[start, :2]
+    return float(np.arctan2(y, x))
+
+
+def _add_lights(features: RoadFeatures, scenario: Entry, known: DataSet, steps: list[int]) -> None:
+    states = scenario.get("dynamic_map_states")
+    for _, entry in [] if states is None else states.items():
+        lane = entry.get("lane")
+        shown = entry.child("state").get("object_state")
+        if lane is None or shown is None:
+            continue
+        colours = {}
+        elements = shown.elements()
+        if len(elements) > len(steps):
+            raise shown.wrong(f"has {len(elements)} states for {len(steps)} times")
+        for step, element in zip(steps, elements, strict=False):
+            colour = _COLOURS.get(element.value) if isinstance(element.value, str) else None
+            if colour is not None:
+                colours[step] = colour
+        point = entry.get("stop_point") if known.whole_map else None
+        place = None if point is None else point.column()[:2]
+        if place is not None and len(place) < 2:
+            raise entry.wrong("has a `stop_point` of fewer than two coordinates")
+        features.lights[lane.text()] = LaneLight(place, colours)

@@ -1,0 +1,172 @@
+"""ScenarioNet's scenarios: a pickle each, read as a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+from numpy import float64, int64
+from numpy.typing import NDArray
+
+from rulec.recordings.encodings.restricted_pickle import read_pickle
+from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.lane_centres.body_tracks import BoxTrack, bridged, gaps_remark, participant
+from rulec.recordings.lane_centres.centre_lanelets import centre_lanelets
+from rulec.recordings.lane_centres.even_steps import even_steps
+from rulec.recordings.recording import Participant, Recording
+from rulec.recordings.scenarionet.data_sets import DataSet, data_set, place_of
+from rulec.recordings.scenarionet.scenario_dictionary import Entry
+from rulec.recordings.scenarionet.scenarionet_features import road_features
+
+SCENARIONET = WireFormat(
+    "a scenario of ScenarioNet's",
+    "it is a pickle of one scenario's dictionary, as ScenarioNet's converters write it",
+    200_000_000,
+)
+_PARTS = ("tracks", "map_features", "metadata")
+
+_TYPES: Mapping[str, str] = MappingProxyType(
+    {
+        "VEHICLE": "vehicle",
+        "PEDESTRIAN": "pedestrian",
+        "CYCLIST": "bicycle",
+        **dict.fromkeys(("TRAFFIC_CONE", "TRAFFIC_BARRIER", "TRAFFIC_OBJECT"), "constructionZone"),
+    }
+)
+_OWN_TYPES: tuple[tuple[str, str], ...] = (
+    ("vehicle.car", "car"),
+    ("vehicle.truck", "truck"),
+    ("vehicle.bus", "bus"),
+    ("vehicle.motorcycle", "motorcycle"),
+    ("vehicle.bicycle", "bicycle"),
+)
+"""Beginnings of nuScenes' own categories, which say more."""
+
+
+def read_scenarionet(path: Path) -> Recording:
+    """The scenario in a file.
+
+    Raises RulecError R0610 for a file that cannot be read as one, R0701 if it cannot be opened.
+    """
+    scenario = Entry(read_pickle(path, SCENARIONET), (), path, SCENARIONET)
+    if not isinstance(scenario.value, dict) or any(key not in scenario.value for key in _PARTS):
+        why = "it is a pickle, but not of a scenario, which has `tracks` and `map_features`"
+        help_text = "give a scenario's own file, `sd_*.pkl`, not the summary of a data set"
+        raise SCENARIONET.refused(path, why, help_text=help_text)
+    metadata = scenario.child("metadata")
+    name = _text(metadata, "dataset")
+    known = data_set(name)
+    side, country = place_of(_text(metadata, "map"))
+    if _text(metadata, "coordinate") == "left-handed":
+        raise metadata.wrong("says that its coordinates are left-handed, which are not read")
+    times = metadata.get("ts") or metadata.child("timestep")
+    try:
+        step_s, steps = even_steps(times.column())
+    except ValueError as reason:
+        raise times.wrong(f"makes no sense: {reason}") from None
+    ego = _text(metadata, "sdc_id")
+    features = road_features(scenario, known, steps.tolist())
+    remarks = _Remarks()
+    bodies = tuple(_participants(scenario, known, ego, (step_s, steps), remarks))
+    if not bodies:
+        raise scenario.child("tracks").wrong("has nobody in it")
+    if ego and ego not in scenario.child("tracks").value:
+        raise metadata.wrong(f"says that ego is `{ego[:40]}`, who is not in `tracks`")
+    title = f" of {known.title}" if known.title else ""
+    return Recording(
+        name=_text(scenario, "id") or path.stem,
+        step_s=step_s,
+        lanelets=centre_lanelets(features, has_lights=known.has_lights or bool(features.lights)),
+        participants=bodies,
+        problems=(),
+        form=f"ScenarioNet scenario{title}",
+        side=side or known.side,
+        remarks=(*remarks.found, *gaps_remark(remarks.bridged)),
+        country=country or known.country,
+        complete=frozenset({"STOP"}) if known.whole_map else frozenset(),
+        ego=ego if any(body.id == ego for body in bodies) else "",
+    )
+
+
+class _Remarks:
+    """What is found out of the tracks."""
+
+    def __init__(self) -> None:
+        self.found: list[str] = []
+        self.bridged = 0
+
+
+def _text(entry: Entry, key: str) -> str:
+    found = entry.get(key)
+    return "" if found is None else found.text()
+
+
+def _participants(
+    scenario: Entry,
+    known: DataSet,
+    ego: str,
+    times: tuple[float, NDArray[int64]],
+    remarks: _Remarks,
+) -> Iterator[Participant]:
+    step_s, steps = times
+    for name, track in scenario.child("tracks").items():
+        boxes = _boxes(track.child("state"), steps)
+        if not len(boxes.steps):
+            continue
+        kind = _kind(track)
+        if name == ego:
+            boxes = _ego(boxes, known, remarks)
+        if kind == "constructionZone":
+            yield participant(name, kind, boxes.first(), step_s, standing=True)
+            continue
+        whole = bridged(boxes, step_s)
+        remarks.bridged += len(whole.steps) - len(boxes.steps)
+        yield participant(name, kind, whole, step_s)
+
+
+def _kind(track: Entry) -> str:
+    own = track.get("metadata")
+    category = None if own is None or not isinstance(own.value, dict) else own.value.get("type")
+    for begin, kind in _OWN_TYPES:
+        if isinstance(category, str) and category.startswith(begin):
+            return kind
+    return _TYPES.get(_text(track, "type"), "unknown")
+
+
+def _boxes(state: Entry, steps: NDArray[int64]) -> BoxTrack:
+    valid = state.child("valid").column() > 0.5
+    if len(valid) > len(steps):
+        raise state.wrong(f"has {len(valid)} states for {len(steps)} times")
+
+    def rows(key: str) -> NDArray[float64]:
+        entry = state.child(key)
+        values = entry.places()[:, :2] if key in ("position", "velocity") else entry.column()
+        if len(values) != len(valid):
+            raise entry.wrong(f"has {len(values)} states, `valid` has {len(valid)}")
+        chosen: NDArray[float64] = values[valid]
+        return chosen
+
+    sizes = np.column_stack((rows("length"), rows("width")))
+    if len(sizes) and np.median(sizes, axis=0).min() <= 0:
+        raise state.wrong("has a body of no length or width")
+    own = steps[: len(valid)][valid]
+    return BoxTrack(own, rows("position"), rows("heading"), rows("velocity"), sizes)
+
+
+def _ego(boxes: BoxTrack, known: DataSet, remarks: _Remarks) -> BoxTrack:
+    """Ego with its length along it, and with its places in its middle."""
+    length, width = np.median(boxes.sizes, axis=0).tolist()
+    if length < width:
+        remarks.found.append(
+            f"ego is {length:g} m long and {width:g} m wide in the file, and taken to be turned"
+        )
+        boxes = boxes._replace(sizes=boxes.sizes[:, ::-1])
+    if known.ego_ahead_m:
+        remarks.found.append(
+            f"ego's places are those of its rear axle, {known.ego_ahead_m:.2f} m behind its middle"
+        )
+        ahead = np.column_stack((np.cos(boxes.headings), np.sin(boxes.headings)))
+        boxes = boxes._replace(centres=boxes.centres + known.ego_ahead_m * ahead)
+    return boxes
