@@ -195,11 +195,12 @@ def runs_along(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, 
 def junction_lanelets(recording: Recording) -> frozenset[str]:
     """The ids of the lanelets in junctions, by the map or by crossing ways.
 
-    Where a map marks any, only those count: whoever drew it has thought of junctions.
+    Where a map marks any, only those count: whoever drew it has thought of junctions. So has who
+    says that all are marked.
     """
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
     marked = {lanelet.id for lanelet in lanes if "intersection" in lanelet.types}
-    if marked or not lanes:
+    if marked or not lanes or "junctions" in recording.complete:
         return frozenset(marked)
     lines = [shapely.LineString(lanelet.centre) for lanelet in lanes]
     firsts, seconds = shapely.STRtree(lines).query(lines, predicate="crosses")

@@ -11,7 +11,7 @@ import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.recordings.lane_centres.junction_lanes import junction_lanes
+from rulec.recordings.lane_centres.junction_lanes import junction_stretches
 from rulec.recordings.lane_centres.lane_pieces import (
     LanePiece,
     mark_of,
@@ -29,6 +29,9 @@ from rulec.recordings.lane_centres.road_features import (
 )
 from rulec.recordings.recording import Lanelet, ObservedLight, Points
 
+ALL_JUNCTIONS = frozenset({"junctions"})
+"""What such maps have: lanes elsewhere cross at other heights."""
+
 _CLOSEST_M = 0.01
 _FAR_M = 10.0
 _STOP = frozenset({"STOP"})
@@ -42,10 +45,11 @@ def centre_lanelets(features: RoadFeatures, *, has_lights: bool) -> dict[str, La
     """
     features = replace(features, lanes=_sound_lanes(features.lanes))
     lanes = features.lanes
-    pieces = pieces_of_lanes(lanes)
+    inside = junction_stretches(features)
+    pieces = pieces_of_lanes(lanes, inside)
     left_of = neighbours_of_pieces(lanes, pieces)
     right_of = {left: right for right, left in left_of.items()}
-    widths, inside = half_widths(features), junction_lanes(features)
+    widths = half_widths(features)
     lanelets: dict[str, Lanelet] = {}
     for name, own in pieces.items():
         lane = lanes[name]
@@ -63,7 +67,7 @@ def centre_lanelets(features: RoadFeatures, *, has_lights: bool) -> dict[str, La
                 predecessors=(own[number - 1].id,) if number else tuple(before),
                 left_of=left_of.get(piece.id),
                 right_of=right_of.get(piece.id),
-                types=lane.types | ({"intersection"} if name in inside else frozenset()),
+                types=lane.types | _junction_type(piece, inside.get(name)),
                 signs=frozenset(),
                 limit_mps=lane.limit_mps,
                 left_mark=mark_of(lane.left, piece),
@@ -73,6 +77,13 @@ def centre_lanelets(features: RoadFeatures, *, has_lights: bool) -> dict[str, La
     for name, polygon in features.crosswalks.items():
         lanelets[f"crosswalk {name}"] = _crosswalk(f"crosswalk {name}", polygon)
     return lanelets
+
+
+def _junction_type(piece: LanePiece, stretch: tuple[int, int] | None) -> frozenset[str]:
+    """The type of a piece whose middle lies in a junction."""
+    if stretch is None or not 2 * stretch[0] <= piece.start + piece.end <= 2 * stretch[1]:
+        return frozenset()
+    return frozenset({"intersection"})
 
 
 def _sound_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:

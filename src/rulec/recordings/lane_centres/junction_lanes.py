@@ -8,7 +8,12 @@ from collections.abc import Mapping
 import numpy as np
 import shapely
 
-from rulec.recordings.lane_centres.road_features import CentreLane, Places3d, RoadFeatures
+from rulec.recordings.lane_centres.road_features import (
+    CentreLane,
+    Places3d,
+    RoadFeatures,
+    lengths_along,
+)
 
 CROSSING_RAD = np.radians(30.0)
 """Lanes that meet at a smaller angle join or part."""
@@ -17,31 +22,57 @@ APART_M = 2.5
 """Lanes whose heights differ by more do not meet: no truck gets through below."""
 
 
-def junction_lanes(features: RoadFeatures) -> frozenset[str]:
-    """The lanes in junctions.
+LONGEST_M = 60.0
+"""A way through a junction is no longer; of longer lanes only a part is in one."""
+
+AROUND_M = 15.0
+"""That part ends so far before and behind the places where the lane crosses others."""
+
+Stretch = tuple[int, int]
+"""The part of a lane between two points of its centre, by number."""
+
+
+def junction_stretches(features: RoadFeatures) -> dict[str, Stretch]:
+    """The lanes in junctions, with the parts of them that are.
 
     Those whose centres cross others at their height, those with a light or a stop sign, which stand
     where a junction begins, and those that begin at the same place as one of them.
     """
-    inside = _crossed(features.lanes) | (features.stop_lanes | set(features.lights))
-    inside &= set(features.lanes)
+    lanes, crossed = features.lanes, _crossed(features.lanes)
+    begin = (features.stop_lanes | set(features.lights)) & set(lanes)
     begin_with = defaultdict(set)
-    for lane in features.lanes.values():
+    for lane in lanes.values():
         for before in lane.follows:
             begin_with[before].add(lane.id)
     for group in begin_with.values():
-        if group & inside:
-            inside |= group & set(features.lanes)
-    return frozenset(inside)
+        if group & (begin | crossed.keys()):
+            begin |= group
+    return {
+        name: _stretch(lanes[name], crossed.get(name, []), from_start=name in begin)
+        for name in sorted(begin | crossed.keys())
+    }
 
 
-def _crossed(lanes: Mapping[str, CentreLane]) -> set[str]:
+def _stretch(lane: CentreLane, places: list[float], *, from_start: bool) -> Stretch:
+    along = lengths_along(lane)
+    last = len(along) - 1
+    if along[-1] <= LONGEST_M:
+        return 0, last
+    starts = [0.0] if from_start else []
+    low = min([*starts, *(place - AROUND_M for place in places)])
+    high = max([*starts, *places]) + AROUND_M
+    start, end = np.searchsorted(along, [low, high]).tolist()
+    return int(start), min(int(end), last)
+
+
+def _crossed(lanes: Mapping[str, CentreLane]) -> dict[str, list[float]]:
+    """The lanes that others cross, and where along them (m)."""
     cars = [lane for lane in lanes.values() if "bicycleLane" not in lane.types]
     lines = [shapely.LineString(lane.centre[:, :2]) for lane in cars]
     if not lines:
-        return set()
+        return {}
     pairs = shapely.STRtree(lines).query(lines, predicate="crosses").T.tolist()
-    found: set[str] = set()
+    found: dict[str, list[float]] = defaultdict(list)
     for one, other in pairs:
         if one < other:
             place = shapely.point_on_surface(shapely.intersection(lines[one], lines[other]))
@@ -51,7 +82,8 @@ def _crossed(lanes: Mapping[str, CentreLane]) -> set[str]:
             # Heights that are not known do not part lanes
             meets = not abs(z - other_z) > APART_M
             if meets and abs(np.arctan(np.tan(turn - other_turn))) > CROSSING_RAD:
-                found.update((cars[one].id, cars[other].id))
+                for index in (one, other):
+                    found[cars[index].id].append(float(lines[index].project(place)))
     return found
 
 

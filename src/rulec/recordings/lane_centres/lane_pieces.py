@@ -7,11 +7,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
-import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.recordings.lane_centres.road_features import CentreLane, LaneSide, NeighbourPart
+from rulec.recordings.lane_centres.road_features import (
+    CentreLane,
+    LaneSide,
+    NeighbourPart,
+    lengths_along,
+)
 from rulec.recordings.recording import LaneMark
 
 SHORTEST_BESIDE_M = 8.0
@@ -32,11 +36,17 @@ class LanePiece:
     end: int
 
 
-def pieces_of_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, tuple[LanePiece, ...]]:
-    """The pieces of each lane, from its start on; a whole lane keeps its id."""
-    reach = {name: _along(lane) for name, lane in lanes.items()}
+def pieces_of_lanes(
+    lanes: Mapping[str, CentreLane], stretches: Mapping[str, tuple[int, int]]
+) -> dict[str, tuple[LanePiece, ...]]:
+    """The pieces of each lane, from its start on; a whole lane keeps its id.
+
+    ``stretches`` are parts of lanes that are pieces, too.
+    """
+    reach = {name: lengths_along(lane) for name, lane in lanes.items()}
     cuts: dict[str, set[int]] = defaultdict(set)
     waiting = [(name, index) for name, lane in lanes.items() for index in _ends(lane, reach[name])]
+    waiting += [(name, index) for name, stretch in stretches.items() for index in stretch]
     while waiting:
         name, index = waiting.pop()
         along, own = reach[name], cuts[name]
@@ -46,11 +56,6 @@ def pieces_of_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, tuple[LanePiec
         own.add(index)
         waiting += [pair for pair in _beside(lanes[name], index) if pair[0] in lanes]
     return {name: tuple(_pieces(name, cuts[name], len(reach[name]))) for name in lanes}
-
-
-def _along(lane: CentreLane) -> NDArray[float64]:
-    steps = np.hypot(*np.diff(lane.centre[:, :2], axis=0).T)
-    return np.concatenate(([0.0], np.cumsum(steps)))
 
 
 def _ends(lane: CentreLane, along: NDArray[float64]) -> Iterator[int]:
@@ -80,11 +85,6 @@ def _pieces(name: str, cuts: set[int], count: int) -> Iterator[LanePiece]:
     ends = [0, *sorted(cuts), count - 1]
     for number, (start, end) in enumerate(pairwise(ends), 1):
         yield LanePiece(name if len(ends) == 2 else f"{name}.{number}", name, start, end)
-
-
-def piece_at(pieces: tuple[LanePiece, ...], index: int) -> LanePiece:
-    """The piece of a lane that begins at or before a point of its centre."""
-    return next(piece for piece in reversed(pieces) if piece.start <= index or piece.start == 0)
 
 
 def neighbours_of_pieces(

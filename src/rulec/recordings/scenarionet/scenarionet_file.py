@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rulec.recordings.encodings.restricted_pickle import read_pickle
 from rulec.recordings.encodings.wire_format import WireFormat
 from rulec.recordings.lane_centres.body_tracks import BoxTrack, bridged, gaps_remark, participant
-from rulec.recordings.lane_centres.centre_lanelets import centre_lanelets
+from rulec.recordings.lane_centres.centre_lanelets import ALL_JUNCTIONS, centre_lanelets
 from rulec.recordings.lane_centres.even_steps import even_steps
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.scenarionet.data_sets import DataSet, data_set, place_of
@@ -85,7 +85,7 @@ def read_scenarionet(path: Path) -> Recording:
         side=side or known.side,
         remarks=(*remarks.found, *gaps_remark(remarks.bridged)),
         country=country or known.country,
-        complete=frozenset({"STOP"}) if known.whole_map else frozenset(),
+        complete=ALL_JUNCTIONS | ({"STOP"} if known.whole_map else frozenset()),
         ego=ego if any(body.id == ego for body in bodies) else "",
     )
 

@@ -16,7 +16,7 @@ from rulec.recordings.encodings.tfrecord import TfRecord, tfrecords
 from rulec.recordings.encodings.wire_format import WireFile, WireFormat
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.lane_centres.body_tracks import BoxTrack, bridged, gaps_remark, participant
-from rulec.recordings.lane_centres.centre_lanelets import centre_lanelets
+from rulec.recordings.lane_centres.centre_lanelets import ALL_JUNCTIONS, centre_lanelets
 from rulec.recordings.lane_centres.even_steps import even_steps
 from rulec.recordings.lane_centres.road_features import RoadFeatures
 from rulec.recordings.recording import Participant, Recording
@@ -150,7 +150,7 @@ def _scenario(file: WireFile, record: TfRecord) -> Recording:
         side="right",
         remarks=gaps_remark(states - sum(len(body.numbers) for body in there)),
         country="USA",
-        complete=SIGNS_DRAWN,
+        complete=SIGNS_DRAWN | ALL_JUNCTIONS,
         ego=ego,
     )
 
