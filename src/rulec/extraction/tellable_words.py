@@ -85,6 +85,7 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "commonroad-protobuf": _EITHER | _COMMONROAD_ONLY,
     "sumo": _EITHER | _SUMO_ONLY,
     "waymo": _EITHER - _NOT_BY_LANE_CENTRES,
+    "scenarionet": _EITHER - _NOT_BY_LANE_CENTRES,
     "tracks": _EITHER | _ON_ANY_MAP | {"boarding", "leaving_stop"},
     **dict.fromkeys(
         ("levelx", "interaction", "ngsim", "omega-prime"), (_EITHER | _ON_ANY_MAP) - _BY_LAMPS

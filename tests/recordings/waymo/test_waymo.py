@@ -28,7 +28,7 @@ def junction(tmp_path_factory):
 def test_the_recording(junction):
     assert (junction.name, junction.form, junction.ego) == ("4a", "Waymo scenario", "70")
     assert (junction.side, junction.country, junction.step_s) == ("right", "USA", 0.1)
-    assert junction.complete == {"STOP"}
+    assert junction.complete == {"STOP", "junctions"}
 
 
 def test_tracks_are_those_of_the_file(junction):

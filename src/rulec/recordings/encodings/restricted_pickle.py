@@ -8,9 +8,7 @@ stand for, and refuses all others.
 from __future__ import annotations
 
 import re
-import struct
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from math import prod
 from pathlib import Path
 from types import MappingProxyType
@@ -18,13 +16,16 @@ from typing import Any
 
 import numpy as np
 
-from rulec.diagnostics import RulecError
 from rulec.files import opened
+from rulec.recordings.encodings.pickle_machine import (
+    MOST_OPCODES,
+    PickledArray,
+    PickledName,
+    PickleMachine,
+    called,
+)
 from rulec.recordings.encodings.wire_format import WireFormat
 from rulec.recordings.encodings.xml_element import short
-
-MOST_OPCODES = 5_000_000
-"""Each makes a value at most, or takes some; a scene of 20 s has 100,000."""
 
 LONGEST_NAME = 200
 MOST_AXES = 4
@@ -45,111 +46,16 @@ _NAMES: Mapping[str, str] = MappingProxyType(
         "collections OrderedDict": "dict",
         **dict.fromkeys(("builtins set", "builtins frozenset"), "set"),
         **dict.fromkeys(("__builtin__ set", "__builtin__ frozenset"), "set"),
-        **{f"builtins {name}": "class" for name in ("int", "float", "str", "bool", "list", "dict")},
+        **{
+            f"{module} {name}": "class"
+            for module in ("builtins", "__builtin__")
+            for name in ("int", "long", "float", "str", "bool", "list", "dict")
+        },
+        **dict.fromkeys(("builtins bytes", "__builtin__ bytes"), "bytes"),
         "_codecs encode": "bytes of text",
     }
 )
 _DTYPE = re.compile(r"[<>|=]?(?:b1|[iu][1248]|f[248]|[US][0-9]{1,4})")
-
-
-@dataclass(frozen=True, slots=True)
-class _Named:
-    """A name that a pickle may call, and what it makes."""
-
-    name: str
-    makes: str
-
-
-@dataclass(slots=True)
-class _Built:
-    """An array or kind of numbers that is complete only when its state has come."""
-
-    value: np.ndarray[Any, Any] | np.dtype[Any] | None = None
-
-
-class _Mark:
-    """Where the values of a container begin."""
-
-
-@dataclass(slots=True)
-class _Machine:
-    """The machine that a pickle is a program for. Its methods raise RulecError R0610."""
-
-    data: bytes
-    path: Path
-    form: WireFormat
-    place: int = 0
-    begin: int = 0
-    stack: list[Any] = field(default_factory=list)
-    marks: list[int] = field(default_factory=list)
-    memo: dict[int, Any] = field(default_factory=dict)
-    copied: int = 0
-
-    def wrong(self, why: str) -> RulecError:
-        """The error for the opcode that is being read."""
-        return self.form.refused(self.path, why, self.begin)
-
-    def run(self) -> Any:
-        """The value of the whole pickle."""
-        for _ in range(MOST_OPCODES):
-            self.begin = self.place
-            opcode = self.take(1)
-            if opcode == b".":
-                value = self.pop()
-                return value.value if isinstance(value, _Built) else value
-            action = _ACTIONS.get(opcode)
-            if action is None:
-                raise self.wrong(f"it has the opcode {opcode!r}, which no scenario needs")
-            action(self)
-        raise self.wrong(f"it has more than {MOST_OPCODES:,} opcodes")
-
-    def take(self, count: int) -> bytes:
-        """So many bytes, from where the machine is."""
-        if count > len(self.data) - self.place:
-            raise self.wrong("it ends before what begins here; it has been cut short, or is none")
-        self.place += count
-        return self.data[self.place - count : self.place]
-
-    def number(self, form: str) -> Any:
-        """A number in a form of ``struct``."""
-        return struct.unpack(form, self.take(struct.calcsize(form)))[0]
-
-    def counted(self, form: str) -> bytes:
-        """Bytes after their number."""
-        return self.take(self.number(form))
-
-    def copy(self, count: int) -> None:
-        """Count what is copied: a small file may refer to a large value again and again."""
-        self.copied += count
-        if self.copied > max(MOST_OPCODES, len(self.data)):
-            raise self.wrong("it copies more than there is in it")
-
-    def push(self, value: Any) -> None:
-        """Put a value onto the stack."""
-        self.stack.append(value)
-
-    def pop(self) -> Any:
-        """Take the last value from the stack, not one before the last mark."""
-        if len(self.stack) <= (self.marks[-1] if self.marks else 0):
-            raise self.wrong("it takes a value where there is none")
-        return self.stack.pop()
-
-    def since_mark(self) -> list[Any]:
-        """Take all values since the last mark."""
-        if not self.marks:
-            raise self.wrong("it takes values from a mark on where there is none")
-        start = self.marks.pop()
-        values = self.stack[start:]
-        del self.stack[start:]
-        return values
-
-    def last(self, kind: type | tuple[type, ...], what: str) -> Any:
-        """The last value on the stack, which must be of a kind."""
-        if len(self.stack) <= (self.marks[-1] if self.marks else 0):
-            raise self.wrong("it takes a value where there is none")
-        if type(self.stack[-1]) is not kind:
-            raise self.wrong(f"it adds to {_called(self.stack[-1])} as to a {what}")
-        return self.stack[-1]
 
 
 def read_pickle(path: Path, form: WireFormat) -> Any:
@@ -165,38 +71,46 @@ def read_pickle(path: Path, form: WireFormat) -> Any:
         raise form.refused(path, "it is empty")
     if len(data) > form.largest_bytes:
         raise form.refused(path, f"it is too large: at most {form.largest_bytes:,} bytes are read")
-    machine = _Machine(data, path, form)
+    machine = PickleMachine(data, path, form)
     if data[0] != 0x80:
         raise machine.wrong("it does not begin with a protocol, as pickles since protocol 2 do")
-    return machine.run()
+    return _run(machine)
 
 
-def _called(value: Any) -> str:
-    if isinstance(value, _Named):
-        return f"`{short(value.name)}`"
-    return "an array" if isinstance(value, _Built) else f"a {type(value).__name__}"
+def _run(machine: PickleMachine) -> Any:
+    """The value of the whole pickle."""
+    for _ in range(MOST_OPCODES):
+        machine.begin = machine.place
+        opcode = machine.take(1)
+        if opcode == b".":
+            return _settled(machine.pop())
+        action = _ACTIONS.get(opcode)
+        if action is None:
+            raise machine.wrong(f"it has the opcode {opcode!r}, which no scenario needs")
+        action(machine)
+    raise machine.wrong(f"it has more than {MOST_OPCODES:,} opcodes")
 
 
 def _settled(value: Any) -> Any:
     """A value as it goes into a container: arrays are complete by then."""
-    return value.value if isinstance(value, _Built) and value.value is not None else value
+    return value.value if isinstance(value, PickledArray) and value.value is not None else value
 
 
-def _protocol(machine: _Machine) -> None:
+def _protocol(machine: PickleMachine) -> None:
     protocol = machine.number("<B")
     if not _OLDEST <= protocol <= _NEWEST:
         raise machine.wrong(f"it is of protocol {protocol}; {_OLDEST} to {_NEWEST} are read")
 
 
-def _whole(machine: _Machine) -> None:
+def _whole(machine: PickleMachine) -> None:
     content = machine.counted("<B")
     if len(content) > 8:
         raise machine.wrong(f"it has a whole number of {len(content)} bytes; at most 8 are read")
     machine.push(int.from_bytes(content, "little", signed=True))
 
 
-def _text(form: str) -> Callable[[_Machine], None]:
-    def action(machine: _Machine) -> None:
+def _text(form: str) -> Callable[[PickleMachine], None]:
+    def action(machine: PickleMachine) -> None:
         try:
             machine.push(machine.counted(form).decode("utf-8", "surrogatepass"))
         except UnicodeDecodeError:
@@ -205,39 +119,39 @@ def _text(form: str) -> Callable[[_Machine], None]:
     return action
 
 
-def _pushes(value_of: Callable[[_Machine], Any]) -> Callable[[_Machine], None]:
-    def action(machine: _Machine) -> None:
+def _pushes(value_of: Callable[[PickleMachine], Any]) -> Callable[[PickleMachine], None]:
+    def action(machine: PickleMachine) -> None:
         machine.push(value_of(machine))
 
     return action
 
 
-def _tuple(count: int) -> Callable[[_Machine], None]:
-    def action(machine: _Machine) -> None:
+def _tuple(count: int) -> Callable[[PickleMachine], None]:
+    def action(machine: PickleMachine) -> None:
         values = [_settled(machine.pop()) for _ in range(count)]
         machine.push(tuple(reversed(values)))
 
     return action
 
 
-def _append(machine: _Machine) -> None:
+def _append(machine: PickleMachine) -> None:
     value = _settled(machine.pop())
     machine.last(list, "list").append(value)
 
 
-def _appends(machine: _Machine) -> None:
+def _appends(machine: PickleMachine) -> None:
     values = machine.since_mark()
     machine.last(list, "list").extend(map(_settled, values))
 
 
-def _key(machine: _Machine, key: Any) -> Any:
+def _key(machine: PickleMachine, key: Any) -> Any:
     """A key, of which nobody can choose many with one hash."""
     if isinstance(key, str) or (isinstance(key, int | None) and abs(key or 0) < _LARGEST_KEY):
         return key
-    raise machine.wrong(f"{_called(key)} is a key; texts and whole numbers may be")
+    raise machine.wrong(f"{called(key)} is a key; texts and whole numbers may be")
 
 
-def _set_items(machine: _Machine, values: list[Any]) -> None:
+def _set_items(machine: PickleMachine, values: list[Any]) -> None:
     target = machine.last(dict, "dictionary")
     if len(values) % 2:
         raise machine.wrong("a key has no value")
@@ -245,32 +159,32 @@ def _set_items(machine: _Machine, values: list[Any]) -> None:
         target[_key(machine, key)] = _settled(value)
 
 
-def _set_item(machine: _Machine) -> None:
+def _set_item(machine: PickleMachine) -> None:
     value, key = machine.pop(), machine.pop()
     _set_items(machine, [key, value])
 
 
-def _add_items(machine: _Machine) -> None:
+def _add_items(machine: PickleMachine) -> None:
     values = machine.since_mark()
     machine.last(set, "set").update([_key(machine, value) for value in values])
 
 
-def _mark(machine: _Machine) -> None:
+def _mark(machine: PickleMachine) -> None:
     machine.marks.append(len(machine.stack))
 
 
-def _memoize(machine: _Machine) -> None:
+def _memoize(machine: PickleMachine) -> None:
     _put(machine, len(machine.memo))
 
 
-def _put(machine: _Machine, number: int) -> None:
+def _put(machine: PickleMachine, number: int) -> None:
     value = machine.pop()
     machine.push(value)
     machine.memo[number] = value
 
 
-def _get(form: str) -> Callable[[_Machine], None]:
-    def action(machine: _Machine) -> None:
+def _get(form: str) -> Callable[[PickleMachine], None]:
+    def action(machine: PickleMachine) -> None:
         number = machine.number(form)
         if number not in machine.memo:
             raise machine.wrong(f"it refers to its value {number}, which has not been")
@@ -279,15 +193,15 @@ def _get(form: str) -> Callable[[_Machine], None]:
     return action
 
 
-def _named(machine: _Machine, module: Any, name: Any) -> None:
+def _named(machine: PickleMachine, module: Any, name: Any) -> None:
     full = f"{module} {name}"
     if not isinstance(module, str) or not isinstance(name, str) or full not in _NAMES:
-        asked = short(f"{module}.{name}"[:LONGEST_NAME])
+        asked = f"{short(str(module))}.{short(str(name))}"
         raise machine.wrong(f"it asks for `{asked}`, which is none of what a scenario is made of")
-    machine.push(_Named(full.replace(" ", "."), _NAMES[full]))
+    machine.push(PickledName(full.replace(" ", "."), _NAMES[full]))
 
 
-def _global(machine: _Machine) -> None:
+def _global(machine: PickleMachine) -> None:
     parts = []
     for _ in range(2):
         end = machine.data.find(b"\n", machine.place, machine.place + LONGEST_NAME)
@@ -298,18 +212,18 @@ def _global(machine: _Machine) -> None:
     _named(machine, *parts)
 
 
-def _stack_global(machine: _Machine) -> None:
+def _stack_global(machine: PickleMachine) -> None:
     name, module = machine.pop(), machine.pop()
     _named(machine, module, name)
 
 
-def _reduce(machine: _Machine) -> None:
+def _reduce(machine: PickleMachine) -> None:
     arguments, named = machine.pop(), machine.pop()
-    if not isinstance(named, _Named) or not isinstance(arguments, tuple):
-        raise machine.wrong(f"it calls {_called(named)}")
+    if not isinstance(named, PickledName) or not isinstance(arguments, tuple):
+        raise machine.wrong(f"it calls {called(named)}")
     match named.makes, arguments:
         case "array", _:
-            machine.push(_Built())
+            machine.push(PickledArray())
         case "array of bytes", (
             bytes() as raw,
             np.dtype() as kind,
@@ -318,16 +232,18 @@ def _reduce(machine: _Machine) -> None:
         ):
             machine.push(_array(machine, shape, kind, raw, order == "F"))
         case "dtype", (str() as text, *_) if _DTYPE.fullmatch(text):
-            machine.push(_Built(np.dtype(text)))
+            machine.push(PickledArray(np.dtype(text)))
         case "scalar", (np.dtype() as kind, bytes() as raw) if len(raw) == kind.itemsize:
             machine.push(np.frombuffer(raw, kind)[0].item())
-        case "default dict", (_Named() | None,) | ():
+        case "default dict", (PickledName() | None,) | ():
             machine.push({})
         case "dict", ():
             machine.push({})
         case "set", (list() | tuple() as values,):
             machine.copy(len(values))
             machine.push({_key(machine, value) for value in values})
+        case "bytes", ():
+            machine.push(b"")
         case "set", ():
             machine.push(set())
         case "bytes of text", (str() as text, "latin1"):
@@ -337,10 +253,10 @@ def _reduce(machine: _Machine) -> None:
             raise machine.wrong(f"it calls `{named.name}` with what that does not take")
 
 
-def _build(machine: _Machine) -> None:
+def _build(machine: PickleMachine) -> None:
     state, target = machine.pop(), machine.pop()
-    if not isinstance(target, _Built) or not isinstance(state, tuple):
-        raise machine.wrong(f"it gives {_called(target)} a state")
+    if not isinstance(target, PickledArray) or not isinstance(state, tuple):
+        raise machine.wrong(f"it gives {called(target)} a state")
     match target.value, state:
         case np.dtype() as kind, (_, "<" | ">" | "|" | "=" as order, None, None, None, *_):
             target.value = kind.newbyteorder(order) if order in "<>" else kind
@@ -352,7 +268,7 @@ def _build(machine: _Machine) -> None:
 
 
 def _array(
-    machine: _Machine,
+    machine: PickleMachine,
     shape: tuple[Any, ...],
     kind: np.dtype[Any],
     raw: bytes,
@@ -368,15 +284,15 @@ def _array(
     return np.frombuffer(raw, kind).reshape(tuple(sizes), order="F" if is_fortran else "C")
 
 
-def _no_more(machine: _Machine) -> None:
+def _no_more(machine: PickleMachine) -> None:
     machine.pop()
 
 
-def _pop_mark(machine: _Machine) -> None:
+def _pop_mark(machine: PickleMachine) -> None:
     machine.since_mark()
 
 
-_ACTIONS: Mapping[bytes, Callable[[_Machine], None]] = MappingProxyType(
+_ACTIONS: Mapping[bytes, Callable[[PickleMachine], None]] = MappingProxyType(
     {
         b"\x80": _protocol,
         b"\x95": lambda machine: machine.number("<Q") and None,

@@ -18,7 +18,7 @@ from rulec.recordings.lane_centres.lane_pieces import (
     neighbours_of_pieces,
     pieces_of_lanes,
 )
-from rulec.recordings.lane_centres.lane_widths import HalfWidths, across, half_widths
+from rulec.recordings.lane_centres.lane_widths import HalfWidths, half_widths
 from rulec.recordings.lane_centres.road_features import (
     BoundaryPart,
     CentreLane,
@@ -27,6 +27,7 @@ from rulec.recordings.lane_centres.road_features import (
     NeighbourPart,
     RoadFeatures,
 )
+from rulec.recordings.polylines import parallel_line
 from rulec.recordings.recording import Lanelet, ObservedLight, Points
 
 ALL_JUNCTIONS = frozenset({"junctions"})
@@ -150,11 +151,7 @@ def _renumbered(side: LaneSide, points: list[int], kept: Mapping[str, list[int]]
 
 def _bounds(lane: CentreLane, widths: HalfWidths) -> tuple[Points, Points]:
     centre = lane.centre[:, :2]
-    sideways = across(centre)
-    return (
-        centre + sideways * widths.left[:, None],
-        centre - sideways * widths.right[:, None],
-    )
+    return parallel_line(centre, widths.left), parallel_line(centre, -widths.right)
 
 
 def _regulated(

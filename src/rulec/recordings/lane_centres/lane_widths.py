@@ -11,7 +11,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.recordings.lane_centres.road_features import CentreLane, LaneSide, RoadFeatures
-from rulec.recordings.recording import Points
+from rulec.recordings.polylines import parallel_line
 
 Widths = NDArray[float64]
 
@@ -27,17 +27,6 @@ class HalfWidths(NamedTuple):
 
     left: Widths
     right: Widths
-
-
-def across(centre: Points) -> Points:
-    """The directions to the left at the points of a line of two or more different points."""
-    ahead = np.diff(centre, axis=0)
-    ahead /= np.hypot(*ahead.T)[:, None]
-    both = np.concatenate((ahead[:1], ahead)) + np.concatenate((ahead, ahead[-1:]))
-    both = np.where(np.hypot(*both.T)[:, None] > 1e-6, both, np.concatenate((ahead[:1], ahead)))
-    both /= np.hypot(*both.T)[:, None]
-    turned: Points = np.stack((-both[:, 1], both[:, 0]), axis=1)
-    return turned
 
 
 def half_widths(features: RoadFeatures) -> dict[str, HalfWidths]:
@@ -93,10 +82,10 @@ def _by_area(lane: CentreLane) -> HalfWidths:
     """By where straight lines across the lane leave its outline."""
     centre = lane.centre[:, :2]
     ring = shapely.LinearRing(lane.area)
-    points, sideways = shapely.points(centre), across(centre) * WIDEST_HALF_M
+    points = shapely.points(centre)
     widths = []
-    for towards in (sideways, -sideways):
-        rays = shapely.linestrings(np.stack((centre, centre + towards), axis=1))
+    for away in (WIDEST_HALF_M, -WIDEST_HALF_M):
+        rays = shapely.linestrings(np.stack((centre, parallel_line(centre, away)), axis=1))
         met = shapely.intersection(rays, ring)
         widths.append(
             _sound(np.where(shapely.is_empty(met), np.nan, shapely.distance(points, met)))

@@ -6,6 +6,7 @@ https://scenarionet.readthedocs.io/en/latest/description.html says what there is
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +18,11 @@ from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.wire_format import WireFormat
 from rulec.recordings.encodings.xml_element import LARGEST, short
 
-MOST_NUMBERS = 20_000_000
+MOST_NUMBERS = 5_000_000
 """In all arrays and lists of a scenario that are looked at; one of 20 s has some 100,000."""
 
 _TWO_AXES = 2
+_NUMBERS = frozenset({int, float, bool, np.float64, np.float32, np.int64, np.int32, np.bool_})
 
 
 @dataclass(slots=True)
@@ -124,25 +126,19 @@ class Entry:
         if not isinstance(self.value, list | tuple):
             raise self.wrong("is no array")
         self._spend(len(self.value))
-        rows = []
-        for row in self.value:
-            if isinstance(row, int | float):
-                rows.append((row,))
-            elif isinstance(row, list | tuple | np.ndarray) and np.ndim(row) == 1:
-                self._spend(len(row))
-                rows.append(tuple(row))
-            else:
-                raise self.wrong("has other things than numbers in it")
-        if len({len(row) for row in rows}) > 1:
-            raise self.wrong("has rows of different lengths")
-        if not all(isinstance(one, int | float | np.number) for row in rows for one in row):
+        kinds = set(map(type, self.value))
+        flat = bool(kinds) and kinds <= _NUMBERS
+        rows = [np.ravel(row) if isinstance(row, np.ndarray) else row for row in self.value]
+        if not flat and not all(isinstance(row, list | tuple | np.ndarray) for row in rows):
             raise self.wrong("has other things than numbers in it")
-        try:
-            table = np.array(rows, dtype=float64)
-        except OverflowError:
-            raise self.wrong(f"has a number that is none below {LARGEST:.0e}") from None
-        flat = bool(rows) and all(isinstance(row, int | float) for row in self.value)
-        return table[:, 0] if flat else table
+        if not flat:
+            self._spend(sum(map(len, rows)))
+            if len(set(map(len, rows))) > 1:
+                raise self.wrong("has rows of different lengths")
+        if not set(map(type, rows if flat else chain.from_iterable(rows))) <= _NUMBERS:
+            raise self.wrong("has other things than numbers in it")
+        table: NDArray[float64] = np.array(rows, dtype=float64)
+        return table
 
     def _spend(self, count: int) -> None:
         self.left.count -= count

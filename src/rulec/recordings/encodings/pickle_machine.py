@@ -1,0 +1,106 @@
+"""The machine that pickles are programs for: its bytes, stack, marks and memory."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.encodings.xml_element import short
+
+MOST_OPCODES = 5_000_000
+"""Each makes a value at most, or takes some; a scene of 20 s has 100,000."""
+
+
+@dataclass(frozen=True, slots=True)
+class PickledName:
+    """A name that a pickle may call, and what it makes."""
+
+    name: str
+    makes: str
+
+
+@dataclass(slots=True)
+class PickledArray:
+    """An array or kind of numbers that is complete only when its state has come."""
+
+    value: np.ndarray[Any, Any] | np.dtype[Any] | None = None
+
+
+@dataclass(slots=True)
+class PickleMachine:
+    """The machine that a pickle is a program for. Its methods raise RulecError R0610."""
+
+    data: bytes
+    path: Path
+    form: WireFormat
+    place: int = 0
+    begin: int = 0
+    stack: list[Any] = field(default_factory=list)
+    marks: list[int] = field(default_factory=list)
+    memo: dict[int, Any] = field(default_factory=dict)
+    copied: int = 0
+
+    def wrong(self, why: str) -> RulecError:
+        """The error for the opcode that is being read."""
+        return self.form.refused(self.path, why, self.begin)
+
+    def take(self, count: int) -> bytes:
+        """So many bytes, from where the machine is."""
+        if count > len(self.data) - self.place:
+            raise self.wrong("it ends before what begins here; it has been cut short, or is none")
+        self.place += count
+        return self.data[self.place - count : self.place]
+
+    def number(self, form: str) -> Any:
+        """A number in a form of ``struct``."""
+        return struct.unpack(form, self.take(struct.calcsize(form)))[0]
+
+    def counted(self, form: str) -> bytes:
+        """Bytes after their number."""
+        return self.take(self.number(form))
+
+    def copy(self, count: int) -> None:
+        """Count what is copied: a small file may refer to a large value again and again."""
+        self.copied += count
+        if self.copied > max(MOST_OPCODES, len(self.data)):
+            raise self.wrong("it copies more than there is in it")
+
+    def push(self, value: Any) -> None:
+        """Put a value onto the stack."""
+        self.stack.append(value)
+
+    def pop(self) -> Any:
+        """Take the last value from the stack, not one before the last mark."""
+        if len(self.stack) <= (self.marks[-1] if self.marks else 0):
+            raise self.wrong("it takes a value where there is none")
+        return self.stack.pop()
+
+    def since_mark(self) -> list[Any]:
+        """Take all values since the last mark."""
+        if not self.marks:
+            raise self.wrong("it takes values from a mark on where there is none")
+        start = self.marks.pop()
+        values = self.stack[start:]
+        del self.stack[start:]
+        return values
+
+    def last(self, kind: type | tuple[type, ...], what: str) -> Any:
+        """The last value on the stack, which must be of a kind."""
+        if len(self.stack) <= (self.marks[-1] if self.marks else 0):
+            raise self.wrong("it takes a value where there is none")
+        if type(self.stack[-1]) is not kind:
+            raise self.wrong(f"it adds to {called(self.stack[-1])} as to a {what}")
+        return self.stack[-1]
+
+
+def called(value: Any) -> str:
+    """What a value is, for messages."""
+    if isinstance(value, PickledName):
+        return f"`{short(value.name)}`"
+    return "an array" if isinstance(value, PickledArray) else f"a {type(value).__name__}"

@@ -1,0 +1,230 @@
+"""ScenarioNet's scenarios: what a recording makes of them, whatever data set they are from."""
+
+import copy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rulec import compile_rulebook
+from rulec.diagnostics import RulecError
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
+from rulec.extraction.selection import RequestedDrives
+from rulec.monitoring.verdict import NotJudged
+from rulec.recordings.encodings.wire_format import WireFile
+from rulec.recordings.recording_files import read_recording
+from rulec.recordings.recording_format import RecordingSource
+from rulec.recordings.waymo.waymo_file import WAYMO
+from support.builders import scenarionet_files
+from support.builders import waymo_files as w
+
+CROSSING = w.crossing(id="4a")
+DICTIONARY = scenarionet_files.from_waymo(WireFile(CROSSING, Path("some"), WAYMO))
+
+
+def read(tmp_path, dictionary, name="sd_some.pkl"):
+    path = scenarionet_files.write(tmp_path / name, dictionary)
+    return read_recording(RecordingSource(path))
+
+
+def waymo(tmp_path, content=CROSSING):
+    path = tmp_path / "some.tfrecord"
+    path.write_bytes(w.record(content))
+    return read_recording(RecordingSource(path))
+
+
+def changed(**metadata):
+    """The scenario as one of another data set."""
+    dictionary = copy.deepcopy(DICTIONARY)
+    dictionary["metadata"].update(metadata)
+    return dictionary
+
+
+def same_lanelets(one, other):
+    assert one.keys() == other.keys()
+    for own, its in zip(one.values(), other.values(), strict=True):
+        for line in ("left", "right", "centre"):
+            assert (getattr(own, line) == getattr(its, line)).all()
+        assert (own.stop_line is None) == (its.stop_line is None)
+        for field in ("id", "successors", "predecessors", "left_of", "right_of", "types", "signs"):
+            assert getattr(own, field) == getattr(its, field)
+        for field in ("limit_mps", "lights", "lights_to", "left_mark", "right_mark"):
+            assert getattr(own, field) == getattr(its, field)
+
+
+def test_a_scene_of_waymo_s_is_the_same_in_both_formats(tmp_path):
+    one, other = waymo(tmp_path), read(tmp_path, DICTIONARY)
+    same_lanelets(one.lanelets, other.lanelets)
+    for field in ("name", "step_s", "side", "country", "complete", "ego", "remarks"):
+        assert getattr(one, field) == getattr(other, field)
+    for own, its in zip(one.participants, other.participants, strict=True):
+        assert (own.id, own.type) == (its.id, its.type)
+        assert dict(own.states) == dict(its.states)
+
+
+def verdicts(recording, rulebook):
+    """Drive -> its violations, and what is open or cannot be judged."""
+    found = {}
+    for answer in RecordingVerdicts(recording, rulebook, RequestedDrives(), "some").answers():
+        if isinstance(answer, DriveVerdict) and not isinstance(answer.answer, NotJudged):
+            verdict = answer.answer
+            violated = {(x.rule, x.step, tuple(x.binding.items())) for x in verdict.violations}
+            others = {x.rule for x in verdict.open}, {x.rule for x in verdict.not_judged}
+            found[answer.drive.ego] = violated, *others
+    return found
+
+
+def test_both_are_judged_alike_and_as_was_thought_out(tmp_path):
+    """Car 70 drives past its light at 3 s, which is red for 4.1 s; 71 past its stop sign at 5 s."""
+    rulebook = compile_rulebook("us-ca")
+    found = verdicts(waymo(tmp_path), rulebook)
+    assert found == verdicts(read(tmp_path, DICTIONARY), rulebook)
+    violated = {name: {rule for rule, *_ in own} for name, (own, *_) in found.items()}
+    assert {name: own & {"red_light", "stop_sign"} for name, own in violated.items()} == {
+        "70": {"red_light"},
+        "71": {"stop_sign"},
+    }
+
+
+def test_what_the_conversion_has_made_up_is_missing(tmp_path):
+    """Of nuScenes marks, limits and stop signs are not the map's."""
+    found = read(tmp_path, changed(dataset="nuscenes", map="singapore-queenstown"))
+    assert found.side == "left"
+    assert found.country == "SGP"
+    assert found.complete == {"junctions"}
+    lane = found.lanelets["1"]
+    assert (lane.limit_mps, lane.left_mark, lane.stop_line) == (None, None, None)
+    assert not any(x.signs for x in found.lanelets.values())
+    assert found.form == "ScenarioNet scenario"
+
+
+@pytest.mark.parametrize(
+    ("map_name", "side", "country"),
+    [
+        ("boston-seaport", "right", "USA"),
+        ("singapore-onenorth", "left", "SGP"),
+        ("sg-one-north", "left", "SGP"),
+        ("us-nv-las-vegas-strip", "right", "USA"),
+        ("elsewhere", None, ""),
+    ],
+)
+def test_sides_of_traffic_by_the_map_s_name(tmp_path, map_name, side, country):
+    found = read(tmp_path, changed(dataset="nuplan", map=map_name))
+    assert (found.side, found.country) == (side, country)
+
+
+def test_nuscenes_ego_is_turned_and_moved_to_its_middle(tmp_path):
+    dictionary = changed(dataset="nuscenes", map="boston-seaport")
+    state = dictionary["tracks"]["70"]["state"]
+    state["length"], state["width"] = state["width"], state["length"]
+    found = read(tmp_path, dictionary)
+    ego = found.participants[0]
+    # A Zoe's middle is 2.042 m before its rear end, its rear axle 0.657 m
+    assert ego.states[40].x == pytest.approx(1.385)
+    assert np.ptp(ego.outlines[40], axis=0) == pytest.approx([4.5, 1.9])
+    assert len(found.remarks) == 2
+
+
+def test_lanes_without_successors_lead_to_those_that_begin_where_they_end(tmp_path):
+    dictionary = changed(dataset="nuscenes", map="boston-seaport")
+    for feature in dictionary["map_features"].values():
+        for key in ("entry_lanes", "exit_lanes"):
+            feature.pop(key, None)
+    lanelets = read(tmp_path, dictionary).lanelets
+    assert [lanelets[name].successors for name in ("1", "2", "3", "7")] == [("2",), ("3",), (), ()]
+    assert lanelets["5"].predecessors == ("4",)
+
+
+def test_bounds_are_those_of_a_lane_s_own_outline(tmp_path):
+    dictionary = changed(dataset="nuscenes", map="boston-seaport")
+    outline = [(-61, 1.5), (-9, 1.5), (-9, -1.2), (-61, -1.2), (-61, 1.5)]
+    dictionary["map_features"]["1"]["polygon"] = [list(map(float, place)) for place in outline]
+    lane = read(tmp_path, dictionary).lanelets["1"]
+    assert lane.left[:, 1] == pytest.approx(1.5)
+    assert lane.right[:, 1] == pytest.approx(-1.2)
+
+
+def test_lights_of_nuplan(tmp_path):
+    dictionary = changed(dataset="nuplan", map="us-ma-boston")
+    words = ["TRAFFIC_LIGHT_RED", "TRAFFIC_LIGHT_GREEN", "TRAFFIC_LIGHT_UNKNOWN", None]
+    dictionary["dynamic_map_states"]["2"]["state"]["object_state"][:4] = words
+    (light,) = read(tmp_path, dictionary).lanelets["1"].lights
+    assert [light.colour_at(k) for k in range(4)] == ["red", "green", "", ""]
+
+
+def test_cones_stand_for_good(tmp_path):
+    dictionary = copy.deepcopy(DICTIONARY)
+    dictionary["tracks"]["71"]["type"] = "TRAFFIC_CONE"
+    cone = read(tmp_path, dictionary).participants[1]
+    assert (cone.standing, len(cone.states), cone.object_types) == (True, 1, ("obstacle",))
+
+
+def _set(*keys_and_value):
+    *keys, last, value = keys_and_value
+
+    def change(dictionary):
+        for key in keys:
+            dictionary = dictionary[key]
+        dictionary[last] = value
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (_set("tracks", {}), "`tracks` has nobody in it"),
+        (_set("tracks", []), "`tracks` is no dictionary"),
+        (_set("tracks", "70", "state", "valid", np.ones(90)), "has 90 states for 81 times"),
+        (_set("tracks", "70", "state", "heading", np.ones(3)), "`tracks / 70 / state / heading`"),
+        (_set("tracks", "70", "state", "position", np.ones((81, 1))), "not that of points"),
+        (
+            _set("tracks", "70", "state", "position", np.full((81, 3), np.nan)),
+            "number that is none",
+        ),
+        (_set("tracks", "70", "state", "length", np.zeros(81)), "no length or width"),
+        (
+            _set("tracks", "70", "state", "length", np.array(["a"] * 81)),
+            "other things than numbers",
+        ),
+        (_set("metadata", "ts", np.zeros(81)), "its times do not ascend"),
+        (_set("metadata", "ts", []), "there are no times"),
+        (_set("metadata", "sdc_id", "99"), "ego is `99`"),
+        (_set("metadata", "coordinate", "left-handed"), "left-handed"),
+        (_set("metadata", None), "it has no `metadata`"),
+        (_set("map_features", "1", "polyline", [[0, 0], [1]]), "rows of different lengths"),
+        (_set("map_features", "1", "polyline", [["a", "b"]]), "other things than numbers"),
+        (_set("map_features", "1", "polyline", [[0.0, 0.0], [3e4, 0.0]]), "longer than 20 km"),
+        (_set("map_features", "1", "polyline", [[[0.0]]]), "other things than numbers"),
+        (_set("map_features", "1", "polyline", [[10**18, 0]]), "number that is none"),
+        (_set("map_features", "1", "polyline", [[10**400, 0]]), "a whole number of 167 bytes"),
+        (_set("map_features", "1", "exit_lanes", [[1]]), "is no text"),
+        (_set("map_features", "1", "left_boundaries", [{"lane_start_index": "x"}]), "no whole"),
+        (_set("map_features", "41", "polygon", np.zeros((2, 2))), "fewer than 3 corners"),
+        (_set("dynamic_map_states", "2", "state", "object_state", ["a"] * 82), "82 states for 81"),
+    ],
+)
+def test_what_is_refused(tmp_path, change, why):
+    dictionary = copy.deepcopy(DICTIONARY)
+    change(dictionary)
+    with pytest.raises(RulecError) as caught:
+        read(tmp_path, dictionary)
+    assert [x.code for x in caught.value.diagnostics] == ["R0610"]
+    assert why in str(caught.value)
+
+
+def test_the_summary_of_a_data_set_is_no_scenario(tmp_path):
+    with pytest.raises(RulecError, match="not of a scenario") as caught:
+        read(tmp_path, {"sd_some.pkl": {"id": "a"}}, "dataset_summary.pkl")
+    assert "not the summary of a data set" in str(caught.value.diagnostics[0].help)
+
+
+def test_one_list_in_many_places_is_refused_in_time(tmp_path):
+    """1,000 lanes whose centres are one list of 20,000 points would be 20 million."""
+    points = [[0.1 * k, 0.0] for k in range(20_000)]
+    dictionary = copy.deepcopy(DICTIONARY)
+    dictionary["map_features"] = {
+        str(k): {"type": "LANE_SURFACE_STREET", "polyline": points} for k in range(1000)
+    }
+    with pytest.raises(RulecError, match="more than 5,000,000 values"):
+        read(tmp_path, dictionary)
