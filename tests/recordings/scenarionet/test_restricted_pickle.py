@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.encodings.restricted_pickle import read_pickle
 from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.scenarionet.restricted_pickle import read_pickle
 
 FORM = WireFormat("some pickle", "give another", 10_000_000)
 

@@ -8,15 +8,13 @@ import pytest
 
 from rulec import compile_rulebook
 from rulec.diagnostics import RulecError
-from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
-from rulec.extraction.selection import RequestedDrives
-from rulec.monitoring.verdict import NotJudged
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
 from rulec.recordings.waymo.waymo_file import WAYMO
 from support.builders import scenarionet_files
 from support.builders import waymo_files as w
+from support.builders.scene_verdicts import verdicts
 
 CROSSING = w.crossing(id="4a")
 DICTIONARY = scenarionet_files.from_waymo(WireFile(CROSSING, Path("some"), WAYMO))
@@ -62,24 +60,12 @@ def test_a_scene_of_waymo_s_is_the_same_in_both_formats(tmp_path):
         assert dict(own.states) == dict(its.states)
 
 
-def verdicts(recording, rulebook):
-    """Drive -> its violations, and what is open or cannot be judged."""
-    found = {}
-    for answer in RecordingVerdicts(recording, rulebook, RequestedDrives(), "some").answers():
-        if isinstance(answer, DriveVerdict) and not isinstance(answer.answer, NotJudged):
-            verdict = answer.answer
-            violated = {(x.rule, x.step, tuple(x.binding.items())) for x in verdict.violations}
-            others = {x.rule for x in verdict.open}, {x.rule for x in verdict.not_judged}
-            found[answer.drive.ego] = violated, *others
-    return found
-
-
 def test_both_are_judged_alike_and_as_was_thought_out(tmp_path):
     """Car 70 drives past its light at 3 s, which is red for 4.1 s; 71 past its stop sign at 5 s."""
     rulebook = compile_rulebook("us-ca")
     found = verdicts(waymo(tmp_path), rulebook)
     assert found == verdicts(read(tmp_path, DICTIONARY), rulebook)
-    violated = {name: {rule for rule, *_ in own} for name, (own, *_) in found.items()}
+    violated = {ego: {rule for rule, *_ in own} for (ego, _), (own, *_) in found.items()}
     assert {name: own & {"red_light", "stop_sign"} for name, own in violated.items()} == {
         "70": {"red_light"},
         "71": {"stop_sign"},

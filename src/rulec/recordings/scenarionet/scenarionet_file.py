@@ -10,13 +10,13 @@ import numpy as np
 from numpy import float64, int64
 from numpy.typing import NDArray
 
-from rulec.recordings.encodings.restricted_pickle import read_pickle
 from rulec.recordings.encodings.wire_format import WireFormat
 from rulec.recordings.lane_centres.body_tracks import BoxTrack, bridged, gaps_remark, participant
 from rulec.recordings.lane_centres.centre_lanelets import ALL_JUNCTIONS, centre_lanelets
 from rulec.recordings.lane_centres.even_steps import even_steps
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.scenarionet.data_sets import DataSet, data_set, place_of
+from rulec.recordings.scenarionet.restricted_pickle import read_pickle
 from rulec.recordings.scenarionet.scenario_dictionary import Entry
 from rulec.recordings.scenarionet.scenarionet_features import road_features
 

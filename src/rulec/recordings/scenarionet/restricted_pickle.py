@@ -17,15 +17,15 @@ from typing import Any
 import numpy as np
 
 from rulec.files import opened
-from rulec.recordings.encodings.pickle_machine import (
+from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.scenarionet.pickle_machine import (
     MOST_OPCODES,
     PickledArray,
     PickledName,
     PickleMachine,
     called,
 )
-from rulec.recordings.encodings.wire_format import WireFormat
-from rulec.recordings.encodings.xml_element import short
 
 LONGEST_NAME = 200
 MOST_AXES = 4
