@@ -1,6 +1,7 @@
 """OpenDRIVE files made by hand: roads of a few lanes, junctions, signals."""
 
 import os
+from math import pi
 from pathlib import Path
 
 _COMMONROAD = os.environ.get("RULEC_RECORDINGS")
@@ -95,6 +96,59 @@ def signals(*each):
 def two_way(**changes):
     """Two lanes, one for each direction."""
     return section(lane(1, **changes), lane(-1, **changes))
+
+
+def t_junction(*, west="", straight="", more=""):
+    """Roads from the west (1), the south (2) and the east (3) meet; 1 and 2 lead on to 3.
+
+    Road 1 leads east to x = 100, road 3 goes on at 120, road 2 comes from the south at x = 110.
+    ``west`` and ``straight`` are further elements of road 1 and of 4, which leads on from it,
+    ``more`` of the junction.
+    """
+    turn = '<arc curvature="-0.1"/>'
+    return document(
+        road(1, two_way(), links="successor=junction:9", more=west),
+        road(
+            2,
+            two_way(),
+            plan=geometry(x=110, y=-110, hdg=pi / 2),
+            links="successor=junction:9",
+        ),
+        road(3, two_way(), plan=geometry(x=120), links="predecessor=junction:9"),
+        road(
+            4,
+            section(lane(-1, links="predecessor=-1 successor=-1")),
+            plan=geometry(x=100, length=20),
+            length=20,
+            junction=9,
+            links="predecessor=road:1:end successor=road:3:start",
+            more=straight,
+        ),
+        road(
+            5,
+            section(lane(-1, links="predecessor=-1 successor=-1")),
+            plan=geometry(turn, x=110, y=-10, hdg=pi / 2, length=5 * pi),
+            length=5 * pi,
+            junction=9,
+            links="predecessor=road:2:end successor=road:3:start",
+        ),
+        # The way back, whose link is written from its end
+        road(
+            6,
+            section(lane(1, links="predecessor=1 successor=1")),
+            plan=geometry(x=100, length=20),
+            length=20,
+            junction=9,
+            links="predecessor=road:1:end successor=road:3:start",
+        ),
+        f"""<junction id="9" name="">
+          <connection id="0" incomingRoad="1" connectingRoad="4" contactPoint="start">
+            <laneLink from="-1" to="-1"/></connection>
+          <connection id="1" incomingRoad="2" connectingRoad="5" contactPoint="start">
+            <laneLink from="-1" to="-1"/></connection>
+          <connection id="2" incomingRoad="3" connectingRoad="6" contactPoint="end">
+            <laneLink from="1" to="1"/></connection>{more}</junction>""",
+    )
 
 
 def written(folder, text, name="made.xodr"):
