@@ -6,6 +6,7 @@ import multiprocessing
 import signal
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
@@ -70,6 +71,19 @@ def in_order(
         pool.stop()
 
 
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """A block that Ctrl-C waits for, and whose processes never hear of it.
+
+    It goes to all processes of a terminal, and is for the first one to end the others.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 class _Worker(Generic[Task, Result]):
     """A process, and the number of the task that it works on."""
 
@@ -128,8 +142,9 @@ class _Pool(Generic[Task, Result]):
             if worker is None:
                 if len(self._workers) == self._jobs:
                     return
-                worker = _Worker(self._work)
-                self._workers.append(worker)
+                with _without_interrupts():
+                    worker = _Worker(self._work)
+                    self._workers.append(worker)
             worker.number = self._next
             self._waiting[self._next] = deque()
             self._next += 1
@@ -171,8 +186,6 @@ class _Pool(Generic[Task, Result]):
 
 def _serve(work: Callable[[Task], Iterator[Result]], connection: Connection) -> None:
     """Do tasks until nobody is there to give any."""
-    # Ctrl-C goes to all processes of a terminal; it is for the first one to end the others.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         while True:
             task = connection.recv()
