@@ -88,7 +88,7 @@ def _feature(feature):
         if kind in feature:
             return {"type": type_, "polyline": _points(feature[kind][0].get("polyline", []))}
     if "stop_sign" in feature:
-        lanes = feature["stop_sign"][0]["lane"]
+        lanes = feature["stop_sign"][0].get("lane", [])
         return {"type": "STOP_SIGN", "lane": lanes, "position": np.zeros(3)}
     if "crosswalk" in feature:
         return {"type": "CROSSWALK", "polygon": _points(feature["crosswalk"][0]["polygon"])}
