@@ -32,7 +32,7 @@ from rulec.extraction.signals.participant_signals import (
 )
 from rulec.extraction.signals.settling import settled
 from rulec.extraction.signals.signal_columns import Bounds, SignalColumn, SignalColumns
-from rulec.extraction.tracks.tracks import Floats
+from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
@@ -282,11 +282,11 @@ def _projected(
             continue
         if name in signals.world and not declaration.parameters:
             column = _in_paper_words(name, signals.world[name], declaration)
-            if _fits(name, column, declaration):
+            if _fits(name, column, signals.unknown.get(name), declaration):
                 world[name] = column
         if name in signals.about and len(declaration.parameters) == 1:
             column = signals.about[name]
-            if _fits(name, column, declaration):
+            if _fits(name, column, signals.unknown.get(name), declaration):
                 about[name] = column
                 suits = [is_about(declaration, own, vocabulary) for own in own_types]
                 only[name] = np.array(suits, dtype=bool) & only.get(name, True)
@@ -302,10 +302,13 @@ def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -
     return np.array([PAPER_SURFACE.get(surface, "R_cw") for surface in column.tolist()])
 
 
-def _fits(name: str, column: SignalColumn, declaration: Declaration) -> bool:
+def _fits(name: str, column: SignalColumn, unknown: Flags | None, declaration: Declaration) -> bool:
+    """Whether all values of a column that are known are a declaration's."""
     # All floats are alike; the distinct values of others are few
-    values = column.ravel()[:1] if column.dtype.kind == "f" else np.unique(column)
-    return fits(name, values.tolist(), declaration)
+    if column.dtype.kind == "f":
+        return fits(name, column.ravel()[:1].tolist(), declaration)
+    known = column if unknown is None or unknown.all() else column[~unknown]
+    return fits(name, np.unique(known).tolist(), declaration)
 
 
 def _states(

@@ -109,7 +109,9 @@ def _town(context: DriveContext) -> Callable[[Lanelet], bool | None]:
     settled = bool(context.surroundings.passages.junctions) or any(
         "crosswalk" in x.types for x in lanelets
     )
-    fast = any("urban" in x.types and (x.limit_mps or 0.0) * KMH > _URBAN_KMH for x in lanelets)
+    fast = any(
+        "urban" in x.types and round((x.limit_mps or 0.0) * KMH, 2) > _URBAN_KMH for x in lanelets
+    )
 
     def town(lanelet: Lanelet) -> bool | None:
         types = lanelet.types
