@@ -22,7 +22,6 @@ from rulec.recordings.lane_centres.lane_widths import HalfWidths, half_widths
 from rulec.recordings.lane_centres.road_features import (
     BoundaryPart,
     CentreLane,
-    LaneLight,
     LaneSide,
     NeighbourPart,
     RoadFeatures,
@@ -34,7 +33,6 @@ ALL_JUNCTIONS = frozenset({"junctions"})
 """What such maps have: lanes elsewhere cross at other heights."""
 
 _CLOSEST_M = 0.01
-_FAR_M = 10.0
 _STOP = frozenset({"STOP"})
 
 
@@ -164,7 +162,8 @@ def _regulated(
     """The lanelets that lead to lanes with lights or stop signs, with these.
 
     The files have both at the lane behind the line; here they are at the one before it. Where there
-    is none before, it stays at its own.
+    is none before, it stays at its own. A light's stop point is no line: cars wait up to
+    2 m beyond it.
     """
     behind: dict[str, list[str]] = defaultdict(list)
     for name, own in pieces.items():
@@ -180,7 +179,7 @@ def _regulated(
             continue
         stops = [name for name in names if name in features.stop_lanes]
         seen = {name: features.lights[name] for name in names if name in features.lights}
-        lights = {name: ObservedLight(light.colours) for name, light in seen.items()}
+        lights = {name: ObservedLight(colours) for name, colours in seen.items()}
         if has_lights and not stops:
             inside = [x for x in names if "intersection" in lanelets[pieces[x][0].id].types]
             lights = {x: lights.get(x, ObservedLight({}, seen=False)) for x in inside}
@@ -192,24 +191,8 @@ def _regulated(
                     signs=_STOP if stops else frozenset(),
                     lights=tuple(lights.values()),
                     lights_to={pieces[name][0].id: light for name, light in lights.items()},
-                    stop_line=_stop_line(lanelet, list(seen.values())),
                 ),
             )
-
-
-def _stop_line(lanelet: Lanelet, lights: list[LaneLight]) -> Points | None:
-    """The line across a lanelet at the place where its lights stop traffic, if that is at its end.
-
-    A stop sign has no line in the files: its line is at the lanelet's end, where the lane that it
-    is for begins.
-    """
-    places = [light.stop_point for light in lights if light.stop_point is not None]
-    end = lanelet.centre[-1]
-    near = [place for place in places if np.hypot(*(place - end)) <= _FAR_M]
-    if not near:
-        return None
-    aside = (lanelet.left[-1] - lanelet.right[-1]) / 2
-    return np.stack((near[0] + aside, near[0] - aside))
 
 
 def _crosswalk(name: str, polygon: Points) -> Lanelet:

@@ -75,16 +75,6 @@ def lengths_along(lane: CentreLane) -> NDArray[float64]:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LaneLight:
-    """What the light of a lane was seen to show, by time step, and where it stops traffic."""
-
-    __repr__ = short_repr
-
-    stop_point: Points | None
-    colours: dict[int, str]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class RoadFeatures:
     """All of a road: lanes, lines and edges, and crosswalks by id; where lights and signs are."""
 
@@ -94,4 +84,4 @@ class RoadFeatures:
     lines: dict[str, Points] = field(default_factory=dict)
     crosswalks: dict[str, Points] = field(default_factory=dict)
     stop_lanes: set[str] = field(default_factory=set)
-    lights: dict[str, LaneLight] = field(default_factory=dict)
+    lights: dict[str, dict[int, str]] = field(default_factory=dict)

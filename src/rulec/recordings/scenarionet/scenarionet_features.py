@@ -12,7 +12,6 @@ import shapely
 from rulec.recordings.lane_centres.road_features import (
     BoundaryPart,
     CentreLane,
-    LaneLight,
     LaneSide,
     NeighbourPart,
     RoadFeatures,
@@ -70,7 +69,7 @@ def road_features(scenario: Entry, known: DataSet, steps: Iterable[int]) -> Road
             features.crosswalks[name] = corners
     if not told:
         features = replace(features, lanes=joined(features.lanes))
-    _add_lights(features, scenario, known, list(steps))
+    _add_lights(features, scenario, list(steps))
     return features
 
 
@@ -185,7 +184,7 @@ def _heading(lane: CentreLane, start: int) -> float:
     return float(np.arctan2(y, x))
 
 
-def _add_lights(features: RoadFeatures, scenario: Entry, known: DataSet, steps: list[int]) -> None:
+def _add_lights(features: RoadFeatures, scenario: Entry, steps: list[int]) -> None:
     states = scenario.get("dynamic_map_states")
     for _, entry in [] if states is None else states.items():
         lane = entry.get("lane")
@@ -200,8 +199,4 @@ def _add_lights(features: RoadFeatures, scenario: Entry, known: DataSet, steps: 
             colour = _COLOURS.get(element.value) if isinstance(element.value, str) else None
             if colour is not None:
                 colours[step] = colour
-        point = entry.get("stop_point") if known.whole_map else None
-        place = None if point is None else point.column()[:2]
-        if place is not None and len(place) < 2:
-            raise entry.wrong("has a `stop_point` of fewer than two coordinates")
-        features.lights[lane.text()] = LaneLight(place, colours)
+        features.lights[lane.text()] = colours

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from rulec.recordings.lane_centres.road_features import (
     BoundaryPart,
     CentreLane,
-    LaneLight,
     LaneSide,
     NeighbourPart,
     Places3d,
@@ -57,13 +54,10 @@ def add_lights(features: RoadFeatures, message: CheckedMessage, step: int) -> No
     """Add what lights were seen to show at a time step. Raises RulecError R0610."""
     for state in message.messages("lane_states"):
         name = str(state.whole("lane"))
-        point = state.message("stop_point")
-        if name not in features.lights:
-            place = None if point is None else np.array(point.xyz()[:2])
-            features.lights[name] = LaneLight(place, {})
+        colours = features.lights.setdefault(name, {})
         colour = state.word("state")
         if colour != "unknown":
-            features.lights[name].colours[step] = colour
+            colours[step] = colour
 
 
 def _line(message: CheckedMessage) -> Places3d:

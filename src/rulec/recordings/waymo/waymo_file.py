@@ -125,9 +125,9 @@ def _scenario(file: WireFile, record: TfRecord) -> Recording:
     if content.lights > len(steps):
         raise file.wrong(f"record {record.number} has more states of lights than times", 0)
     for light in content.features.lights.values():
-        colours = {int(steps[number]): colour for number, colour in light.colours.items()}
-        light.colours.clear()
-        light.colours.update(colours)
+        colours = {int(steps[number]): colour for number, colour in light.items()}
+        light.clear()
+        light.update(colours)
     there = [body for body in content.bodies if len(body.numbers)]
     ids = [body.id for body in content.bodies]
     if len(set(ids)) < len(ids):
