@@ -29,11 +29,11 @@ END
 NOT_A_RECORDING = Code(
     "R0610",
     title="a file cannot be read as recorded traffic",
-    why="Recorded traffic is XML: a CommonRoad scenario, version 2018b or 2020a, or SUMO's "
-    "floating-car data with their net; the root element tells which. CommonRoad's scenarios may "
-    "be in Protocol Buffers, too (`.pb`); their parts lie beside each other. A file has to be "
-    "well-formed and complete, and to do without a `DOCTYPE`: what that defines may fill the "
-    "memory or fetch other files.",
+    why="`rulec formats` lists what is read: CommonRoad, SUMO, ASAM OSI, Argoverse 2, Waymo, "
+    "ScenarioNet, tracks as tables, and maps. What a file is shows in its name and its first "
+    "bytes; `--input-format` says so where it does not. A file has to be complete and as its "
+    "format says; the message names the line, byte, row or record where it is not. XML has to do "
+    "without a `DOCTYPE`, and a pickle without programs: what these define may do anything.",
     bad=_COMMONROAD.replace("2018b", "2017a") + "rulec maneuvers road.xml -r esterle2019",
     good=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019",
     kind="command",
