@@ -123,8 +123,8 @@ def test_what_is_wrong(written, before, after, says):
 
 
 def test_other_xml(written):
-    found = problem_with(written("<osm version='0.6'/>"))
-    assert "it is XML of `osm`" in found.message
+    found = problem_with(written("<kml version='0.6'/>"))
+    assert "it is XML of `kml`" in found.message
     assert "`commonRoad`" in found.expected
 
 

@@ -161,7 +161,7 @@ def test_degrees_of_longitude_and_latitude(tmp_path):
         (b'<?xml version="1.0" encoding="klingon"?><fcd-export/>', "its encoding"),
         (b'<?xml version="1.0" encoding="utf-7"?><fcd-export/>', "its encoding"),
         (b"<fcd-export>\xff</fcd-export>", "not well-formed XML"),
-        (b"<osm/>", "it is XML of `osm`"),
+        (b"<kml/>", "it is XML of `kml`"),
         (b"<net/>", "it is a map (nets of SUMO's), with nobody on its roads"),
         (gzip.compress(b"", mtime=0), "it is empty"),
     ],

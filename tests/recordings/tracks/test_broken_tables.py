@@ -92,7 +92,7 @@ def test_a_packed_file_that_is_cut(tmp_path):
     (tmp_path / "lanes.csv").write_text(LANES)
     file = tmp_path / "cars.csv.gz"
     file.write_bytes(gzip.compress(TEXTS["cars.csv"].encode())[:-20])
-    with pytest.raises(RulecError, match="R0610"):
+    with pytest.raises(RulecError, match="it is packed, and ends too soon"):
         read_recording(file, form="tracks")
 
 

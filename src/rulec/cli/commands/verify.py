@@ -131,38 +131,42 @@ def command(
         found = counted(searched.recordings, "recording")
         more = f", {counted(searched.others, 'other file')} passed over" if searched.others else ""
         print_aside(f"rulec: {found} in {searched.path}{more}")
-    # Tables of automata and recordings, 250 ms: not for --help.
-    from rulec.batch.recording_judge import JudgeSettings
-    from rulec.cli.recording_run import RecordingRun
+    # Tables of automata, 160 ms: not for --help.
     from rulec.cli.trace_run import TraceRun
 
     with verdict_outputs(sinks, rules) as to:
         complaints = Complaints()
-        settings = JudgeSettings(
-            rules,
-            scenario_options.requested_drives(egos, options, rules.vocabulary),
-            scenario_options.recording_source("-", options),
-            to_explain=to_explain,
-            every_part=every_part,
-            width=page_width(),
-            text=to.wants_text,
-            lines=to.wants_lines,
-            findings=to.wants_findings,
-        )
-        recorded = RecordingRun(settings, to, complaints)
         traced = TraceRun(rules, to, complaints, to_explain, every_part)
-        for problem in inputs.problems:
-            recorded.not_read(problem)
-        if recordings:
-            recorded.files(recordings, jobs or os.cpu_count() or 1)
+        violated, judged, complete = False, False, True
+        if recordings or inputs.problems:
+            # numpy and shapely, 250 ms: only for recordings.
+            from rulec.batch.recording_judge import JudgeSettings
+            from rulec.cli.recording_run import RecordingRun
+
+            settings = JudgeSettings(
+                rules,
+                scenario_options.requested_drives(egos, options, rules.vocabulary),
+                scenario_options.recording_source("-", options),
+                to_explain=to_explain,
+                every_part=every_part,
+                width=page_width(),
+                text=to.wants_text,
+                lines=to.wants_lines,
+                findings=to.wants_findings,
+            )
+            recorded = RecordingRun(settings, to, complaints)
+            for problem in inputs.problems:
+                recorded.not_read(problem)
+            if recordings:
+                recorded.files(recordings, jobs or os.cpu_count() or 1)
+            violated = bool(recorded.total.violated) or (strict and recorded.open_hard)
+            judged, complete = recorded.judged, recorded.complete
         if traces:
             assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
             traced.files(traces, form, assumed)
     complaints.close()
-    violated = bool(recorded.total.violated or traced.counts[False])
-    if strict:
-        violated |= recorded.open_hard or traced.open_hard
-    answered = (recorded.judged or traced.judged) and recorded.complete and not traced.not_judged
+    violated |= bool(traced.counts[False]) or (strict and traced.open_hard)
+    answered = (judged or traced.judged) and complete and not traced.not_judged
     return ExitStatus.after(answered=answered, failed=violated)
 
 

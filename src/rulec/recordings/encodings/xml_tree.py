@@ -86,7 +86,7 @@ def whole_tree(path: Path, form: XmlFormat, raw: Mapping[str, str]) -> Tree | No
     data = bytearray()
     for block in blocks_of(path):
         data += block
-        if len(data) > LARGEST_BYTES:
+        if len(data) > min(LARGEST_BYTES, form.largest_bytes):
             return None
     is_plain = b"\0" not in data and b"xmlns" not in data and data.count(b"<") <= MOST_TAGS
     if not is_plain or not _begins_well(bytes(data[:_HEAD_BYTES]), form):

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 # Imports within functions: each format has libraries of its own, up to 0.1 s, and one is written.
 from collections.abc import Mapping
-from typing import IO, Protocol
+from typing import IO, TYPE_CHECKING, Protocol
 
-from rulec.report.verdict_findings.verdict_finding import FindingsOf, FoundInRecording
+if TYPE_CHECKING:
+    from rulec.report.verdict_findings.verdict_finding import FindingsOf, FoundInRecording
 
 ENDINGS: Mapping[str, tuple[str, ...]] = {
     "jsonl": (".jsonl", ".ndjson"),
