@@ -97,6 +97,8 @@ def values():
         *(rulec.Assumptions("cut", {"p": True}), rulec.RuleNotJudged("r", "hard", ("p",))),
         *(rulec.ConditionalOutcome({"p": True}, "kept"), undecided),
         rulec.UncoveredEdge(0, 1, (), True),
+        *(rulec.formats()[0], rulec.Light(0, (("red", 3),)), rulec.ObservedLight({0: "red"})),
+        *(rulec.Weather(wet=True), rulec.read_map(NET, recording.step_s)),
         rulec.SettingPair("option", "limit", "1", "2"),
     ]
     return {type(one).__name__: one for one in known}

@@ -123,7 +123,7 @@ def test_findings_have_colour_for_people_only(verb, tmp_path):
 
 def test_a_pipe_gets_neither(tmp_path):
     done = subprocess.run(
-        [*RULEC, "traces", "s2", "-o", str(tmp_path / "t")], capture_output=True, check=True
+        [*RULEC, "traces", "s2", "-o", str(tmp_path / "t.jsonl")], capture_output=True, check=True
     )
     assert done.stderr == b""
     assert b"\x1b" not in done.stdout

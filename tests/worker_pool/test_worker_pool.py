@@ -8,6 +8,7 @@ from functools import partial
 import pytest
 
 from rulec.batch import worker_pool
+from rulec.batch.batch_messages import process_lost
 from rulec.batch.worker_pool import LostTask, in_order
 
 
@@ -92,3 +93,10 @@ def test_no_process_stays_behind_when_the_caller_leaves():
         results.close()
     (pool,) = pools
     assert [worker.process.is_alive() for worker in pool._workers] == [False, False]
+
+
+def test_a_lost_process_is_said_of_its_file():
+    """Memory that is used up cannot be tried; the code is R0708."""
+    (found,) = process_lost("long.xml", signal.SIGKILL).diagnostics
+    assert (found.code, found.place.file) == ("R0708", "long.xml")
+    assert "by signal 9" in found.message

@@ -106,11 +106,12 @@ MAP_FORMATS = (
 )
 
 
-def read_map(path: Path, step_s: float) -> RoadMap:
+def read_map(path: str | Path, step_s: float) -> RoadMap:
     """Read a map of any format; its lights count in steps of ``step_s``.
 
     Raises RulecError R0610 for a file that is no map, R0701 if it cannot be opened.
     """
+    path = Path(path)
     glance = Glance(path)
     for form in MAP_FORMATS:
         if form.recognises(glance):

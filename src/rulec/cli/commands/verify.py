@@ -98,7 +98,7 @@ def command(
 
     FILE may also be recorded traffic, of any format that `rulec formats` lists. Then every vehicle
     is judged by what it did, and a table says who violated what. A folder is all recordings in and
-    below it, and a pattern such as 'drives/*.xml' all files that are called so; of several there is
+    below it, and a pattern, in which `*` is wild, all files that are called so; of several there is
     a line each, and one table of all.
 
     -o FILE writes the findings, one for each violation and for what is open or not judged: .jsonl,

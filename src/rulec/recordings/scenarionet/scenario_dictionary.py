@@ -33,7 +33,7 @@ class NumbersLeft:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class KeyedValue:
     """A value with the keys that lead to it. Its methods raise RulecError R0610."""
 
     value: Any
@@ -47,28 +47,28 @@ class Entry:
         where = " / ".join(self.way)
         return self.form.refused(self.path, f"`{where}` {why}" if where else f"it {why}")
 
-    def get(self, key: str) -> Entry | None:
+    def get(self, key: str) -> KeyedValue | None:
         """What a key of a dictionary leads to, None if it is not there or there is None."""
         if not isinstance(self.value, dict):
             raise self.wrong("is no dictionary")
         value = self.value.get(key)
         return None if value is None else self._below(key, value)
 
-    def child(self, key: str) -> Entry:
+    def child(self, key: str) -> KeyedValue:
         """What a key of a dictionary leads to."""
         found = self.get(key)
         if found is None:
             raise self.wrong(f"has no `{key}`")
         return found
 
-    def items(self) -> list[tuple[str, Entry]]:
+    def items(self) -> list[tuple[str, KeyedValue]]:
         """The keys, as texts, and what they lead to."""
         if not isinstance(self.value, dict):
             raise self.wrong("is no dictionary")
         self._spend(len(self.value))
         return [(str(key), self._below(str(key), value)) for key, value in self.value.items()]
 
-    def elements(self) -> list[Entry]:
+    def elements(self) -> list[KeyedValue]:
         """The elements of a list, a tuple, or an array along its first axis."""
         value = self.value
         if not isinstance(value, list | tuple | np.ndarray) or np.ndim(value) == 0:
@@ -147,5 +147,5 @@ class Entry:
                 f"is one of more than {MOST_NUMBERS:,} values, or some come many times"
             )
 
-    def _below(self, key: str, value: Any) -> Entry:
-        return Entry(value, (*self.way, short(key)), self.path, self.form, self.left)
+    def _below(self, key: str, value: Any) -> KeyedValue:
+        return KeyedValue(value, (*self.way, short(key)), self.path, self.form, self.left)

@@ -18,7 +18,7 @@ from rulec.recordings.lane_centres.road_features import (
 )
 from rulec.recordings.recording import LONGEST_M, LaneMark
 from rulec.recordings.scenarionet.data_sets import DataSet
-from rulec.recordings.scenarionet.scenario_dictionary import Entry
+from rulec.recordings.scenarionet.scenario_dictionary import KeyedValue
 
 MPS_OF_MPH = 0.44704
 JOINED_M = 0.1
@@ -47,7 +47,7 @@ _COLOURS = {
 }
 
 
-def road_features(scenario: Entry, known: DataSet, steps: Iterable[int]) -> RoadFeatures:
+def road_features(scenario: KeyedValue, known: DataSet, steps: Iterable[int]) -> RoadFeatures:
     """All of a scenario's road; ``steps`` are the time steps of its times."""
     features = RoadFeatures()
     told = False
@@ -73,14 +73,14 @@ def road_features(scenario: Entry, known: DataSet, steps: Iterable[int]) -> Road
     return features
 
 
-def _points(entry: Entry, key: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def _points(entry: KeyedValue, key: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     points = entry.child(key).places()
     if len(points) and np.ptp(points[:, :2], axis=0).max() > LONGEST_M:
         raise entry.wrong(f"is longer than {LONGEST_M / 1000:g} km")
     return points
 
 
-def _lane(name: str, kind: str, entry: Entry, known: DataSet) -> CentreLane:
+def _lane(name: str, kind: str, entry: KeyedValue, known: DataSet) -> CentreLane:
     # Points of nuScenes' have their direction for a height
     centre = _points(entry, "polyline")
     heights = centre[:, 2] if known.whole_map else np.full(len(centre), np.nan)
@@ -109,7 +109,7 @@ def _lane(name: str, kind: str, entry: Entry, known: DataSet) -> CentreLane:
     )
 
 
-def _number(entry: Entry) -> float:
+def _number(entry: KeyedValue) -> float:
     if not isinstance(entry.value, int | float | np.number) or not abs(entry.value) < np.inf:
         raise entry.wrong("is no number")
     return float(entry.value)
@@ -119,11 +119,11 @@ def _is_area(corners: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> bool
     return len(corners) >= _FEWEST_CORNERS and float(shapely.Polygon(corners).area) > 0
 
 
-def _ids(entry: Entry | None) -> tuple[str, ...]:
+def _ids(entry: KeyedValue | None) -> tuple[str, ...]:
     return () if entry is None else tuple([one.text() for one in entry.elements()])
 
 
-def _boundaries(entry: Entry | None, count: int, known: DataSet) -> tuple[BoundaryPart, ...]:
+def _boundaries(entry: KeyedValue | None, count: int, known: DataSet) -> tuple[BoundaryPart, ...]:
     if entry is None or not known.whole_map:
         return ()
     parts = []
@@ -136,7 +136,7 @@ def _boundaries(entry: Entry | None, count: int, known: DataSet) -> tuple[Bounda
     return tuple(parts)
 
 
-def _neighbours(entry: Entry | None, count: int) -> tuple[NeighbourPart, ...]:
+def _neighbours(entry: KeyedValue | None, count: int) -> tuple[NeighbourPart, ...]:
     """Parts of lanes beside, as of Waymo's, or ids of lanes that are so all along."""
     parts = []
     for part in () if entry is None else entry.elements():
@@ -149,7 +149,7 @@ def _neighbours(entry: Entry | None, count: int) -> tuple[NeighbourPart, ...]:
     return tuple(parts)
 
 
-def _range(part: Entry, first: str, last: str, count: int) -> tuple[int, int]:
+def _range(part: KeyedValue, first: str, last: str, count: int) -> tuple[int, int]:
     indices = (part.child(first).whole(), part.child(last).whole())
     start, end = sorted(min(max(index, 0), max(count - 1, 0)) for index in indices)
     return start, end
@@ -184,7 +184,7 @@ def _heading(lane: CentreLane, start: int) -> float:
     return float(np.arctan2(y, x))
 
 
-def _add_lights(features: RoadFeatures, scenario: Entry, steps: list[int]) -> None:
+def _add_lights(features: RoadFeatures, scenario: KeyedValue, steps: list[int]) -> None:
     states = scenario.get("dynamic_map_states")
     for _, entry in [] if states is None else states.items():
         lane = entry.get("lane")

@@ -17,7 +17,7 @@ from rulec.recordings.lane_centres.even_steps import even_steps
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.scenarionet.data_sets import DataSet, data_set, place_of
 from rulec.recordings.scenarionet.restricted_pickle import read_pickle
-from rulec.recordings.scenarionet.scenario_dictionary import Entry
+from rulec.recordings.scenarionet.scenario_dictionary import KeyedValue
 from rulec.recordings.scenarionet.scenarionet_features import road_features
 
 SCENARIONET = WireFormat(
@@ -50,7 +50,7 @@ def read_scenarionet(path: Path) -> Recording:
 
     Raises RulecError R0610 for a file that cannot be read as one, R0701 if it cannot be opened.
     """
-    scenario = Entry(read_pickle(path, SCENARIONET), (), path, SCENARIONET)
+    scenario = KeyedValue(read_pickle(path, SCENARIONET), (), path, SCENARIONET)
     if not isinstance(scenario.value, dict) or any(key not in scenario.value for key in _PARTS):
         why = "it is a pickle, but not of a scenario, which has `tracks` and `map_features`"
         help_text = "give a scenario's own file, `sd_*.pkl`, not the summary of a data set"
@@ -98,13 +98,13 @@ class _Remarks:
         self.bridged = 0
 
 
-def _text(entry: Entry, key: str) -> str:
+def _text(entry: KeyedValue, key: str) -> str:
     found = entry.get(key)
     return "" if found is None else found.text()
 
 
 def _participants(
-    scenario: Entry,
+    scenario: KeyedValue,
     known: DataSet,
     ego: str,
     times: tuple[float, NDArray[int64]],
@@ -126,7 +126,7 @@ def _participants(
         yield participant(name, kind, whole, step_s)
 
 
-def _kind(track: Entry) -> str:
+def _kind(track: KeyedValue) -> str:
     own = track.get("metadata")
     category = None if own is None or not isinstance(own.value, dict) else own.value.get("type")
     for begin, kind in _OWN_TYPES:
@@ -135,7 +135,7 @@ def _kind(track: Entry) -> str:
     return _TYPES.get(_text(track, "type"), "unknown")
 
 
-def _boxes(state: Entry, steps: NDArray[int64]) -> BoxTrack:
+def _boxes(state: KeyedValue, steps: NDArray[int64]) -> BoxTrack:
     valid = state.child("valid").column() > 0.5
     if len(valid) > len(steps):
         raise state.wrong(f"has {len(valid)} states for {len(steps)} times")

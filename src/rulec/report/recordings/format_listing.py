@@ -12,6 +12,7 @@ from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.text import markdown
 from rulec.report.text.terminal_text import table_lines
 from rulec.rulebook.loader import load_vocabulary
+from rulec.value_display import short_repr
 
 TELLS = "x"
 TELLS_NOT = "."
@@ -24,6 +25,8 @@ class ListedFormat:
     ``files`` says how its files are called. ``takes_map``: it has no roads of its own. ``words``
     are those that some file of it can tell, in the order of the vocabulary; None if not known.
     """
+
+    __repr__ = short_repr
 
     name: str
     title: str
