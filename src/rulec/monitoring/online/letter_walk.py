@@ -82,6 +82,7 @@ class LetterWalk:
         # The last read is the diagram's first level.
         self._order = range(len(reads) + len(others) - 1, -1, -1)
         self._nodes: dict[Hashable, _Node] = {}
+        self._start: _Node | None = None
 
     def classes(
         self, digits: Sequence[Any], cubes: Sequence[Cube], *, is_exact: bool
@@ -91,9 +92,15 @@ class LetterWalk:
         ``digits`` are in the order of the reads. Raises LookupError if one is wrong, if facts
         exclude all these letters, or if more than the rule's own objects decides about them.
         """
-        if len(self._nodes) >= MOST_NODES:
-            self._nodes.clear()
-        node = self._begun(cubes, is_exact)
+        return self._walked(self._begun(cubes, is_exact), digits)
+
+    def classes_alone(self, digits: Sequence[Any]) -> tuple[LetterClass, bool]:
+        """The same of a rule whose reads all have digits of their own. Raises as ``classes``."""
+        if self._start is None or len(self._nodes) >= MOST_NODES:
+            self._start = self._begun(((),), True)
+        return self._walked(self._start, digits)
+
+    def _walked(self, node: _Node, digits: Sequence[Any]) -> tuple[LetterClass, bool]:
         for digit in reversed(digits):
             node = node[digit]
         if node.classes is None:
@@ -112,6 +119,8 @@ class LetterWalk:
         return self._node(node.level + 1, node.cubes, sets, is_exact)
 
     def _begun(self, cubes: Sequence[Cube], is_exact: bool) -> _Node:
+        if len(self._nodes) >= MOST_NODES:
+            self._nodes.clear()
         key = cubes, is_exact
         known = self._nodes.get(key)
         if known is None:

@@ -102,6 +102,9 @@ class PreparedRule:
         ``digits`` are those of the ``inputs`` and then the ``values``, as encoded. Raises
         LookupError if one is missing or wrong, or if it takes a look at the whole state.
         """
+        if self._is_simple and not UNKNOWN_TYPES.isdisjoint(map(type, digits)):
+            # The usual case where something is not known
+            return self._walk.classes_alone(digits)
         own = digits[: len(self.inputs)]
         cubes, is_exact = _NO_CUBES
         if self.entangled is not None and self.entangled.numbers:
@@ -129,6 +132,11 @@ class PreparedRule:
             type(value) in UNKNOWN_TYPES and not self.constants.isdisjoint(read.names)
             for read, value in zip(self.values, values, strict=True)
         )
+
+    @cached_property
+    def _is_simple(self) -> bool:
+        """True if each read has a digit of its own."""
+        return self.entangled is None or not self.entangled.numbers
 
     @cached_property
     def _walk(self) -> LetterWalk:

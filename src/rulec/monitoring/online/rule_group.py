@@ -73,11 +73,12 @@ class GroupNode(dict[int, "GroupNode"]):
             ]
         except (TypeError, LookupError):
             # Several classes are no index, and several edges have no successors.
+            rules = zip(self.group.rules, self.edges, classes, strict=True)
             edges = [
-                prepared.uncertain.after(edge, letter_class)
-                for prepared, edge, letter_class in zip(
-                    self.group.rules, self.edges, classes, strict=True
-                )
+                edge.successors[letter_class]
+                if type(letter_class) is int and edge.successors
+                else prepared.uncertain.after(edge, letter_class)
+                for prepared, edge, letter_class in rules
             ]
         return self.group.node(tuple(edges))
 
