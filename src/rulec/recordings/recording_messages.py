@@ -109,7 +109,7 @@ NOT_BUILT = Code(
     title="a recording that a program builds makes no sense",
     why="Lanelets and participants have arrays of the right shapes, finite numbers, ids that occur "
     "once, and refer to others that are there. All that is wrong is said at once.",
-    bad="import rulec\n\nrulec.build_lanelet('east', [(0, 0)], width=3.5)\n",
-    good="import rulec\n\nrulec.build_lanelet('east', [(0, 0), (100, 0)], width=3.5)\n",
+    bad='import rulec\n\nrulec.build_lanelet("east", [(0, 0)], width=3.5)\n',
+    good='import rulec\n\nrulec.build_lanelet("east", [(0, 0), (100, 0)], width=3.5)\n',
     kind="python",
 )
