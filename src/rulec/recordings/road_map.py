@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from rulec.recordings.recording import Lanelet, Side
+from rulec.recordings.recording import Lanelet, Points, Side
 from rulec.value_display import short_repr
 
 
@@ -24,3 +24,20 @@ class RoadMap:
     country: str = ""
     complete: frozenset[str] = frozenset()
     remarks: tuple[str, ...] = ()
+
+
+def crosswalk(name: str, left: Points, right: Points, *, directed: bool = False) -> Lanelet:
+    """A crosswalk between two bounds that lead across the road; ``directed`` by lights."""
+    return Lanelet(
+        id=name,
+        left=left,
+        right=right,
+        centre=(left + right) / 2,
+        successors=(),
+        predecessors=(),
+        left_of=None,
+        right_of=None,
+        types=frozenset({"crosswalk", "directed"} if directed else {"crosswalk"}),
+        signs=frozenset(),
+        limit_mps=None,
+    )

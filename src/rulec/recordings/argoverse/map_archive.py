@@ -21,7 +21,7 @@ from rulec.recordings.encodings.typed_json import read_json
 from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
 from rulec.recordings.polylines import paired, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points
-from rulec.recordings.road_map import RoadMap
+from rulec.recordings.road_map import RoadMap, crosswalk
 
 MAP_ARCHIVE = XmlFormat(
     "a map of Argoverse 2",
@@ -173,19 +173,7 @@ def _crosswalks(path: Path, archive: _MapArchive) -> Iterator[Lanelet]:
         along, across = (one[-1] - one[0]) + (other[-1] - other[0]), (other - one).mean(axis=0)
         towards_left = float(along[0] * across[1] - along[1] * across[0]) > 0
         left, right = (other, one) if towards_left else (one, other)
-        yield Lanelet(
-            id=str(crossing.id),
-            left=left,
-            right=right,
-            centre=(left + right) / 2,
-            successors=(),
-            predecessors=(),
-            left_of=None,
-            right_of=None,
-            types=frozenset({"crosswalk"}),
-            signs=frozenset(),
-            limit_mps=None,
-        )
+        yield crosswalk(str(crossing.id), left, right)
 
 
 def _bounds(path: Path, what: str, lines: tuple[_Line, _Line]) -> tuple[Points, Points] | None:

@@ -28,6 +28,7 @@ from rulec.recordings.lane_centres.road_features import (
 )
 from rulec.recordings.polylines import parallel_line
 from rulec.recordings.recording import Lanelet, ObservedLight, Points
+from rulec.recordings.road_map import crosswalk
 
 ALL_JUNCTIONS = frozenset({"junctions"})
 """What such maps have: lanes elsewhere cross at other heights."""
@@ -211,16 +212,4 @@ def _crosswalk(name: str, polygon: Points) -> Lanelet:
     ahead, aside = middle[1] - middle[0], one[0] - other[0]
     if ahead[0] * aside[1] - ahead[1] * aside[0] < 0:
         one, other = other, one
-    return Lanelet(
-        id=name,
-        left=one,
-        right=other,
-        centre=middle,
-        successors=(),
-        predecessors=(),
-        left_of=None,
-        right_of=None,
-        types=frozenset({"crosswalk"}),
-        signs=frozenset(),
-        limit_mps=None,
-    )
+    return crosswalk(name, one, other)

@@ -14,6 +14,7 @@ from rulec.recordings.opendrive.pieces import RoadPiece
 from rulec.recordings.opendrive.plan_view import places_on
 from rulec.recordings.opendrive.signal_catalogues import CROSSWALK, WALKERS_LIGHTS
 from rulec.recordings.recording import LONGEST_M, Lanelet, Points
+from rulec.recordings.road_map import crosswalk
 
 _LIGHT_AT_M = 10.0
 """Lights for people on foot stand so near to their crossing."""
@@ -99,16 +100,4 @@ def _crosswalk(
         ring = np.roll(ring, -1, axis=0)
     right, left = ring[:2], ring[:1:-1]
     directed = any(abs(light - s) <= _LIGHT_AT_M for light in lights)
-    yield Lanelet(
-        id=name,
-        left=left,
-        right=right,
-        centre=(left + right) / 2,
-        successors=(),
-        predecessors=(),
-        left_of=None,
-        right_of=None,
-        types=frozenset({"crosswalk", *(("directed",) if directed else ())}),
-        signs=frozenset(),
-        limit_mps=None,
-    )
+    yield crosswalk(name, left, right, directed=directed)

@@ -11,6 +11,7 @@ import shapely
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.osi.message_fields import Fields, assigned_lanes, number, part, places
 from rulec.recordings.recording import Lanelet, Points
+from rulec.recordings.road_map import crosswalk
 
 _NAMES: Mapping[str, str] = {
     "give_way": "YIELD",
@@ -164,16 +165,4 @@ def _crossing(key: str, outline: Points, lanes: Sequence[Lanelet]) -> Lanelet:
         is_across = bool(np.hypot(*ahead) >= np.hypot(*(outline[2] - outline[1])))
     first, second, third, fourth = outline if is_across else np.roll(outline, -1, axis=0)
     right, left = np.stack((first, second)), np.stack((fourth, third))
-    return Lanelet(
-        id=key,
-        left=left,
-        right=right,
-        centre=(left + right) / 2,
-        successors=(),
-        predecessors=(),
-        left_of=None,
-        right_of=None,
-        types=frozenset({"crosswalk"}),
-        signs=frozenset(),
-        limit_mps=None,
-    )
+    return crosswalk(key, left, right)
