@@ -83,6 +83,8 @@ def test_small_files_are_read_in_one_go(tmp_path, monkeypatch):
         ("</state>", "<acceleration><exact>1</exact></acceleration></state>"),
         ("</state>", "<acceleration></acceleration></state>"),
         ("</state>", "<velocity><exact>9</exact></velocity></state>"),
+        ("</state>", f"{'<a>' * 40}{'</a>' * 40}</state>"),
+        ("<time><exact>1</exact></time>", f"<time>{'<a>' * 40}{'</a>' * 40}</time>"),
     ],
 )
 def test_states_of_other_kinds(tmp_path, before, after):

@@ -99,8 +99,11 @@ def whole_tree(path: Path, form: XmlFormat, raw: Mapping[str, str]) -> Tree | No
 
 
 def tree_of(element: ElementTree.Element, path: Path, form: FileFormat) -> Tree:
-    """An element that was left raw as a tree. Raises ValueError if it is too deep."""
-    return _tree(element, path, form, {})
+    """An element that was left raw as a tree. Raises RulecError R0610 if it is too deep."""
+    try:
+        return _tree(element, path, form, {})
+    except ValueError:
+        raise form.refused(path, f"an element `{short(element.tag)}` is too deep") from None
 
 
 def _begins_well(head: bytes, form: XmlFormat) -> bool:
