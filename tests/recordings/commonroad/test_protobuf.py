@@ -4,19 +4,15 @@ The samples are what commonroad-io has written of `DEU_EveryElement-1_1_T-1.xml`
 in parts, and 2023.4 in a single file.
 """
 
-import random
 import shutil
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from rulec import read_recording
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.recordings.commonroad import commonroad_protobuf
-from rulec.scenario import load_scenario
 from support.builders.recordings import RECORDINGS, SAMPLES
 from support.builders.wire_bytes import counted, double, field, whole
 from support.oracles.same_recording import assert_same
@@ -261,26 +257,3 @@ def test_bounds_of_too_many_lanelets(tmp_path, monkeypatch):
     monkeypatch.setattr(commonroad_protobuf, "FEW_POINTS", 400)
     found = refused(file, beside=tmp_path / MAP.name)
     assert "bounds belong to more than 4 lanelets each" in found.message
-
-
-@given(seed=st.integers(0, 2**32))
-def test_mistakes_are_read_or_refused(tmp_path_factory, seed):
-    pick = random.Random(seed)
-    folder = tmp_path_factory.mktemp("mutated")
-    for part in (*PARTS, SINGLE):
-        shutil.copy(part, folder)
-    broken = folder / pick.choice((*PARTS, SINGLE)).name
-    data = bytearray(broken.read_bytes())
-    for _ in range(pick.randint(1, 3)):
-        at = pick.randrange(len(data))
-        data[at : at + pick.randrange(3)] = pick.randbytes(pick.randrange(3))
-    broken.write_bytes(data[: pick.randrange(len(data)) if pick.random() < 0.2 else None])
-    asked = folder / (SINGLE if broken.name == SINGLE.name else pick.choice(PARTS[1:])).name
-    try:
-        assert read_recording(asked).step_s > 0
-        load_scenario(asked)
-    except RulecError as error:
-        (found,) = error.diagnostics
-        assert found.code in {"R0610", "R0612"}
-        assert "\n" not in found.message
-        assert len(found.message) < 300

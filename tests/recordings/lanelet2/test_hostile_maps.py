@@ -1,18 +1,14 @@
 """Whatever is in an OSM file: it is read as a map, or refused in a sentence, at its line."""
 
 import gzip
-import random
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.lanelet2 import map_lanelets, osm_file, topology
 from rulec.recordings.map_files import read_map
 from support.builders.counted_steps import grows_in_proportion
 from support.builders.lanelet2_files import MapFile, two_way_street
-from support.generators.mutated_files import mutated
 
 
 def refused(path):
@@ -156,50 +152,3 @@ def test_reading_takes_steps_in_proportion(tmp_path):
         assert len(read_map(path, 0.1).lanelets) == pieces
 
     assert grows_in_proportion(read, 40)
-
-
-def every_element():
-    """A small map with most that is read."""
-    file, there, back = two_way_street()
-    line = file.line((90, 0), (90, -3), type="stop_line")
-    post = file.line((90, -5), (90, -6), type="traffic_sign", subtype="de205")
-    lamp = file.line((92, -5), (92, -6), type="traffic_light")
-    light = file.rule("traffic_light", [("refers", "way", lamp), ("ref_line", "way", line)])
-    sign = file.rule("traffic_sign", [("refers", "way", post), ("ref_line", "way", line)])
-    limit = file.rule("speed_limit", [], sign_type="30 km/h")
-    on = file.lanelet(file.line((100, 0), (130, 0)), file.line((100, -3), (130, -3)), one_way="no")
-    file.lanelet(
-        file.line((130, 0), (150, 0)),
-        file.line((130, -3), (150, -3)),
-        rules=[light, sign, limit],
-        turn_direction="left",
-        region="de",
-    )
-    roles = [("yield", "relation", there), ("right_of_way", "relation", back)]
-    file.rule("right_of_way", [*roles, ("refers", "way", post), ("ref_line", "way", line)])
-    file.rule("all_way_stop", [("yield", "relation", on), ("ref_line", "way", line)])
-    return file.text()
-
-
-TEXT = every_element()
-IN_DEGREES = TEXT.replace('lat="" lon=""', 'lat="49" lon="8"')
-
-
-@given(seed=st.integers(0, 2**32))
-def test_a_mistake_is_read_or_refused(tmp_path_factory, seed):
-    pick = random.Random(seed)
-    path = tmp_path_factory.mktemp("mutated") / "map.osm"
-    data = mutated(pick.choice((TEXT, IN_DEGREES)), pick)
-    path.write_bytes(data)
-    try:
-        found = read_map(path, 0.1)
-        assert found.lanelets
-        for lanelet in found.lanelets.values():
-            assert len(lanelet.centre) >= 2
-            assert set(lanelet.successors) <= found.lanelets.keys()
-    except RulecError as problem:
-        (diagnostic,) = problem.diagnostics
-        assert diagnostic.code == "R0610"
-        assert diagnostic.place.file == str(path)
-        assert "\n" not in diagnostic.message
-        assert len(diagnostic.message) < 300

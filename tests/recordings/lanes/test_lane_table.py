@@ -5,7 +5,7 @@ import pytest
 
 from rulec import RulecError, read_map, read_recording
 from rulec.recordings.recording_files import is_recording
-from support.builders.track_tables import table
+from support.builders.track_tables import EVERY_COLUMN_OF_LANES, table
 
 
 def lanes(folder, head, *rows):
@@ -33,18 +33,9 @@ def test_a_centre_line_is_enough(tmp_path):
 
 
 def test_all_that_can_be_said(tmp_path):
-    head = (
-        "lane,x,y,width,limit_kmh,left_mark,right_mark,type,signs,successors,left_lane,"
-        "junction,foes,first,stop_line,side"
-    )
-    roads = lanes(
-        tmp_path,
-        head,
-        "a,0,0,3,50,broken,solid,urban busLane,stop,b c,d,,,,1,left",
-        "a,50,0,5,,,,,,,,,,,,",
-        *(f"{name},{x},0,3,,,,,,,,j,c,c,,left" for name in "bc" for x in (50, 60)),
-        *(f"d,{x},4,3,,,,,,,,,,,,left" for x in (0, 50)),
-    )
+    file = tmp_path / "lanes.csv"
+    file.write_text(EVERY_COLUMN_OF_LANES)
+    roads = read_map(file, 0.1)
     a, b, d = (roads.lanelets[name] for name in "abd")
     assert np.hypot(*(a.left - a.right).T) == pytest.approx([3, 5])
     assert (a.limit_mps, a.left_mark, a.right_mark) == (pytest.approx(50 / 3.6), "broken", "solid")

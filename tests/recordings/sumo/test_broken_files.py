@@ -1,11 +1,8 @@
 """What is wrong with SUMO's files is said in a sentence; no file ends in a traceback."""
 
 import gzip
-from contextlib import suppress
 
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from rulec import read_recording
 from rulec.diagnostics import RulecError
@@ -221,21 +218,3 @@ def test_a_net_is_for_sumo(tmp_path):
     with pytest.raises(RulecError) as caught:
         load_scenario("s1", Choice(map_path=tmp_path / "road.net.xml"))
     assert [x.code for x in caught.value.diagnostics] == ["R0613"]
-
-
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(data=st.data())
-def test_damaged_files(tmp_path, data):
-    """Bytes exchanged, cut out or doubled anywhere: a recording, or words."""
-    texts = {"road.net.xml": ROAD_NET, "road.rou.xml": TYPES, "fcd.xml": GOOD}
-    name = data.draw(st.sampled_from(sorted(texts)))
-    content = texts[name].encode()
-    file = written(tmp_path, GOOD)
-    start = data.draw(st.integers(0, len(content)))
-    length = data.draw(st.integers(0, 60))
-    piece = data.draw(
-        st.sampled_from([b"", b"9", b"-", b".", b'"', b"<", b">", b"e9", b"\xff", b"nan"])
-    )
-    (tmp_path / name).write_bytes(content[:start] + piece + content[start + length :])
-    with suppress(RulecError):
-        assert read_recording(file).lanelets

@@ -11,7 +11,18 @@ from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
 from rulec.recordings.recording_files import is_recording, read_recordings
 from rulec.recordings.recording_format import RecordingSource
 from support.builders.sumo_files import ROAD_NET
-from support.builders.track_tables import highd, ind, table
+from support.builders.track_tables import (
+    INTERACTION_HEAD,
+    NGSIM_HEAD,
+    WALKERS_HEAD,
+    highd,
+    ind,
+    interaction_cases,
+    interaction_row,
+    ngsim_row,
+    omega_prime,
+    table,
+)
 
 FOOT = 0.3048
 
@@ -149,11 +160,7 @@ def test_ind_needs_a_map(tmp_path):
         read_recording(ind(tmp_path, [("car", (4.5, 1.8), 0.0, (5, 0), 8.0, 26)]))
 
 
-VEHICLES = "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy,psi_rad,length,width"
-WALKERS = "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy"
-
-
-def interaction(folder, rows, head=VEHICLES, name="vehicle_tracks_007.csv"):
+def interaction(folder, rows, head=INTERACTION_HEAD, name="vehicle_tracks_007.csv"):
     (folder / "roads.csv").write_text(LANES)
     file = folder / name
     file.write_text(table(head, *rows))
@@ -162,12 +169,10 @@ def interaction(folder, rows, head=VEHICLES, name="vehicle_tracks_007.csv"):
 
 def test_interaction_with_those_on_foot(tmp_path):
     """A car, somebody at 1.3 m/s and somebody at 5 m/s, who is not on foot."""
-    file = interaction(
-        tmp_path, [f"1,{k},{100 * k},car,{10 + k},0,10,0,0,4.2,1.9" for k in range(1, 12)]
-    )
+    file = interaction(tmp_path, [interaction_row(k) for k in range(1, 12)])
     rows = [f"P1,{k},{100 * k},pedestrian/bicycle,30,{k * 0.13},0,1.3" for k in range(1, 12)]
     rows += [f"P2,{k},{100 * k},pedestrian/bicycle,{20 + k / 2},2,5,0" for k in range(1, 12)]
-    interaction(tmp_path, rows, WALKERS, "pedestrian_tracks_007.csv")
+    interaction(tmp_path, rows, WALKERS_HEAD, "pedestrian_tracks_007.csv")
     recording = read_recording(file, tmp_path / "roads.csv")
     kinds = {one.id: one.type for one in recording.participants}
     assert kinds == {"1": "car", "P1": "pedestrian", "P2": "bicycle"}
@@ -178,12 +183,9 @@ def test_interaction_with_those_on_foot(tmp_path):
 
 
 def test_interaction_by_cases(tmp_path):
-    rows = [
-        f"{case}.0,1,{k},{100 * k},car,{10 * case + k},0,10,0,0,4.2,1.9"
-        for case in (1, 2)
-        for k in range(1, 5)
-    ]
-    file = interaction(tmp_path, rows, f"case_id,{VEHICLES}", "DR_USA_Roundabout_FT_train.csv")
+    (tmp_path / "roads.csv").write_text(LANES)
+    file = tmp_path / "DR_USA_Roundabout_FT_train.csv"
+    file.write_text(interaction_cases())
     found = list(read_recordings(RecordingSource(file, tmp_path / "roads.csv")))
     assert [one.name for one in found] == ["DR_USA_Roundabout_FT_1", "DR_USA_Roundabout_FT_2"]
     assert [one.participants[0].states[1].x for one in found] == [11.0, 21.0]
@@ -198,16 +200,7 @@ def test_speeds_get_the_sign_of_the_motion(tmp_path):
     assert car.states[4].speed == pytest.approx(10, abs=1e-3)
 
 
-NGSIM = (
-    "Vehicle_ID,Frame_ID,Total_Frames,Global_Time,Local_X,Local_Y,Global_X,Global_Y,v_Length,"
-    "v_Width,v_Class,v_Vel,v_Acc,Lane_ID,Preceding,Following,Space_Headway,Time_Headway"
-)
 ALONG_Y = table("lane,x,y", "1,1.83,0", "1,1.83,300")
-
-
-def ngsim_row(k, vehicle=2):
-    time = 1118846980200 + 100 * k
-    return f"{vehicle},{13 + k},437,{time},6.0,{100 + 4 * k},0,0,14.3,6.4,2,40.0,0.0,1,0,0,0,0"
 
 
 @pytest.mark.parametrize("headless", [True, False])
@@ -220,7 +213,7 @@ def test_ngsim(tmp_path, headless):
         file.write_text("\n".join(row.replace(",", "  ") for row in rows) + "\n")
     else:
         file = tmp_path / "us101.csv"
-        file.write_text(table(NGSIM, *rows))
+        file.write_text(table(NGSIM_HEAD, *rows))
     assert is_recording(str(file))
     recording = read_recording(file)
     (car,) = recording.participants
@@ -235,21 +228,13 @@ def test_ngsim_by_places(tmp_path):
     (tmp_path / "lanes.csv").write_text(ALONG_Y)
     file = tmp_path / "all.csv"
     rows = [f"{ngsim_row(k)},{place}" for place in ("us-101", "i-80") for k in range(3)]
-    file.write_text(table(f"{NGSIM},Location", *rows))
+    file.write_text(table(f"{NGSIM_HEAD},Location", *rows))
     assert {one.name for one in read_recordings(RecordingSource(file))} == {"us-101", "i-80"}
 
 
 def test_omega_prime(tmp_path):
-    head = (
-        "total_nanos,idx,x,y,z,vel_x,vel_y,vel_z,acc_x,acc_y,acc_z,length,width,height,roll,pitch,"
-        "yaw,type,role,subtype"
-    )
-    bus = [
-        f"{k * 33000000},0,{10 + k / 3},0,0,10,0,0,1,0,0,12,2.5,3,0,0,0,2,6,12" for k in range(9)
-    ]
-    walker = [f"{k * 33000000},1,20,3,0,0,0,0,0,0,0,.5,.5,2,0,0,1.5,3,-1,-1" for k in range(9)]
     file = tmp_path / "objects.csv"
-    file.write_text(table(head, *bus, *walker))
+    file.write_text(omega_prime())
     (tmp_path / "road.net.xml").write_text(ROAD_NET)
     (tmp_path / "lanes.csv").write_text(LANES)
     recording = read_recording(file)

@@ -4,6 +4,7 @@ A street along the x axis: two lanes lead along it below it, one back above it. 
 junction. Some paint divides them; a crossing lies at 40 m.
 """
 
+import io
 import json
 
 import numpy as np
@@ -142,3 +143,17 @@ def write_log(folder, boxes, poses, content=None):
     path = folder / "annotations.feather"
     feather.write_feather(pyarrow.Table.from_pylist(boxes), path)
     return path
+
+
+def parquet_bytes(rows):
+    """The rows as Parquet that is not packed, so that mistakes in it change values."""
+    stream = io.BytesIO()
+    parquet.write_table(pyarrow.Table.from_pylist(rows), stream, compression="none")
+    return stream.getvalue()
+
+
+def feather_bytes(rows):
+    """The rows as Feather that is not packed."""
+    stream = io.BytesIO()
+    feather.write_feather(pyarrow.Table.from_pylist(rows), stream, compression="uncompressed")
+    return stream.getvalue()

@@ -85,3 +85,26 @@ def two_way_street(**middle):
     there = file.lanelet(line, south)
     back = file.lanelet(line, north)
     return file, there, back
+
+
+def every_element():
+    """A small map with most that is read."""
+    file, there, back = two_way_street()
+    line = file.line((90, 0), (90, -3), type="stop_line")
+    post = file.line((90, -5), (90, -6), type="traffic_sign", subtype="de205")
+    lamp = file.line((92, -5), (92, -6), type="traffic_light")
+    light = file.rule("traffic_light", [("refers", "way", lamp), ("ref_line", "way", line)])
+    sign = file.rule("traffic_sign", [("refers", "way", post), ("ref_line", "way", line)])
+    limit = file.rule("speed_limit", [], sign_type="30 km/h")
+    on = file.lanelet(file.line((100, 0), (130, 0)), file.line((100, -3), (130, -3)), one_way="no")
+    file.lanelet(
+        file.line((130, 0), (150, 0)),
+        file.line((130, -3), (150, -3)),
+        rules=[light, sign, limit],
+        turn_direction="left",
+        region="de",
+    )
+    roles = [("yield", "relation", there), ("right_of_way", "relation", back)]
+    file.rule("right_of_way", [*roles, ("refers", "way", post), ("ref_line", "way", line)])
+    file.rule("all_way_stop", [("yield", "relation", on), ("ref_line", "way", line)])
+    return file.text()

@@ -156,3 +156,54 @@ def written(folder, text, name="made.xodr"):
     file = folder / name
     file.write_text(text, encoding="utf-8")
     return file
+
+
+def every_element():
+    """A small map with most that is read."""
+    light = {"id": "l", "s": 98, "t": -4, "orientation": "+", "dynamic": "yes", "type": "1000001"}
+    sign = {"id": "g", "s": 40, "t": -4, "orientation": "+", "type": "274", "value": "50"}
+    crosswalk = '<object id="z" type="crosswalk" s="50" t="0" hdg="1.5" length="8" width="4"/>'
+    plan = geometry('<spiral curvStart="0" curvEnd="0.02"/>', length=60) + geometry(
+        '<paramPoly3 pRange="normalized" aU="0" bU="30" cU="5" dU="5" aV="0" bV="0" cV="3" '
+        'dV="1"/>',
+        s=60,
+        x=59,
+        y=12,
+        hdg=0.6,
+        length=40,
+    )
+    return document(
+        road(
+            1,
+            section(
+                lane(1, mark="broken", links="successor=1"),
+                lane(-1, width=cubic("width", "sOffset", 0, 3, 0.01), links="successor=-1"),
+            ),
+            section(lane(1), lane(-1), lane(-2, kind="sidewalk"), start=50),
+            plan=plan,
+            links="successor=junction:9",
+            offsets=cubic("laneOffset", "s", 0, 0.5),
+            more='<type s="0" type="town"><speed max="50" unit="km/h"/></type>'
+            f"<objects>{crosswalk}</objects>" + signals(light, sign),
+        ),
+        road(
+            2,
+            section(lane(-1, links="predecessor=-1 successor=-1")),
+            plan=geometry('<arc curvature="0.1"/>', x=97, y=30, hdg=1, length=10),
+            length=10,
+            junction=9,
+            links="predecessor=road:1:end successor=road:3:start",
+            more=signals({"tag": "signalReference", "id": "l", "s": 0, "orientation": "+"}),
+        ),
+        road(
+            3,
+            two_way(),
+            plan=geometry(cubic("poly3", "x", 0, 0, 0, 0.001), x=100, y=40, hdg=2, length=50),
+            length=50,
+            links="predecessor=junction:9",
+        ),
+        '<junction id="9" name=""><connection id="0" incomingRoad="1" connectingRoad="2" '
+        'contactPoint="start"><laneLink from="-1" to="-1"/></connection>'
+        '<priority high="2" low="2"/></junction>',
+        '<controller id="c"><control signalId="l"/></controller>',
+    )

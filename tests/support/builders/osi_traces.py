@@ -113,3 +113,26 @@ def sensor_data(*views):
 def trace(messages):
     """The bytes of a file of messages."""
     return b"".join(struct.pack("<I", len(one)) + one for one in messages)
+
+
+def every_element():
+    """The messages of a small trace with most that is read."""
+    lanes = lane(1, [(0, 0), (60, 1), (100, 0)], left_line=[11], right_line=[12], left=[2])
+    lanes += boundary(11, [(0, 2), (100, 2)]) + boundary(12, [(0, -2), (100, -2)])
+    lanes += lane(2, [(0, 4), (100, 4)], forward=False, right=[1], pairs=[(1, 3)])
+    lanes += lane(60, kind=4, forward=None, pairs=[(1, 3)])
+    lanes += lane(3, [(120, 0), (200, 0)])
+    lanes += sign(5, 52, [1], 50.0) + mark(6, 17, (95, 0), [1])
+    lanes += mark(7, 87, (50, 0), [1], size=(0.01, 8.0, 3.0))
+    return [
+        ground_truth(
+            k * 100_000_000,
+            vehicle(7, 10.0 + k, 0.0, lamps={1: 3, 7: 3}),
+            vehicle(8, 30.0, 0.0, kind=3),
+            light(9, 2 + k % 3, 3, [1]),
+            lanes if k == 0 else b"",
+            host=7,
+            country=276,
+        )
+        for k in range(4)
+    ]

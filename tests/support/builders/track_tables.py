@@ -88,3 +88,65 @@ def ind(folder, bodies, origin=(0.0, 0.0)):
     file = folder / "00_tracks.csv"
     file.write_text("\n".join(rows) + "\n")
     return file
+
+
+INTERACTION_HEAD = "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy,psi_rad,length,width"
+WALKERS_HEAD = "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy"
+
+
+def interaction_row(k, x=10.0):
+    """A car of INTERACTION's that drives 10 m/s along the x axis."""
+    return f"1,{k},{100 * k},car,{x + k},0,10,0,0,4.2,1.9"
+
+
+def interaction_files():
+    """A car, and somebody on foot, with their lanes: texts by name."""
+    cars = [interaction_row(k) for k in range(1, 9)]
+    walkers = [f"P1,{k},{100 * k},pedestrian/bicycle,30,{k * 0.13},0,1.3" for k in range(1, 9)]
+    return {
+        "vehicle_tracks_007.csv": table(INTERACTION_HEAD, *cars),
+        "pedestrian_tracks_007.csv": table(WALKERS_HEAD, *walkers),
+        "lanes.csv": LANES,
+    }
+
+
+def interaction_cases():
+    """A file of INTERACTION's with two cases."""
+    rows = [f"{case}.0,{interaction_row(k, 10.0 * case)}" for case in (1, 2) for k in range(1, 5)]
+    return table(f"case_id,{INTERACTION_HEAD}", *rows)
+
+
+NGSIM_HEAD = (
+    "Vehicle_ID,Frame_ID,Total_Frames,Global_Time,Local_X,Local_Y,Global_X,Global_Y,v_Length,"
+    "v_Width,v_Class,v_Vel,v_Acc,Lane_ID,Preceding,Following,Space_Headway,Time_Headway"
+)
+
+
+def ngsim_row(k, vehicle=2):
+    """A car of 14.3 feet whose front is 100 feet along the road, at 40 feet a second."""
+    time = 1118846980200 + 100 * k
+    return f"{vehicle},{13 + k},437,{time},6.0,{100 + 4 * k},0,0,14.3,6.4,2,40.0,0.0,1,0,0,0,0"
+
+
+def omega_prime():
+    """A bus at 10 m/s, and somebody who stands at 3 m beside its way, in OMEGA-PRIME's columns."""
+    head = (
+        "total_nanos,idx,x,y,z,vel_x,vel_y,vel_z,acc_x,acc_y,acc_z,length,width,height,roll,pitch,"
+        "yaw,type,role,subtype"
+    )
+    bus = [
+        f"{k * 33000000},0,{10 + k / 3},0,0,10,0,0,1,0,0,12,2.5,3,0,0,0,2,6,12" for k in range(9)
+    ]
+    walker = [f"{k * 33000000},1,20,3,0,0,0,0,0,0,0,.5,.5,2,0,0,1.5,3,-1,-1" for k in range(9)]
+    return table(head, *bus, *walker)
+
+
+EVERY_COLUMN_OF_LANES = table(
+    "lane,x,y,width,limit_kmh,left_mark,right_mark,type,signs,successors,left_lane,"
+    "junction,foes,first,stop_line,side",
+    "a,0,0,3,50,broken,solid,urban busLane,stop,b c,d,,,,1,left",
+    "a,50,0,5,,,,,,,,,,,,",
+    *(f"{name},{x},0,3,,,,,,,,j,c,c,,left" for name in "bc" for x in (50, 60)),
+    *(f"d,{x},4,3,,,,,,,,,,,,left" for x in (0, 50)),
+)
+"""Lanes with all that can be said: ``b`` and ``c`` lead on from ``a``, ``d`` is left of it."""
