@@ -1,0 +1,1 @@
+"""Drives judged on engines that exist: a table of tracks or traces in, one of findings out."""

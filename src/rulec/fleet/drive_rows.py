@@ -1,0 +1,181 @@
+"""The rows of a drive: itself, each rule, and each finding."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from math import hypot
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import RulecError
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
+from rulec.extraction.to_trace import Drive
+from rulec.fleet.finding_columns import COLUMNS, Cell, Row
+from rulec.monitoring.verdict import NotJudged, OutcomeName, Verdict
+from rulec.report.verdict_findings.found_in_drives import DriveFindings
+from rulec.report.verdict_findings.found_in_traces import trace_findings
+from rulec.report.verdict_findings.verdict_finding import COLUMNS as OF_FINDINGS
+from rulec.report.verdict_findings.verdict_finding import VerdictFinding
+from rulec.trace import Trace
+
+Opportunities = Mapping[str, tuple[int, float]]
+"""Rule -> how often its trigger was met in a drive, and for how long (s)."""
+
+MOVED_M = 0.5
+"""Places of recordings waver by less, also of who stands."""
+
+OUTCOMES: Mapping[bool | None, OutcomeName] = {True: "kept", False: "violated", None: "open"}
+"""What a drive's verdict on its hard rules is called."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveRows:
+    """Makes rows of verdicts by a rulebook; ``shared`` are columns that all of them have."""
+
+    rules: CompiledRulebook
+    shared: Row
+    _of_rules: Mapping[str, Row] = field(init=False)
+
+    def __post_init__(self) -> None:
+        of_rules = {
+            rule.name: {"rule": rule.name, "provision": rule.cite, "strength": rule.strength}
+            for rule in self.rules.rules
+        }
+        object.__setattr__(self, "_of_rules", of_rules)
+
+    def of_recording(self, verdicts: RecordingVerdicts, file: str) -> Iterator[Row]:
+        """The rows of all drives of a recording, and of vehicles that have none."""
+        recording = verdicts.recording
+        own = {
+            "file": file,
+            "recording": recording.name,
+            "source": recording.form,
+            "country": recording.country,
+        }
+        for answer in verdicts.answers():
+            if isinstance(answer, NoDrive):
+                named = {"vehicle": answer.ego, "ego": answer.ego}
+                yield self._not_judged({**own, **named}, answer.why)
+            else:
+                yield from self._of_drive(answer, verdicts, own)
+
+    def of_trace(
+        self,
+        trace: Trace,
+        verdict: Verdict | NotJudged,
+        own: Row,
+        opportunities: Opportunities | None = None,
+    ) -> Iterator[Row]:
+        """The rows of a trace; ``own`` are columns that say where it is from."""
+        own = {**own, "vehicle": verdict.trace or ""}
+        if isinstance(verdict, NotJudged):
+            yield self._not_judged(own, verdict.error.diagnostics[0].message)
+            return
+        times = (0.0, round((len(trace.states) - 1) * trace.step_s, 9))
+        yield self._judged(own, verdict, trace, times)
+        yield from self._rules(own, verdict, opportunities)
+        found = trace_findings(str(own.get("file", "")), trace, verdict, self.rules, [])
+        at_s = [
+            round((len(trace.states) - 1 if one.step is None else one.step) * trace.step_s, 9)
+            for one in verdict.violations
+        ]
+        yield from self._findings(own, verdict, at_s, found)
+
+    def of_nothing(self, own: Row, error: RulecError) -> Row:
+        """The row of what could not be read: a file, a recording or a trace."""
+        return self._not_judged(own, error.diagnostics[0].message)
+
+    def _of_drive(
+        self, result: DriveVerdict, verdicts: RecordingVerdicts, own: Row
+    ) -> Iterator[Row]:
+        drive, verdict = result.drive, result.answer
+        own = {**own, "vehicle": drive.trace.id, "ego": drive.ego}
+        if isinstance(verdict, NotJudged):
+            yield self._not_judged(own, verdict.error.diagnostics[0].message)
+            return
+        times = (drive.time_s(0), drive.time_s(None))
+        yield {
+            **self._judged(own, verdict, drive.trace, times),
+            "distance_m": driven_m(drive),
+        }
+        yield from self._rules(own, verdict, None)
+        # Of one drive alone: it says also what is not judged in this one.
+        findings = DriveFindings(verdicts, str(own["file"]))
+        findings.add(result, [])
+        at_s = [drive.time_s(violation.step) for violation in verdict.violations]
+        yield from self._findings(own, verdict, at_s, iter(findings.whole().findings))
+
+    def _judged(
+        self, own: Row, verdict: Verdict, trace: Trace, times: tuple[float, float]
+    ) -> dict[str, Cell]:
+        return {
+            **self.shared,
+            **own,
+            "kind": "drive",
+            "outcome": OUTCOMES[verdict.satisfied],
+            "from_s": times[0],
+            "to_s": times[1],
+            "states": len(trace.states),
+            # Each state stands for the time up to the next one, the last for a step, too.
+            "duration_s": round(len(trace.states) * trace.step_s, 9),
+        }
+
+    def _not_judged(self, own: Row, why: str) -> Row:
+        return {**self.shared, **own, "kind": "drive", "outcome": "not_judged", "because": why}
+
+    def _rules(
+        self, own: Row, verdict: Verdict, opportunities: Opportunities | None
+    ) -> Iterator[Row]:
+        """A row for each rule: the worst of its outcomes, and how often it was put to the test."""
+        outcomes: dict[str, str] = dict.fromkeys(self._of_rules, "kept")
+        outcomes |= {result.rule: "open" for result in verdict.open}
+        outcomes |= {violation.rule: "violated" for violation in verdict.violations}
+        not_judged = {rule.rule: rule for rule in verdict.not_judged}
+        outcomes |= dict.fromkeys(not_judged, "not_judged")
+        shared = {**self.shared, **own, "kind": "rule"}
+        for name, about in self._of_rules.items():
+            row: dict[str, Cell] = {**shared, **about, "outcome": outcomes[name]}
+            if name in not_judged:
+                untold = not_judged[name]
+                row |= {"open_on": tuple(untold.untold), "because": untold.why}
+            if opportunities is not None and name in opportunities:
+                times, seconds = opportunities[name]
+                row |= {"opportunities": times, "opportunities_s": seconds}
+            yield row
+
+    def _findings(
+        self, own: Row, verdict: Verdict, at_s: list[float], found: Iterator[VerdictFinding]
+    ) -> Iterator[Row]:
+        """A row for each violation, with when it was lost, and for each that is open."""
+        lost = iter(zip(verdict.violations, at_s, strict=True))
+        for finding in found:
+            if finding.outcome == "not_judged":
+                continue  # its rule's row says so
+            row: dict[str, Cell] = {name: getattr(finding, name) for name in OF_FINDINGS}
+            row |= {**self.shared, **own, "kind": "finding"}
+            if finding.outcome == "violated":
+                violation, when = next(lost)
+                row |= {"state": violation.step, "at_s": when}
+            yield row
+
+
+def driven_m(drive: Drive) -> float | None:
+    """How far ego drove (m), along its places; None if these are not known.
+
+    Recorded places waver: only who is ``MOVED_M`` from where it was counted last has moved.
+    """
+    places = drive.places
+    if not places:
+        return None
+    driven = 0.0
+    x, y = places[0].x, places[0].y
+    for place in places:
+        moved = hypot(place.x - x, place.y - y)
+        if moved >= MOVED_M:
+            driven += moved
+            x, y = place.x, place.y
+    return round(driven + hypot(places[-1].x - x, places[-1].y - y), 2)
+
+
+assert set(OF_FINDINGS) <= set(COLUMNS), "findings have no columns of their own"

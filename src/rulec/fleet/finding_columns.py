@@ -1,0 +1,70 @@
+"""The columns of a fleet's table of findings: one row a drive, one a rule of it, one a finding."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, Literal, TypeAlias
+
+from rulec.report.verdict_findings import verdict_finding
+from rulec.trace.formats.arrow.parquet import arrow
+
+Kind = Literal["drive", "rule", "finding"]
+"""What a row is about: a drive, a drive and a rule, or a rule and the objects that it is about."""
+
+Cell: TypeAlias = "str | float | tuple[str, ...] | None"
+
+COLUMNS: Mapping[str, type] = {
+    "kind": str,
+    **verdict_finding.COLUMNS,
+    **dict.fromkeys(("ego", "source", "country"), str),
+    "state": int,
+    "at_s": float,
+    "states": int,
+    **dict.fromkeys(("duration_s", "distance_m"), float),
+    "opportunities": int,
+    "opportunities_s": float,
+    **dict.fromkeys(("rulebook_hash", "rulec", "thresholds", "assumptions"), str),
+}
+"""Name -> the type of its values: those of findings, and what rates need beside them.
+
+docs/fleet.md says column by column what they mean. A text that does not apply is empty, a list
+has no items, a number is None.
+"""
+
+_NOTHING: Mapping[type, Cell] = {str: "", list: ()}
+EMPTY: Mapping[str, Cell] = {name: _NOTHING.get(kind) for name, kind in COLUMNS.items()}
+"""The values of columns that do not apply."""
+
+Row: TypeAlias = Mapping[str, Cell]
+"""The columns of a row that apply."""
+
+
+def arrow_schema() -> Any:
+    """The ``pyarrow.Schema`` of the table. Raises RulecError R0706 without pyarrow."""
+    pyarrow, _ = arrow("the table of findings")
+    texts = pyarrow.list_(pyarrow.string())
+    kinds = {str: pyarrow.string(), int: pyarrow.int64(), float: pyarrow.float64(), list: texts}
+    return pyarrow.schema([(name, kinds[kind]) for name, kind in COLUMNS.items()])
+
+
+def arrow_table(rows: Iterable[Row]) -> Any:
+    """Rows as a ``pyarrow.Table`` with all columns. Raises RulecError R0706 without pyarrow."""
+    schema = arrow_schema()
+    pyarrow, _ = arrow("the table of findings")
+    listed = list(rows)
+    arrays = [
+        pyarrow.array([_plain(row.get(name, EMPTY[name])) for row in listed], kind)
+        for name, kind in zip(schema.names, schema.types, strict=True)
+    ]
+    return pyarrow.table(arrays, schema=schema)
+
+
+def _plain(value: Cell) -> str | float | list[str] | None:
+    if isinstance(value, tuple):
+        return [_in_utf8(item) for item in value]
+    return _in_utf8(value) if isinstance(value, str) else value
+
+
+def _in_utf8(text: str) -> str:
+    """A text without halves of surrogate pairs, which UTF-8 does not have."""
+    return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode()

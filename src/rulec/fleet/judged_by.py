@@ -1,0 +1,104 @@
+"""What findings were judged by: rulebook, version, thresholds and assumptions, as texts.
+
+Findings of one fleet may be added up only if all of these are the same.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from hashlib import sha256
+from typing import Any
+
+import msgspec
+
+from rulec.automata.bundle.bundle_schema import ENTRY_OF
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.extraction.selection import RequestedDrives
+from rulec.extraction.traffic_thresholds import USUAL
+from rulec.logic.printing import formula_text
+from rulec.trace import Value
+from rulec.value_display import short_repr
+from rulec.version import __version__
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedBy:
+    """The rulebook's name and hash, the version of rulec, and what was chosen.
+
+    ``thresholds`` are those that are not the usual ones of this version, such as ``near_m=200``;
+    ``assumptions`` values, and ``defaults``, ``as recorded``, ``ends=cut``: sorted, with ``; ``
+    between them, as options are written.
+    """
+
+    __repr__ = short_repr
+
+    rulebook: str
+    rulebook_hash: str
+    rulec: str = __version__
+    thresholds: str = ""
+    assumptions: str = ""
+
+    def columns(self) -> dict[str, str]:
+        """Its fields, as columns of a table of findings."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+def judged_by(rules: CompiledRulebook, wanted: RequestedDrives, ends: str = "") -> JudgedBy:
+    """What drives are judged by; ``ends`` is how traces are taken to end, if that is chosen."""
+    given = wanted.thresholds
+    chosen = {
+        field.name: getattr(given, field.name)
+        for field in fields(given)
+        if getattr(given, field.name) != getattr(USUAL, field.name)
+    }
+    flags = {"defaults": wanted.defaults, "as recorded": wanted.as_recorded}
+    assumed = [*_pairs(wanted.assumed), *(name for name, holds in flags.items() if holds)]
+    return JudgedBy(
+        rules.name,
+        rulebook_hash(rules),
+        thresholds="; ".join(_pairs(chosen)),
+        assumptions="; ".join([*assumed, *([f"ends={ends}"] if ends else [])]),
+    )
+
+
+def _pairs(values: Mapping[str, Value]) -> list[str]:
+    return [f"{name}={_written(value)}" for name, value in sorted(values.items())]
+
+
+def _written(value: Value) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value).removesuffix(".0") if isinstance(value, float) else str(value)
+
+
+def rulebook_hash(rules: CompiledRulebook) -> str:
+    """SHA-256 (hexadecimal) of all that decides verdicts: rules, facts and vocabulary.
+
+    It is that of the rulebook, whether it comes from its source or from a compiled file, for
+    whatever step: neither words for people nor machines count.
+    """
+    vocabulary = rules.vocabulary
+    content = [
+        rules.name,
+        rules.semantics,
+        rules.traffic,
+        [
+            [rule.name, rule.strength, rule.level, str(rule.weight), _variables(rule)]
+            for rule in rules.rules
+        ],
+        [formula_text(rule.formula) for rule in rules.rules],
+        sorted([_variables(axiom), formula_text(axiom.formula)] for axiom in rules.axioms),
+        sorted(rules.priorities),
+        sorted((item.name, item.parent or "") for item in vocabulary.types.values()),
+        [
+            msgspec.to_builtins(msgspec.convert(item, ENTRY_OF[type(item)], from_attributes=True))
+            for item in vocabulary.declarations.values()
+        ],
+    ]
+    return sha256(json.dumps(content, ensure_ascii=False).encode()).hexdigest()
+
+
+def _variables(about: Any) -> list[list[str]]:
+    return [[variable.name, variable.type] for variable in about.variables]
