@@ -84,7 +84,7 @@ def test_an_ending_that_says_nothing(listed, tmp_path):
     status, out, err = listed("-o", str(file))
     assert (status, out) == (2, "")
     assert "does not say by its ending what to write" in err
-    assert "one of .txt, .md, .json" in err
+    assert "one of .txt, .md, .markdown, .json" in err
     assert not file.exists()
     assert listed("-o", str(file), "--output-format", "json")[0] == 0
     assert json.loads(file.read_text())["version"] == 1

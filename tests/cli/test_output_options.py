@@ -1,14 +1,19 @@
 """One rule for all verbs: the ending of a file says what is written into it."""
 
+import io
 import os
+import re
+import sys
+from pathlib import Path
 
 import click
 import pytest
 
-from rulec.cli.main import main
-from rulec.cli.options.output_options import TABLES, chosen_format
+from rulec.cli.main import VERBS, main, rulec
+from rulec.cli.options.output_options import TABLES, chosen_format, endings_of
 
-PICTURES = {"svg": (".svg",), "png": (".png",)}
+PICTURES = endings_of("svg", "png")
+FOUND = endings_of("full", "concise", "json", "sarif")
 
 
 @pytest.mark.parametrize(
@@ -17,47 +22,182 @@ PICTURES = {"svg": (".svg",), "png": (".png",)}
         (PICTURES, "a.svg", "svg"),
         (PICTURES, "b/a.PNG", "png"),
         (PICTURES, "-", "svg"),
-        (PICTURES, None, "svg"),
         (TABLES, "a.jsonl", "jsonl"),
         (TABLES, "a.ndjson", "jsonl"),
         (TABLES, "a.pq", "parquet"),
+        (FOUND, "a.json", "json"),
+        (FOUND, "a.sarif.json", "sarif"),
+        (FOUND, "a.txt", "full"),
         # Nothing ends a device's name.
         (TABLES, os.devnull, "jsonl"),
     ],
 )
 def test_the_ending_decides(endings, file, form):
-    assert chosen_format(endings, file, None) == form
-
-
-def test_what_is_named_comes_first():
-    assert chosen_format(PICTURES, "a.svg", "png") == "png"
-    assert chosen_format(PICTURES, "a.txt", "png") == "png"
-
-
-@pytest.mark.parametrize("file", ["a", "a.txt", "a.svg.bak", "png"])
-def test_an_ending_that_says_nothing_is_refused_with_those_that_do(file):
-    with pytest.raises(click.UsageError) as refused:
-        chosen_format(PICTURES, file, None)
-    assert "Let it end in one of .svg, .png, or name the format" in refused.value.message
+    assert chosen_format(endings, file) == form
 
 
 @pytest.mark.parametrize(
-    "arguments",
+    ("file", "named"), [("a", "png"), ("a.xyz", "png"), ("a.png", "png"), ("-", "png")]
+)
+def test_a_format_is_named_where_the_ending_says_nothing(file, named):
+    assert chosen_format(PICTURES, file, named) == named
+
+
+def test_formats_may_share_an_ending():
+    assert chosen_format(FOUND, "a.txt", "concise") == "concise"
+
+
+@pytest.mark.parametrize(("file", "named"), [("a.csv", "jsonl"), ("a.PQ", "csv")])
+def test_an_ending_and_a_name_that_contradict_each_other(file, named):
+    with pytest.raises(click.UsageError) as refused:
+        chosen_format(TABLES, file, named)
+    assert f"and not {named}" in refused.value.message
+
+
+@pytest.mark.parametrize("file", ["a", "a.txt", "a.svg.bak", "png", "a\0", "x" * 5000])
+def test_an_ending_that_says_nothing_is_refused_with_those_that_do(file):
+    with pytest.raises(click.UsageError) as refused:
+        chosen_format(PICTURES, file)
+    assert "Let it end in one of .svg, .png, or name the format" in refused.value.message
+
+
+WITHOUT = {
+    "compile": "writes a folder of files whose formats are given",
+    "new": "writes a rulebook that is called as it is named",
+    "fmt": "changes files in place",
+    "completion": "prints a script for the shell that is named",
+}
+"""Verbs that have one output of one kind, with the reason."""
+
+
+def commands(group, *names):
+    """All commands below a group, with their names."""
+    context = click.Context(group)
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        if isinstance(command, click.Group):
+            yield from commands(command, *names, name)
+        else:
+            yield (*names, name), command
+
+
+COMMANDS = {" ".join(names): command for names, command in commands(rulec)}
+
+
+def needed(command):
+    """Arguments with which the command would begin; nothing has such names."""
+    for parameter in command.params:
+        if parameter.required and "--output" not in parameter.opts:
+            is_option = isinstance(parameter, click.Option)
+            yield from ([parameter.opts[0]] if is_option else [])
+            yield "nothing.at.all"
+
+
+def options_of(command):
+    return {name: option for option in command.params for name in option.opts}
+
+
+def test_all_verbs_are_looked_at():
+    assert {name.split()[0] for name in COMMANDS} == VERBS.keys()
+    assert WITHOUT.keys() <= COMMANDS.keys()
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_a_verb_without_the_rule_has_no_part_of_it(name):
+    options = options_of(COMMANDS[name])
+    assert not {"--output-format", "--json"} & options.keys()
+    if "-o" in options:
+        assert options["-o"].metavar == "DIR"
+
+
+@pytest.mark.parametrize("name", [name for name in COMMANDS if name not in WITHOUT])
+class TestEveryVerb:
+    def test_it_has_all_options(self, name):
+        options = options_of(COMMANDS[name])
+        assert "-o" in options
+        choices = options["--output-format"].type.choices
+        assert ("--json" in options) == ("json" in choices)
+
+    def test_an_unknown_ending_is_refused_before_anything_is_read(self, name, capsys, tmp_path):
+        file = tmp_path / "answer.xyz"
+        command = COMMANDS[name]
+        assert main([*name.split(), *needed(command), "-o", str(file)]) == 2
+        err = capsys.readouterr().err
+        assert f"`{file}` does not say by its ending what to write" in err
+        assert re.search(r"Let it end in one of (\.[a-z.]+, )+or name the format", err)
+        assert not file.exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
     [
-        ["traces", "s1"],
-        ["envelopes", "s1", "-r", "esterle2019"],
-        ["draw", "graph", "s1"],
-        ["doc", "esterle2019"],
-        ["diff", "de", "fr"],
-        ["verify", "docs/samples/traces.jsonl", "-r", "esterle2019"],
-        ["formats"],
+        (["list", "-o", "a.txt", "--json"], "it is text, and not json"),
+        (["list", "--json", "--output-format", "text"], "contradict each other"),
+        (["list", "-o", "a.txt", "-o", "b.txt"], "-o is given twice"),
+        (["check", "a.json", "-o", "./a.json"], "is named already, and would be overwritten"),
+        (
+            ["diff", "de", "fr", "--witness", "a.json", "-o", "a.json"],
+            "is named already, and would be overwritten",
+        ),
     ],
 )
-def test_every_verb_refuses_it(arguments, capsys, tmp_path):
-    file = tmp_path / "answer.xyz"
-    assert main([*arguments, "-o", str(file)]) == 2
-    assert "does not say by its ending what to write" in capsys.readouterr().err
-    assert not file.exists()
+def test_what_is_refused(arguments, says, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("a.json").write_text("kept")
+    assert main(arguments) == 2
+    assert says in capsys.readouterr().err
+    assert Path("a.json").read_text() == "kept"
+    assert [path.name for path in Path().iterdir()] == ["a.json"]
+
+
+STATES = b'{"state": {"loud": false}}\n{"state": {"loud": true}}\n'
+BOOK = "rulebook tiny\nsignal loud default false\nhard rule quiet { require never loud }\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "ending", "form"),
+    [
+        (["check", "./tiny.rules"], ".sarif.json", "sarif"),
+        (["check", "./tiny.rules"], ".txt", "full"),
+        (["analyze", "./tiny.rules"], ".json", "json"),
+        (["test", "./tiny.rules"], ".xml", "junit"),
+        (["audit", "./tiny.rules"], ".md", "markdown"),
+        (["explain", "R0101"], ".markdown", "markdown"),
+        (["list", "codes"], ".json", "json"),
+        (["tree", "./tiny.rules"], ".txt", "text"),
+        (["monitor", "./tiny.rules", "--step", "1"], ".jsonl", "json"),
+        (["maneuvers", "s1", "-r", "./tiny.rules"], ".json", "json"),
+    ],
+)
+def test_a_file_gets_what_standard_output_does(
+    arguments, ending, form, capsys, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    Path("tiny.rules").write_text(BOOK)
+
+    def run(*more):
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(STATES)))
+        return main([*arguments, *more]), capsys.readouterr().out
+
+    status, shown = run("--output-format", form)
+    assert status in (0, 1)
+    file = f"answer{ending}"
+    assert run("-o", file) == (status, f"wrote {file}\n")
+    seconds = re.compile(r'"seconds": [0-9.e-]+')
+    assert seconds.sub("", Path(file).read_text()) == seconds.sub("", shown)
+
+
+def test_a_monitor_that_is_interrupted_leaves_no_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("tiny.rules").write_text(BOOK)
+
+    class Interrupted(io.BytesIO):
+        def read1(self, size=-1):
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(Interrupted()))
+    assert main(["monitor", "./tiny.rules", "--step", "1", "-o", "a.jsonl"]) == 130
+    assert [path.name for path in Path().iterdir()] == ["tiny.rules"]
 
 
 @pytest.mark.parametrize("name", ["--output-format", "--format"])

@@ -132,7 +132,7 @@ def test_an_automaton_is_one_of_a_rule(two, capsys):
 
 def test_json_and_automaton_are_two_answers(capsys):
     assert main(["show", "esterle2019", "R1", "--json", "--automaton", "dot"]) == 2
-    assert "give --json or --automaton" in capsys.readouterr().err
+    assert "--json and --automaton dot contradict each other" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -147,7 +147,7 @@ def test_the_automaton_alone(output_format, beginning, capsys):
 def test_a_picture_that_is_not_drawn(tmp_path, capsys):
     path = tmp_path / "r.png"
     assert main(["show", "esterle2019", "R1", "-o", str(path)]) == 2
-    assert "an automaton is drawn in a file .svg, .dot or .gv" in capsys.readouterr().err
+    assert "one of .txt, .json, .dot, .gv, .svg" in capsys.readouterr().err
     assert not path.exists()
 
 

@@ -167,7 +167,8 @@ def test_a_broken_recording_on_standard_input_has_that_name(verify, monkeypatch)
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ((A, "-o", A, "--output-format", "jsonl"), "is read, and would be overwritten"),
+        ((A, "-o", A), "is named already, and would be overwritten"),
+        (("drives", "-o", A), "is named already, and would be overwritten"),
         ((A, "-o", "a.csv", "-o", "b.csv", "--json"), "each says its own format"),
         ((A, "-o", "-", "-o", "-"), "standard output takes one format"),
         (("drives", "-o", "a.mcap"), "MCAP has one time line"),

@@ -8,13 +8,16 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
+import click
+
 import rulec
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.options.output_options import Output
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.files import written_whole
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.findings.finding_formats import render
-from rulec.report.text.console import print_result
+from rulec.report.text.console import PAGE_WIDTH, page_width, print_result
 from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
@@ -47,22 +50,57 @@ def errors_told(
 
 
 @contextmanager
-def output_stream(output: Path) -> Iterator[tuple[IO[bytes], str]]:
-    """A stream and its name, for a file written whole or `-`.
+def output_stream(to: Output) -> Iterator[tuple[IO[bytes], str]]:
+    """A stream and its name, for a file written whole or standard output.
 
     Raises RulecError R0702.
     """
-    if str(output) == "-":
+    if not to.is_file:
         yield sys.stdout.buffer, "standard output"
     else:
-        with written_whole(output) as stream:
-            yield stream, str(output)
+        with written_whole(Path(to.path)) as stream:
+            yield stream, to.path
 
 
-def print_written(what: str, output: Path) -> None:
+def print_written(what: str, to: Output) -> None:
     """Say that a file has been written, unless it is standard output."""
-    if str(output) != "-":
+    if to.is_file:
         print_result(f"wrote {what}")
+
+
+def put_answer(text: str, to: Output) -> None:
+    """Write the answer to standard output, or to a file. Raises RulecError R0702."""
+    with answer_lines(to) as write:
+        if text:
+            write(text)
+    print_written(to.path, to)
+
+
+@contextmanager
+def answer_lines(to: Output) -> Iterator[Callable[[str], None]]:
+    """A function that takes lines: for standard output at once, for a file that appears whole.
+
+    Raises RulecError R0702.
+    """
+    if not to.is_file:
+        yield print_result
+        return
+    with written_whole(Path(to.path)) as stream:
+        yield line_writer(stream)
+
+
+def line_writer(stream: IO[bytes]) -> Callable[[str], None]:
+    """A function that writes lines to a file, without colours."""
+
+    def write(text: str) -> None:
+        stream.write(f"{click.unstyle(text)}\n".encode("utf-8", "backslashreplace"))
+
+    return write
+
+
+def width_of(to: Output) -> int:
+    """How wide a text may be, in characters: on a terminal that of its window."""
+    return PAGE_WIDTH if to.is_file else page_width()
 
 
 def counted(number: int, noun: str) -> str:
@@ -75,7 +113,7 @@ def print_findings(
     unread: Sequence[Diagnostic],
     *,
     nothing: str,
-    output_format: str,
+    to: Output,
     fail_on: str,
 ) -> ExitStatus:
     """Print findings in sources, then why some could not be read; the exit status.
@@ -83,11 +121,10 @@ def print_findings(
     ``nothing`` is what to say in full text if there are neither; ``fail_on`` is ``error`` or
     ``warning``.
     """
-    text = render(findings, output_format, color=wants_color(sys.stdout), complete=not unread)
-    if text:
-        print_result(text)
-    elif output_format == "full" and not unread:
-        print_result(f"{nothing}, nothing found")
+    text = render(findings, to.form, color=wants_color(sys.stdout), complete=not unread)
+    if not text and to.form == "full" and not unread:
+        text = f"{nothing}, nothing found"
+    put_answer(text, to)
     print_diagnostics(unread)
     return ExitStatus.after(
         answered=not unread,

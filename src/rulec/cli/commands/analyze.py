@@ -6,6 +6,7 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import Output
 from rulec.cli.output import counted, errors_told, open_session, print_findings
 from rulec.diagnostics import Diagnostic
 from rulec.report.text.console import progress
@@ -15,7 +16,7 @@ from rulec.report.text.console import progress
 @shared.rulebooks_argument
 @shared.findings_options
 @shared.at_option
-def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: str) -> int:
+def command(rulebooks: tuple[str, ...], to: Output, fail_on: str, at: str) -> int:
     """Find out what is odd in RULEBOOKs (names, or paths of sources) by their automata.
 
     That is: rules that nothing can violate or keep, that others imply, or that wait for what never
@@ -37,7 +38,7 @@ def command(rulebooks: tuple[str, ...], output_format: str, fail_on: str, at: st
         list(dict.fromkeys(findings)),
         unread,
         nothing=counted(len(rulebooks), "rulebook"),
-        output_format=output_format,
+        to=to,
         fail_on=fail_on,
     )
     undecided = any(finding.code == NOT_DECIDED.code for finding in findings)

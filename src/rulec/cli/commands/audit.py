@@ -10,10 +10,10 @@ import click
 from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.scenario_options import recording_options, recording_source
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.output import errors_told, open_session
-from rulec.report.text.console import page_width, print_result
+from rulec.cli.output import errors_told, open_session, put_answer, width_of
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
@@ -22,9 +22,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @shared.rulebooks_argument
-@shared.choice_option(
-    "--output-format", ["text", "markdown", "json"], "Text, tables in Markdown, or JSON."
-)
+@output_options(endings_of("text", "markdown", "json"), "the audit")
 @click.option(
     "--fail-on",
     "fatal",
@@ -51,7 +49,7 @@ if TYPE_CHECKING:
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
-    output_format: str,
+    to: Output,
     fatal: tuple[str, ...],
     run: bool,
     compare: str | None,
@@ -88,8 +86,8 @@ def command(
                 sources.append(open_session(at).audit_source(rulebook, source, where))
             audits.append(done)
     against = {} if older is None else compare_audits(audits, older)
-    if audits or output_format == "json":
-        print_result(render(audits, against, output_format, page_width(), sources))
+    if audits or to.form == "json":
+        put_answer(render(audits, against, to.form, width_of(to), sources), to)
     findings = [
         finding
         for done in audits

@@ -6,6 +6,7 @@ import sys
 
 import click
 
+from rulec.cli.options.output_options import Output
 from rulec.cli.options.shared_options import at_option, findings_options
 from rulec.cli.options.shell_completion import complete_sources
 from rulec.cli.output import counted, print_findings
@@ -24,9 +25,7 @@ from rulec.settings import search_path
     help="Check anew also what has not changed since the last time.",
 )
 @at_option
-def command(
-    sources: tuple[str, ...], output_format: str, fail_on: str, at: str, no_cache: bool
-) -> int:
+def command(sources: tuple[str, ...], to: Output, fail_on: str, at: str, no_cache: bool) -> int:
     """Check rulebooks and vocabularies, and write nothing.
 
     Each is a name, a file, a folder (all .rules files in it), or `-` for standard input.
@@ -44,6 +43,6 @@ def command(
         done.findings,
         done.unread,
         nothing=f"{counted(len(done.files), 'file')} checked",
-        output_format=output_format,
+        to=to,
         fail_on=fail_on,
     )

@@ -10,20 +10,12 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.output_options import chosen_format, output_options
+from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.output import counted, errors_told, open_session
+from rulec.cli.output import counted, errors_told, open_session, put_answer
 from rulec.files import written_whole
-from rulec.report.text.console import print_aside, progress, put_result
+from rulec.report.text.console import print_aside, progress
 from rulec.settings import search_path
-
-FORMATS = {
-    "text": (".txt",),
-    "markdown": (".md",),
-    "json": (".json",),
-    "html": (".html", ".htm"),
-    "csv": (".csv",),
-}
 
 
 @click.command()
@@ -47,7 +39,10 @@ FORMATS = {
     most=100,
     default=3,
 )
-@output_options(FORMATS, "the comparison: text, Markdown, JSON, a page, or a row for each rule")
+@output_options(
+    endings_of("text", "markdown", "json", "html", "csv"),
+    "the comparison: text, Markdown, JSON, a page, or a row for each rule",
+)
 @click.option(
     "--witness",
     type=click.Path(dir_okay=False),
@@ -61,8 +56,7 @@ def command(
     patterns: tuple[str, ...],
     step_s: Fraction | None,
     n_witnesses: int,
-    output_format: str | None,
-    output: str | None,
+    to: Output,
     witness: str | None,
     at: str,
 ) -> int:
@@ -73,7 +67,6 @@ def command(
 
     Exit status: 0 no difference, 1 there are some, 2 a question could not be answered.
     """
-    output_format = chosen_format(FORMATS, output, output_format)
     # Rulebooks and their automata, 140 ms: not for --help.
     from rulec.analysis.diff.comparison_matrix import comparison_matrix, steps
     from rulec.report.rulebooks import diff_formats, matrix_report
@@ -109,7 +102,7 @@ def command(
             matrix = comparison_matrix(books, patterns, step_s, tell)
         if alone:
             print_aside(f"left out, for they share no rule with others: {', '.join(alone)}")
-        put_result(matrix_report.render(matrix, output_format), output)
+        put_answer(matrix_report.render(matrix, to.form), to)
         answered = are_all_read and matrix.is_complete
         return ExitStatus.after(answered=answered, failed=not matrix.is_uniform)
     if len(rulebooks) != 2:
@@ -122,5 +115,5 @@ def command(
         with written_whole(Path(witness)) as stream:
             number = write_traces(difference.witnesses, stream)
         print_aside(f"wrote {counted(number, 'trace')} to {witness}")
-    put_result(diff_formats.render(difference, output_format), output)
+    put_answer(diff_formats.render(difference, to.form), to)
     return ExitStatus.after(answered=difference.is_complete, failed=not difference.is_none)

@@ -6,15 +6,20 @@ import sys
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from itertools import islice
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 import rulec
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.output_options import chosen_format, output_options
+from rulec.cli.options.output_options import (
+    Output,
+    endings_of,
+    input_format_option,
+    output_options,
+)
 from rulec.cli.options.scenario_options import (
+    TRACE_FORMATS,
     drives_options,
     graph_options,
     read_scene,
@@ -36,12 +41,13 @@ if TYPE_CHECKING:
     from rulec.report.pictures.drawing.picture_formats import Drawing
     from rulec.report.pictures.drawing.styles import Theme
     from rulec.trace import Trace
+    from rulec.trace.formats.trace_files import Format
 
     Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
 
-_PICTURES = {form: (f".{form}",) for form in ("svg", "png", "pdf", "html")}
-
-_picture_options = output_options(_PICTURES, "the picture", required=True, former="--format")
+_picture_options = output_options(
+    endings_of("svg", "png", "pdf", "html"), "the picture", required=True, former="--format"
+)
 
 _judging_options = shared.combined(
     [
@@ -91,6 +97,7 @@ def command() -> None:
     is_flag=True,
     help="Draw what any rule reads, not only what the violated ones do.",
 )
+@input_format_option(TRACE_FORMATS, "the traces.  [default: what FILE ends with, else jsonl]")
 @shared.at_option
 @_picture_options
 def trace(
@@ -100,9 +107,9 @@ def trace(
     patterns: tuple[str, ...],
     objects: tuple[str, ...],
     every_row: bool,
+    input_format: Format | None,
     at: str,
-    output: str,
-    output_format: str | None,
+    to: Output,
 ) -> None:
     """Draw a trace of FILE (JSON Lines, CSV or Parquet): what violated rules read, over time.
 
@@ -114,16 +121,14 @@ def trace(
     from rulec.monitoring.verify import rulebook_for_trace
 
     rules = read_machines(rulebook, at)
-    drawn = _trace(file, trace_id)
+    drawn = _trace(file, trace_id, input_format)
     for item in objects:
         if item not in drawn.objects:
             raise click.UsageError(
                 f"trace `{drawn.id}` has no object `{item}`; it has {named(list(drawn.objects))}."
             )
     used = _only(rulebook_for_trace(drawn, rules), patterns)
-    _write(
-        trace_drawing(drawn, used, objects, patterns, every_row=every_row), (output, output_format)
-    )
+    _write(trace_drawing(drawn, used, objects, patterns, every_row=every_row), to)
 
 
 @command.command()
@@ -165,8 +170,7 @@ def drive(
     at_s: float | None,
     theme: Theme,
     at: str,
-    output: str,
-    output_format: str | None,
+    to: Output,
     **options: Any,
 ) -> None:
     """Draw a drive of the recording FILE from above: the road, everybody on it, the violations.
@@ -184,7 +188,7 @@ def drive(
     kept = frozenset(rule.name for rule in _only(rules, patterns).rules) if patterns else None
     recording = read_recording(recording_source(file, options))
     verdicts = rulec.verify_recording(recording, rules, wanted)
-    _write(drive_drawing(verdicts, ego if part else "", kept, at_s), (output, output_format), theme)
+    _write(drive_drawing(verdicts, ego if part else "", kept, at_s), to, theme)
 
 
 @command.command()
@@ -198,7 +202,7 @@ def drive(
     metavar="P",
 )
 @_picture_options
-def scene(layers: tuple[int, ...], output: str, output_format: str | None, **options: Any) -> None:
+def scene(layers: tuple[int, ...], to: Output, **options: Any) -> None:
     """Draw SCENARIO (a name or a file) over time: cells with signatures, obstacles, a maneuver.
 
     With a rulebook the cheapest maneuver that satisfies it is shown by its cells, whose bounds are
@@ -212,14 +216,14 @@ def scene(layers: tuple[int, ...], output: str, output_format: str | None, **opt
     if layers and max(layers) > last:
         raise click.UsageError(f"There is no layer {max(layers)}; they are 0 to {last}.")
     number = options["number"] or 1
-    _write(scene_drawing(graph, maneuvers, maneuver, layers, number), (output, output_format))
+    _write(scene_drawing(graph, maneuvers, maneuver, layers, number), to)
 
 
 @command.command()
 @graph_options
 @_judging_options
 @_picture_options
-def graph(output: str, output_format: str | None, **options: Any) -> None:
+def graph(to: Output, **options: Any) -> None:
     """Draw the navigation graph of SCENARIO (a name or a file), layer by layer.
 
     With a rulebook the steps of satisfying maneuvers are told from those of rejected ones, and the
@@ -228,12 +232,15 @@ def graph(output: str, output_format: str | None, **options: Any) -> None:
     # As for ``scene``.
     from rulec.api.pictures import graph_drawing
 
-    _write(graph_drawing(*_judged(**options)), (output, output_format))
+    _write(graph_drawing(*_judged(**options)), to)
 
 
-def _trace(file: str, trace_id: str | None) -> Trace:
+def _trace(file: str, trace_id: str | None, form: Format | None) -> Trace:
+    # The formats of traces, 20 ms: not for --help.
+    from rulec.trace.formats.trace_files import read_traces
+
     names: list[str] = []
-    for item in rulec.read_traces(file):
+    for item in read_traces(file, form):
         if isinstance(item, RulecError):
             raise item
         if trace_id in (None, item.id):
@@ -284,12 +291,11 @@ def _judged(
     return maneuvers.graph, maneuvers, maneuver
 
 
-def _write(drawing: Drawing, to: tuple[str, str | None], theme: Theme = "auto") -> None:
+def _write(drawing: Drawing, to: Output, theme: Theme = "auto") -> None:
     # Fonts and layout, 5 ms: not for --help.
     from rulec.report.pictures.drawing.picture_formats import as_bytes
 
-    output, output_format = to
-    data = as_bytes(drawing, chosen_format(_PICTURES, output, output_format), output, theme)
-    with output_stream(Path(output)) as (stream, _):
+    data = as_bytes(drawing, to.form, to.path, theme)
+    with output_stream(to) as (stream, _):
         stream.write(data)
-    print_written(output, Path(output))
+    print_written(to.path, to)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import click
@@ -10,7 +9,7 @@ import click
 import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.output_options import TABLES, chosen_format, output_options
+from rulec.cli.options.output_options import TABLES, Output, output_options
 from rulec.cli.options.scenario_options import (
     graph_options,
     read_scene,
@@ -36,8 +35,7 @@ if TYPE_CHECKING:
 def command(
     scenario: str,
     rulebook: str,
-    output: str,
-    output_format: Format | None,
+    to: Output,
     number: int,
     at: str,
     **options: Any,
@@ -51,16 +49,13 @@ def command(
     # Maneuvers and the formats of tables, 100 ms: not for --help.
     from rulec.report.maneuvers.envelope_table import write_envelopes
 
-    form = cast("Format", chosen_format(TABLES, output, output_format))
     rules = read_machines(rulebook, at)
     reading = scene_reading(options, rules.vocabulary)
     scene = read_scene(scenario, options)
     maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
     cheapest = maneuvers.cheapest(number)
-    with output_stream(Path(output)) as (stream, name):
-        write_envelopes(maneuvers.graph, cheapest, stream, name, form)
+    with output_stream(to) as (stream, name):
+        write_envelopes(maneuvers.graph, cheapest, stream, name, cast("Format", to.form))
     satisfying = shown_count(maneuvers.satisfying)
-    print_written(
-        f"{len(cheapest):,} of {satisfying} satisfying maneuvers to {output}", Path(output)
-    )
+    print_written(f"{len(cheapest):,} of {satisfying} satisfying maneuvers to {to.path}", to)
     return ExitStatus.OK if cheapest else ExitStatus.VIOLATED

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import click
 
+from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_codes
+from rulec.cli.output import put_answer
 from rulec.diagnostics import nearest_name
 from rulec.report.findings import code_registry
-from rulec.report.text.console import print_result
 
 
 @click.command()
 @click.argument("code", required=False, shell_complete=complete_codes)
 @click.option("--all", "every", is_flag=True, help="Explain every code.")
-@click.option(
-    "--output-format",
-    type=click.Choice(["full", "json", "markdown"]),
-    default="full",
-    show_default=True,
-    help="Text, JSON, or Markdown (with --all the page docs/codes.md).",
+@output_options(
+    endings_of("full", "json", "markdown"),
+    "the explanation: text, JSON, or Markdown (with --all the page docs/codes.md)",
 )
-def command(code: str | None, every: bool, output_format: str) -> None:
+def command(code: str | None, every: bool, to: Output) -> None:
     """Explain CODE, such as R0104: what it means, a bad example, and the mended one."""
     if every == (code is not None):
         raise click.UsageError("give one code, or --all")
@@ -32,15 +30,16 @@ def command(code: str | None, every: bool, output_format: str) -> None:
             + (f"did you mean `{near}`?" if near else "`rulec list codes` shows them all")
         )
     codes = [*code_registry.all_codes().values()] if named is None else [named]
-    match output_format:
+    match to.form:
         case "json":
             # Only this format needs msgspec, 8 of the 54 ms that the command takes.
             from rulec.report.findings.diagnostics_json import codes_as_json
 
-            print_result(codes_as_json(codes))
+            text = codes_as_json(codes)
         case "markdown" if named is not None:
-            print_result(f"# {named.code}: {named.title}\n\n{code_registry.as_markdown(named)}")
+            text = f"# {named.code}: {named.title}\n\n{code_registry.as_markdown(named)}"
         case "markdown":
-            print_result(code_registry.as_page())
+            text = code_registry.as_page()
         case _:
-            print_result("\n\n\n".join(map(code_registry.as_text, codes)))
+            text = "\n\n\n".join(map(code_registry.as_text, codes))
+    put_answer(text, to)

@@ -9,9 +9,8 @@ import click
 
 import rulec
 from rulec.api.rulebook_verbs import Kind
-from rulec.cli.options.shared_options import json_option
-from rulec.cli.output import open_session
-from rulec.report.text.console import print_result
+from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.output import open_session, put_answer
 
 if TYPE_CHECKING:
     from rulec.report.text.listing import Listed
@@ -21,8 +20,8 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 
 @click.command()
 @click.argument("kind", type=click.Choice(KINDS), required=False)
-@json_option
-def command(kind: Kind | None, json_output: bool) -> None:
+@output_options(endings_of("text", "json"), "the list")
+def command(kind: Kind | None, to: Output) -> None:
     """List what can be asked for by name, with a title; without KIND all of it but the codes."""
     # msgspec, 7 ms: not for --help.
     from rulec.report.text.listing import as_json, as_text
@@ -33,4 +32,4 @@ def command(kind: Kind | None, json_output: bool) -> None:
 
     kinds = KINDS[:-1] if kind is None else (kind,)
     lists: dict[str, Sequence[Listed]] = {kind: session(kind).list(kind) for kind in kinds}
-    print_result(as_json(lists) if json_output else as_text(lists))
+    put_answer(as_json(lists) if to.form == "json" else as_text(lists), to)

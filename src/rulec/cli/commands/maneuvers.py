@@ -12,8 +12,8 @@ import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
-from rulec.cli.output import errors_told, read_machines
-from rulec.report.text.console import print_result
+from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.output import errors_told, put_answer, read_machines
 
 
 @click.command()
@@ -51,7 +51,7 @@ from rulec.report.text.console import print_result
 @click.option(
     "--strict", is_flag=True, help="Exit with 1 if no maneuver keeps every hard rule for sure."
 )
-@shared.json_option
+@output_options(endings_of("text", "json"), "the answer")
 @shared.at_option
 def command(
     scenario: str,
@@ -63,7 +63,7 @@ def command(
     worlds: bool,
     after: Path | None,
     strict: bool,
-    json_output: bool,
+    to: Output,
     at: str,
     **options: Any,
 ) -> int:
@@ -115,12 +115,12 @@ def command(
         classes=None if n_classes is None else (maneuvers.classes(), maneuvers.variants(n_classes)),
     )
     seconds = time.perf_counter() - begin
-    if json_output:
+    if to.form == "json":
         # Its types take 2 ms to make, for which a text need not wait.
         from rulec.report.maneuvers.maneuver_json import as_json
 
-        print_result(as_json(maneuvers, answers, seconds))
+        put_answer(as_json(maneuvers, answers, seconds), to)
     else:
-        print_result(as_text(maneuvers, answers, seconds))
+        put_answer(as_text(maneuvers, answers, seconds), to)
     kept = maneuvers.satisfying if strict else legal
     return ExitStatus.after(answered=maneuvers.judges, failed=not kept)

@@ -10,10 +10,10 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.output import open_session
+from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.output import answer_lines, open_session, print_written
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.report.findings.diagnostics_text import Complaints
-from rulec.report.text.console import print_result
 
 
 @click.command()
@@ -26,14 +26,17 @@ from rulec.report.text.console import print_result
 @shared.file_option(
     "--save", "Save in FILE where the monitor stands when it ends, however it ends."
 )
-@shared.json_option
+@output_options(
+    {**endings_of("text"), "json": (".jsonl", ".ndjson", ".json")},
+    "the verdicts, a line for each state,",
+)
 @shared.at_option
 def command(
     rulebook: str,
     step_s: Fraction | None,
     restore: Path | None,
     save: Path | None,
-    json_output: bool,
+    to: Output,
     at: str,
 ) -> int:
     """Judge by RULEBOOK the states that come on standard input, one JSON object a line.
@@ -59,17 +62,18 @@ def command(
     else:
         monitor = Monitor.restore(rules, saved, SourceLocation(str(restore)))
     complaints, refused = Complaints(), False
-    with monitor_sources.saved_at_the_end(monitor, save):
+    form = running_verdicts.as_json if to.form == "json" else running_verdicts.as_text
+    with monitor_sources.saved_at_the_end(monitor, save), answer_lines(to) as write:
         for live in read_live(sys.stdin.buffer, "standard input"):
             result = monitor_sources.answer(monitor, live)
             if isinstance(result, RulecError):
                 refused = True
                 complaints.add(result)
-                if json_output:
-                    print_result(running_verdicts.refused_as_json(result))
+                if to.form == "json":
+                    write(running_verdicts.refused_as_json(result))
             else:
-                write = running_verdicts.as_json if json_output else running_verdicts.as_text
-                print_result(write(result))
+                write(form(result))
         complaints.close()
+    print_written(to.path, to)
     violated = {"violated"} if save is not None else {"violated", "pending"}
     return ExitStatus.after(answered=not refused, failed=monitor.so_far.best in violated)

@@ -10,9 +10,10 @@ import click
 
 import rulec
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rules
+from rulec.cli.output import put_answer, width_of
 from rulec.diagnostics import named, nearest_name
-from rulec.report.text.console import PAGE_WIDTH, page_width, put_result
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
@@ -20,32 +21,26 @@ if TYPE_CHECKING:
     from rulec.report.automata.automaton_model import Automaton
     from rulec.rulebook.rulebook_model import Rule, Rulebook
 
-SUFFIXES = {".dot": "dot", ".gv": "dot", ".svg": "svg"}
-
-OTHERS = (".pdf", ".png", ".jpg", ".jpeg")
-"""Ends of names of pictures that are not drawn."""
-
 
 @click.command()
 @shared.rulebook_argument
 @click.argument("rule", required=False, shell_complete=complete_rules)
 @click.option(
     "--automaton",
-    "automaton_format",
     type=click.Choice(["text", "dot", "svg"]),
     help="The rule's automaton alone: as text, for Graphviz, or as a picture.",
 )
-@shared.text_output_option(
-    "Write to FILE. One that ends in .svg, .dot or .gv gets the automaton in that format.",
+@output_options(
+    endings_of("text", "json", "dot", "svg"),
+    "the rule: text, JSON, or its automaton for Graphviz or as a picture",
+    alias="automaton",
 )
-@shared.json_option
 @shared.at_option
 def command(
     rulebook: str,
     rule: str | None,
-    automaton_format: str | None,
-    output: str | None,
-    json_output: bool,
+    automaton: str | None,
+    to: Output,
     at: str,
 ) -> None:
     """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, by examples.
@@ -56,16 +51,11 @@ def command(
     # Rules and automata, 60 ms: not for --help.
     from rulec.report.rulebooks import rule_json, rule_page
 
-    if output is not None and automaton_format is None and not json_output:
-        if Path(output).suffix.lower() in OTHERS:
-            raise click.UsageError(f"{output}: an automaton is drawn in a file .svg, .dot or .gv")
-        automaton_format = SUFFIXES.get(Path(output).suffix)
-    if json_output and automaton_format is not None:
-        raise click.UsageError("give --json or --automaton; the JSON has the automaton in it")
+    is_automaton = automaton is not None or to.form in ("dot", "svg")
     book, compiled = _read(rulebook, at)
     chosen = _chosen(book, rule, rulebook)
-    width = page_width() if output is None else PAGE_WIDTH
-    if chosen is None and automaton_format is not None:
+    width = width_of(to)
+    if chosen is None and is_automaton:
         raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
     page = None
     if chosen is not None:
@@ -74,18 +64,18 @@ def command(
         machine = next(rule for rule in compiled.rules if rule.name == chosen.name)
         page = rule_page.page_of(chosen, machine, compiled.vocabulary)
     rules = book.rules if chosen is None else (chosen,)
-    if json_output:
+    if to.form == "json":
         text = rule_json.as_json(book.name, rules, book.vocabulary, page)
     elif page is None:
         text = "\n\n\n".join(
             rule_page.summary(rule, book.name, book.vocabulary, width) for rule in rules
         )
-    elif automaton_format is None:
+    elif not is_automaton:
         text = rule_page.as_text(page, book.name, book.vocabulary, width)
     else:
         name = f"{book.name} {page.rule.name}"
-        text = _automaton(page.automaton, automaton_format, name, width)
-    put_result(text, output)
+        text = _automaton(page.automaton, to.form, name, width)
+    put_answer(text, to)
 
 
 def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:

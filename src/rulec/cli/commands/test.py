@@ -9,9 +9,10 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.output import errors_told, open_session
+from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.output import errors_told, open_session, put_answer
 from rulec.report.findings.diagnostics_text import print_diagnostics
-from rulec.report.text.console import print_aside, print_result
+from rulec.report.text.console import print_aside
 
 if TYPE_CHECKING:
     from rulec.book_tests.example_runs import ExampleRun
@@ -35,7 +36,7 @@ def _number(
     help="Run the examples whose RULE or RULE/LABEL this matches; * and ? are wild. "
     "One without a label goes by its number.",
 )
-@shared.choice_option("--output-format", ["full", "json", "junit"], "Text, JSON, or JUnit XML.")
+@output_options(endings_of("full", "json", "junit"), "the outcomes: text, JSON, or JUnit XML")
 @click.option("--fail-on-empty", is_flag=True, help="Fail if there is no example to run.")
 @click.option(
     "--coverage",
@@ -55,7 +56,7 @@ def _number(
 def command(
     rulebooks: tuple[str, ...],
     pattern: str | None,
-    output_format: str,
+    to: Output,
     fail_on_empty: bool,
     with_coverage: bool,
     threshold: float | None,
@@ -80,8 +81,8 @@ def command(
             runs.append(run)
     measured = with_coverage or threshold is not None
     covered = [coverage(run) for run in runs] if measured else None
-    if runs or output_format != "full":
-        print_result(render(runs, covered, output_format))
+    if runs or to.form != "full":
+        put_answer(render(runs, covered, to.form), to)
     short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)
     for sentence in short:
         print_aside(f"rulec: {sentence}")

@@ -12,7 +12,7 @@ import click
 import rulec
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.output_options import TABLES, chosen_format, output_options
+from rulec.cli.options.output_options import TABLES, Output, output_options
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.diagnostics import SourceLocation
 from rulec.report.text.console import progress
@@ -47,8 +47,7 @@ MOST_TRACES = 10_000_000
 def command(
     scenario: str,
     rulebook: str | None,
-    output: str,
-    output_format: Format | None,
+    to: Output,
     limit: int | None,
     recorded: bool,
     **options: Any,
@@ -58,11 +57,8 @@ def command(
     With --recorded, what the vehicles of recorded traffic did. `rulec verify` reads the file. It
     appears whole or not at all.
     """
-    form = cast("Format", chosen_format(TABLES, output, output_format))
     if recorded:
-        _write_drives(
-            Path(scenario), Path(output), rulebook=rulebook, limit=limit, form=form, options=options
-        )
+        _write_drives(Path(scenario), to, rulebook=rulebook, limit=limit, options=options)
         return
     about = {name: options.pop(name) for name in ("thresholds", "assumed", "as_recorded")}
     if option := scenario_options.given_drives_option(about):
@@ -86,13 +82,13 @@ def command(
             "Name how many to write with --limit N, or count them with `rulec maneuvers`."
         )
     wanted = total if limit is None else min(limit, total)
-    with progress(f"writing {output}", wanted) as tell:
+    with progress(f"writing {to.path}", wanted) as tell:
         traces = _counted_aloud(all_traces(graph, scene.name, wanted), tell)
         kinds = kinds_in(chain.from_iterable(graph.states))
         partial = graph.told is not None or bool(partial_names(chain.from_iterable(graph.states)))
-        with output_stream(Path(output)) as (stream, name):
-            write_traces(traces, stream, name, form, kinds, partial=partial)
-    print_written(f"{wanted:,} of {shown_count(total)} traces to {output}", Path(output))
+        with output_stream(to) as (stream, name):
+            write_traces(traces, stream, name, cast("Format", to.form), kinds, partial=partial)
+    print_written(f"{wanted:,} of {shown_count(total)} traces to {to.path}", to)
 
 
 _OF_DRIVES = {"ego", "thresholds", "assumed", "as_recorded"}
@@ -102,11 +98,10 @@ _OF_DRIVES |= {"map_path", "input_format", "scenario_id"}
 
 def _write_drives(
     file: Path,
-    output: Path,
+    to: Output,
     *,
     rulebook: str | None,
     limit: int | None,
-    form: Format,
     options: dict[str, Any],
 ) -> None:
     # numpy and shapely, 200 ms: only for recordings.
@@ -145,11 +140,11 @@ def _write_drives(
         message = "nobody in this recording drives on a lane"
         raise NOT_IN_RECORDING.error(SourceLocation(str(file)), message)
     with (
-        progress(f"writing {output}", len(result.egos)) as tell,
-        output_stream(output) as (stream, name),
+        progress(f"writing {to.path}", len(result.egos)) as tell,
+        output_stream(to) as (stream, name),
     ):
-        write_traces(traces(), stream, name, form, kinds, partial=True)
-    print_written(f"{count:,} drives to {output}", output)
+        write_traces(traces(), stream, name, cast("Format", to.form), kinds, partial=True)
+    print_written(f"{count:,} drives to {to.path}", to)
 
 
 def _given_maneuvers_option(options: Mapping[str, Any]) -> str | None:

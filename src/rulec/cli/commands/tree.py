@@ -7,9 +7,9 @@ import sys
 import click
 
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.output import open_session
-from rulec.report.text.console import page_width, print_result
+from rulec.cli.output import open_session, put_answer, width_of
 from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
@@ -22,9 +22,9 @@ from rulec.settings import search_path
     metavar="PATTERN",
     help="Show only the rules whose name this matches; * and ? are wild.",
 )
-@shared.json_option
+@output_options(endings_of("text", "json"), "the tree")
 @shared.at_option
-def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, at: str) -> None:
+def command(rulebooks: tuple[str, ...], pattern: str | None, to: Output, at: str) -> None:
     """Show what a RULEBOOK inherits, overrides, softens and drops, and which book set what.
 
     It is given by its name or the path of its source. Of several RULEBOOKs, or without any of all
@@ -37,13 +37,13 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, 
     from rulec.rulebook.files.catalogue import rulebook_trees
 
     shared.only_sources(rulebooks, "cannot be taken apart")
-    width, color = page_width(), wants_color(sys.stdout)
+    width, color = width_of(to), wants_color(sys.stdout)
     if len(rulebooks) == 1:
         inherited = lineage_tree.chosen(open_session(at).tree(rulebooks[0]), pattern)
         if pattern is not None and not inherited.rules:
             raise click.UsageError(f"{inherited.book} has no rule like `{pattern}`")
         shown = lineage_tree.as_json(inherited)
-        if not json_output:
+        if to.form == "text":
             shown = lineage_tree.as_text(inherited, width, color=color)
     else:
         if pattern is not None:
@@ -55,6 +55,6 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, json_output: bool, 
             books = [book_header(tree) for tree in rulebook_trees(search_path())]
         branches = extension_forest(books)
         shown = lineage_tree.forest_as_json(branches)
-        if not json_output:
+        if to.form == "text":
             shown = lineage_tree.forest_as_text(branches, width, color=color)
-    print_result(shown)
+    put_answer(shown, to)

@@ -11,9 +11,14 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.output_options import output_options
+from rulec.cli.options.output_options import (
+    STANDARD_OUTPUT,
+    Output,
+    output_options,
+    refuse_overwriting,
+)
 from rulec.cli.output import counted, read_machines
-from rulec.cli.verdict_outputs import FORMATS, chosen_sinks, verdict_outputs
+from rulec.cli.verdict_outputs import FORMATS, verdict_outputs
 from rulec.diagnostics import RulecError
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, print_aside
@@ -74,7 +79,7 @@ MOST_JOBS = 256
     metavar="N",
     help="Judge so many recordings at a time; 0 is as many as there are processors.",
 )
-@output_options(FORMATS, "the answer", json=True, multiple=True)
+@output_options(FORMATS, "the answer", multiple=True)
 @shared.at_option
 def command(
     files: tuple[str, ...],
@@ -83,9 +88,7 @@ def command(
     every_part: bool,
     strict: bool,
     ends: Ending | None,
-    outputs: tuple[str, ...],
-    output_format: str | None,
-    json_output: bool,
+    to: tuple[Output, ...],
     at: str,
     egos: tuple[str, ...],
     jobs: int,
@@ -110,8 +113,8 @@ def command(
     # Formats of recordings, 80 ms: not for --help.
     from rulec.recordings.recording_inputs import input_files
 
-    sinks = chosen_sinks(outputs, output_format, files, json_output=json_output)
     inputs = input_files(files)
+    refuse_overwriting(to, inputs.paths)
     rules = read_machines(rulebook, at)
     form = scenario_options.trace_format(options)
     recordings = _recordings(inputs, form, named=options["input_format"] is not None)
@@ -122,10 +125,11 @@ def command(
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     if ends is not None and recordings:
         raise click.UsageError("--end is for traces; a recording is always cut.")
-    if len(recordings) > 1 and any(kind == "mcap" for _, kind in sinks):
+    if len(recordings) > 1 and any(one.form == "mcap" for one in to):
         raise click.UsageError("MCAP has one time line: give one recording.")
     traces = [path for path in inputs.paths if path not in recordings]
-    usual = 0 if json_output or len(inputs.paths) > 1 else 1
+    is_json_alone = to == (Output(STANDARD_OUTPUT, "json"),)
+    usual = 0 if is_json_alone or len(inputs.paths) > 1 else 1
     to_explain = usual if n_explained is None else n_explained
     for searched in inputs.searched:
         found = counted(searched.recordings, "recording")
@@ -134,9 +138,9 @@ def command(
     # Tables of automata, 160 ms: not for --help.
     from rulec.cli.trace_run import TraceRun
 
-    with verdict_outputs(sinks, rules) as to:
+    with verdict_outputs(to, rules) as outputs:
         complaints = Complaints()
-        traced = TraceRun(rules, to, complaints, to_explain, every_part)
+        traced = TraceRun(rules, outputs, complaints, to_explain, every_part)
         violated, judged, complete = False, False, True
         if recordings or inputs.problems:
             # numpy and shapely, 250 ms: only for recordings.
@@ -150,11 +154,11 @@ def command(
                 to_explain=to_explain,
                 every_part=every_part,
                 width=page_width(),
-                text=to.wants_text,
-                lines=to.wants_lines,
-                findings=to.wants_findings,
+                text=outputs.wants_text,
+                lines=outputs.wants_lines,
+                findings=outputs.wants_findings,
             )
-            recorded = RecordingRun(settings, to, complaints)
+            recorded = RecordingRun(settings, outputs, complaints)
             for problem in inputs.problems:
                 recorded.not_read(problem)
             if recordings:

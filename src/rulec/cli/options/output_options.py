@@ -1,13 +1,19 @@
 """Where an answer goes, and in which format: one rule for all verbs.
 
-The ending of the file decides, `--output-format` where it is given, whose short form is `--json`.
+The ending of the file decides, `--output-format` where it says nothing, whose short form is
+`--json`. What is unclear is refused before the verb begins.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import os
+import stat
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import click
 
@@ -15,6 +21,54 @@ Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 Endings = Mapping[str, Sequence[str]]
 """Name of a format -> how its files end. The first is what is written where nothing says."""
+
+_TEXT = (".txt",)
+
+_ENDINGS: Endings = {
+    "text": _TEXT,
+    "full": _TEXT,
+    "concise": _TEXT,
+    "github": _TEXT,
+    "markdown": (".md", ".markdown"),
+    "html": (".html", ".htm"),
+    "json": (".json",),
+    "jsonl": (".jsonl", ".ndjson"),
+    "csv": (".csv",),
+    "parquet": (".parquet", ".pq"),
+    "junit": (".xml",),
+    "sarif": (".sarif", ".sarif.json"),
+    "dot": (".dot", ".gv"),
+    "svg": (".svg",),
+    "png": (".png",),
+    "pdf": (".pdf",),
+}
+
+_BINARY = frozenset({"mcap", "parquet", "pdf", "png"})
+"""Formats that no terminal can show."""
+
+STANDARD_OUTPUT = "-"
+
+
+def endings_of(*formats: str) -> Endings:
+    """How files of these formats end; the first is what is written where nothing says."""
+    return {form: _ENDINGS[form] for form in formats}
+
+
+TABLES = endings_of("jsonl", "csv", "parquet")
+"""The formats of traces and of tables."""
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """The path of a file, or `-` for standard output, and the format to write there."""
+
+    path: str
+    form: str
+
+    @property
+    def is_file(self) -> bool:
+        """True unless it is standard output."""
+        return self.path != STANDARD_OUTPUT
 
 
 class _Renamed(click.Option):
@@ -26,14 +80,6 @@ class _Renamed(click.Option):
             return super().get_help_record(ctx)
         finally:
             self.opts = shown
-
-
-TABLES: Endings = {
-    "jsonl": (".jsonl", ".ndjson"),
-    "csv": (".csv",),
-    "parquet": (".parquet", ".pq"),
-}
-"""The formats of traces and of tables."""
 
 
 def input_format_option(
@@ -55,23 +101,33 @@ def output_options(
     what: str,
     *,
     required: bool = False,
-    json: bool = False,
     multiple: bool = False,
     former: str = "",
+    alias: str = "",
+    instead: str = "",
 ) -> Callable[[Decorated], Decorated]:
-    """``-o FILE`` and ``--output-format NAME`` of an answer; with ``json`` also ``--json``.
+    """``-o FILE``, ``--output-format NAME`` and, where that may be ``json``, ``--json``.
 
-    ``required``: it goes to a file; standard output has to be asked for. ``multiple``: to several.
-    ``former`` is what ``--output-format`` was called.
+    The verb is given ``to``, an Output; with ``multiple`` a tuple of them.
+
+    Args:
+        endings: the formats.
+        what: what is written, for the help.
+        required: it goes to a file; standard output has to be asked for.
+        multiple: it may go to several files.
+        former: what ``--output-format`` was called.
+        alias: the parameter of a further option that may name a format.
+        instead: what to do where none of the formats is the one that is wanted.
     """
     default = next(iter(endings))
+    has_json = "json" in endings
     options = [
         click.option(
             "-o",
             "--output",
-            "outputs" if multiple else "output",
+            "outputs",
             required=required,
-            multiple=multiple,
+            multiple=True,
             metavar="FILE",
             type=click.Path(dir_okay=False, allow_dash=True),
             help=f"Write {what} to FILE, whose ending says the format; `-` is standard output."
@@ -87,7 +143,7 @@ def output_options(
             "output]",
         ),
     ]
-    if json:
+    if has_json:
         options.append(
             click.option(
                 "--json", "json_output", is_flag=True, help="The same as --output-format json."
@@ -95,44 +151,119 @@ def output_options(
         )
 
     def decorate(function: Decorated) -> Decorated:
+        @wraps(function)
+        def called(**values: Any) -> Any:
+            outputs, output_format = values.pop("outputs"), values.pop("output_format")
+            named = {f"--output-format {output_format}": output_format}
+            named |= {"--json": "json" if has_json and values.pop("json_output") else None}
+            also = values.get(alias)
+            named |= {f"--{alias} {also}": also if also in endings else None}
+            form = _one_format({option: name for option, name in named.items() if name})
+            if len(outputs) > 1 and not multiple:
+                raise click.UsageError("-o is given twice; there is one answer.")
+            if len(outputs) > 1 and form is not None:
+                raise click.UsageError("With several files each says its own format, by its end.")
+            to = tuple(
+                Output(path, chosen_format(endings, path, form, instead=instead))
+                for path in outputs or (STANDARD_OUTPUT,)
+            )
+            _refuse_doubtful(to, values)
+            return function(**values, to=to if multiple else to[0])
+
+        decorated = cast("Decorated", called)
         for option in reversed(options):
-            function = option(function)
-        return function
+            decorated = option(decorated)
+        return decorated
 
     return decorate
 
 
 def chosen_format(
-    endings: Endings,
-    output: str | Path | None,
-    output_format: str | None,
-    *,
-    json_output: bool = False,
+    endings: Endings, path: str, named: str | None = None, *, instead: str = ""
 ) -> str:
-    """The format to write: the one that is named, else that of the file's ending, else the first.
+    """The format that a file's ending says, else the one that is named.
+
+    On standard output, and on devices, which end in nothing, it is the first.
 
     Raises:
-        click.UsageError: a file that ends in none of these, or two formats.
+        click.UsageError: a file that ends in none of these, or in another one than is named.
     """
-    if json_output and output_format not in (None, "json"):
-        raise click.UsageError(f"--json and --output-format {output_format} contradict each other.")
-    if json_output:
-        return "json"
-    if output_format is not None:
-        return output_format
-    if output is None or str(output) == "-" or _is_device(Path(output)):
+    name = Path(path).name.lower()
+    fitting = {
+        form: max((len(suffix) for suffix in suffixes if name.endswith(suffix)), default=0)
+        for form, suffixes in endings.items()
+    }
+    longest = max(fitting.values())
+    said = [form for form, length in fitting.items() if length == longest > 0]
+    is_stream = path == STANDARD_OUTPUT or _is_device(Path(path))
+    if named is not None:
+        if said and named not in said and not is_stream:
+            raise click.UsageError(
+                f"`{path}` says by its ending that it is {said[0]}, and not {named}. Give it "
+                f"another ending, such as {endings[named][0]}, or leave out the format."
+            )
+        return named
+    if is_stream:
         return next(iter(endings))
-    name = Path(output).name.lower()
-    for form, suffixes in endings.items():
-        if any(name.endswith(suffix) for suffix in suffixes):
-            return form
-    known = ", ".join(suffix for suffixes in endings.values() for suffix in suffixes)
+    if said:
+        return said[0]
+    known = ", ".join(dict.fromkeys(suffix for one in endings.values() for suffix in one))
     raise click.UsageError(
-        f"`{output}` does not say by its ending what to write. Let it end in one of {known}, or "
-        f"name the format: --output-format {next(iter(endings))}"
+        f"`{path}` does not say by its ending what to write. Let it end in one of {known}, or "
+        f"name the format: --output-format {next(iter(endings))}{instead and f'. {instead}'}"
     )
+
+
+def _one_format(named: Mapping[str, str]) -> str | None:
+    """The format that these options name, if any. Raises click.UsageError if there are two."""
+    if len(set(named.values())) > 1:
+        raise click.UsageError(f"{' and '.join(named)} contradict each other.")
+    return next(iter(named.values()), None)
+
+
+def _refuse_doubtful(to: Sequence[Output], values: Mapping[str, Any]) -> None:
+    """Refuse outputs that a terminal cannot show, or that would take the place of something.
+
+    Raises:
+        click.UsageError: one of them is like that.
+    """
+    if sum(not output.is_file for output in to) > 1:
+        raise click.UsageError("standard output takes one format.")
+    for output in to:
+        if not output.is_file and output.form in _BINARY and sys.stdout.isatty():
+            raise click.UsageError(f"{output.form} is no text: write it to a file, with -o FILE")
+    files = [os.path.realpath(output.path) for output in to if output.is_file]
+    if len(set(files)) < len(files):
+        raise click.UsageError("a file is named twice by -o.")
+    if files:
+        refuse_overwriting(to, list(_texts(values.values())))
+
+
+def refuse_overwriting(to: Sequence[Output], paths: Iterable[str]) -> None:
+    """Refuse outputs that are also named elsewhere, such as what is read.
+
+    Raises:
+        click.UsageError: one of them is among these paths.
+    """
+    written = {os.path.realpath(one.path) for one in to if one.is_file}
+    for path in paths:
+        is_path = path not in ("", STANDARD_OUTPUT) and "\0" not in path
+        if is_path and os.path.realpath(path) in written and not _is_device(Path(path)):
+            raise click.UsageError(f"`{path}` is named already, and would be overwritten.")
+
+
+def _texts(values: Iterable[Any]) -> Iterator[str]:
+    """What the other parameters may name as a path."""
+    for value in values:
+        for one in value if isinstance(value, tuple) else (value,):
+            if isinstance(one, str | Path):
+                yield str(one)
 
 
 def _is_device(path: Path) -> bool:
     """True for a pipe or a device such as /dev/null."""
-    return path.exists() and not path.is_file() and not path.is_dir()
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):  # ValueError: a null character in the name
+        return False
+    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))

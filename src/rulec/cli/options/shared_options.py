@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 import click
 
+from rulec.cli.options.output_options import endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.report.findings.finding_formats import FORMATS
 
@@ -110,13 +111,6 @@ def rulebook_option(
     )
 
 
-def text_output_option(help_text: str = "Write to FILE.") -> Callable[[Decorated], Decorated]:
-    """``--output FILE`` of an answer that else goes to standard output."""
-    return click.option(
-        "-o", "--output", type=click.Path(dir_okay=False), metavar="FILE", help=help_text
-    )
-
-
 def step_option(help_text: str) -> Callable[[Decorated], Decorated]:
     """The option ``--step S``, read exactly, with the verb's own help."""
     return click.option("--step", "step_s", callback=_seconds, metavar="S", help=help_text)
@@ -138,14 +132,12 @@ at_option = click.option(
 
 findings_options = combined(
     [
-        choice_option(
-            "--output-format",
-            FORMATS,
-            "Text with the lines in question, a line each, JSON, GitHub annotations, SARIF 2.1.0.",
+        output_options(
+            endings_of(*FORMATS),
+            "what is found: text with the lines in question, a line each, JSON, GitHub "
+            "annotations, or SARIF 2.1.0",
         ),
         choice_option("--fail-on", ["error", "warning"], "What makes the exit status 1."),
     ]
 )
 """How findings are written, and which of them make the exit status 1."""
-
-json_option = click.option("--json", "json_output", is_flag=True, help="Print JSON.")

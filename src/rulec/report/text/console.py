@@ -5,14 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from pathlib import Path
 from shutil import get_terminal_size
 from time import monotonic
 from typing import TYPE_CHECKING
 
 import click
 
-from rulec.files import written_whole
 from rulec.report.text.terminal_text import wants_color
 
 if TYPE_CHECKING:
@@ -38,19 +36,6 @@ def print_result(text: str) -> None:
         _bar.show(text)
     else:
         click.echo(text, color=wants_color(sys.stdout))
-
-
-def put_result(text: str, output: str | None) -> None:
-    """Write the answer to standard output, or uncoloured to a file.
-
-    Raises RulecError R0702.
-    """
-    if output in (None, "-"):
-        print_result(text)
-        return
-    with written_whole(Path(output)) as stream:
-        stream.write(f"{click.unstyle(text)}\n".encode())
-    print_result(f"wrote {output}")
 
 
 def print_aside(text: str) -> None:

@@ -20,9 +20,6 @@ ENDINGS: Mapping[str, tuple[str, ...]] = {
 }
 """Name of a format -> how its files end."""
 
-BINARY = frozenset({"parquet", "mcap"})
-"""Formats that no terminal can show."""
-
 
 class FindingWriter(Protocol):
     """Writes findings to a stream: recording by recording, and what comes at the end."""

@@ -36,13 +36,13 @@ def format_of(file: str) -> Format:
     return "jsonl"
 
 
-def read_traces(path: str | Path) -> Iterator[Trace | RulecError]:
-    """Read the traces of a file, whose name's ending says its format.
+def read_traces(path: str | Path, form: Format | None = None) -> Iterator[Trace | RulecError]:
+    """Read the traces of a file, whose name's ending says its format where none is named.
 
     In place of a bad one stands the RulecError that says why.
     """
     with opened(Path(path)) as stream:
-        for chunk in read_chunks(stream, str(path), format_of(str(path))):
+        for chunk in read_chunks(stream, str(path), form or format_of(str(path))):
             yield from chunk
 
 
