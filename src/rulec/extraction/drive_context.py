@@ -2,33 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property, wraps
+from typing import TypeVar, cast
 
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.source_tolerances import Tolerances, tolerances_of
+from rulec.extraction.source_tolerances import Tolerances
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import RoadExtents, lanes_touched
+from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, part_of
+from rulec.extraction.tracks.road_places import KMH as KMH
+from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Recording, Side
 
-KMH = 3.6
-"""km/h in one m/s."""
-
-_ACROSS = np.pi / 4
-"""The angle to the road from which on who comes from another one drives across."""
-
 _ENOUGH_TRACKS = 10
 _ENOUGH_IN_LANE = 3
 _LEAST_OFFSET_M = 0.15
-
-_ONCOMING_COSINE = -0.7
-"""The cosine of the angle to the road from which on a vehicle counts as coming towards ego."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -37,9 +32,10 @@ class DriveContext:
 
     The rows are the participants that are ever relevant or in sight; ``ego`` and ``ego_extents``
     have one. ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's
-    lanes, so near that ego could reach it within ``catching_up_s``? ``touched``: the lanes that it
-    reaches into, a third axis; ``elsewhere``: does it drive on lanelets of another road?
-    ``surroundings`` are the recording's.
+    lanes, so near that ego could reach it within ``catching_up_s``? ``there``: the lanes that exist
+    where it is, a third axis, ``touched``: those of them that it reaches into; ``elsewhere``: does
+    it drive on lanelets of another road? ``surroundings`` are the recording's. ``computed`` holds
+    what functions have found ``once``.
     """
 
     recording: Recording
@@ -52,14 +48,16 @@ class DriveContext:
     extents: RoadExtents
     relevant: Flags
     in_sight: Flags
+    there: Flags
     touched: Flags
     elsewhere: Flags
     surroundings: Surroundings
+    computed: dict[Callable[..., object], object] = field(default_factory=dict)
 
     @cached_property
     def tolerances(self) -> Tolerances:
         """How well the source knows places and speeds."""
-        return tolerances_of(self.recording)
+        return self.surroundings.tolerances
 
     @property
     def states(self) -> int:
@@ -83,10 +81,11 @@ class DriveContext:
     def limit_mps(self) -> Floats:
         """The limit of the lane of ego's middle by state, infinity if the map tells none there."""
         pieces = self.road.piece(self.ego_extents.s[0]).tolist()
-        at = zip(pieces, self.ego_lane.tolist(), strict=True)
+        places = list(zip(pieces, self.ego_lane.tolist(), strict=True))
         turned = np.radians(self.thresholds.turned_deg)
-        limits = [self.road.limit_mps(piece, lane, turned) for piece, lane in at]
-        return np.array([np.inf if limit is None else limit for limit in limits])
+        limits = {place: self.road.limit_mps(*place, turned) for place in set(places)}
+        known = {place: np.inf if limit is None else limit for place, limit in limits.items()}
+        return np.array([known[place] for place in places])
 
     @cached_property
     def existing_lanes(self) -> Flags:
@@ -96,13 +95,15 @@ class DriveContext:
     @cached_property
     def steady_lane(self) -> NDArray[intp]:
         """Ego's lane with hysteresis: it is left only ``changed_m`` beyond its mark."""
-        lane, left_of = np.array(self.ego_lane), self.ego_extents.left_of[0]
+        if not np.diff(self.ego_lane).any():
+            return self.ego_lane
+        lane, left_of = self.ego_lane.tolist(), self.ego_extents.left_of[0].tolist()
         for state in range(1, len(lane)):
             before = lane[state - 1]
-            beyond = max(-left_of[state, before], left_of[state, before + 1])
+            beyond = max(-left_of[state][before], left_of[state][before + 1])
             if beyond < self.thresholds.changed_m and self.existing_lanes[state, before]:
                 lane[state] = before
-        return lane
+        return np.array(lane)
 
     @cached_property
     def going_along(self) -> Flags:
@@ -114,7 +115,12 @@ class DriveContext:
         """The same of those in sight, however far away."""
         drives = self.tracks.of_type("vehicle")[:, None]
         turned = abs(self.extents.turned)
-        return self.in_sight & drives & (turned < 1.0) & self.touched.any(axis=-1)
+        return self.in_sight & drives & (turned < 1.0) & self.on_lanes
+
+    @cached_property
+    def on_lanes(self) -> Flags:
+        """Flags of who reaches into a lane of the road."""
+        return any_lane(self.touched)
 
     @cached_property
     def map_offset_m(self) -> Floats:
@@ -143,87 +149,73 @@ class DriveContext:
         return speed_kmh * (abs(speed_kmh) >= self.thresholds.standing_kmh)
 
 
+Found = TypeVar("Found")
+
+
+def once(compute: Callable[[DriveContext], Found]) -> Callable[[DriveContext], Found]:
+    """Let a function of a drive's context compute what it does once for each drive.
+
+    What it finds is shared: nobody changes it.
+    """
+
+    @wraps(compute)
+    def found(context: DriveContext) -> Found:
+        if compute not in context.computed:
+            context.computed[compute] = compute(context)
+        return cast("Found", context.computed[compute])
+
+    return found
+
+
 def _telling(away: Floats, enough: int) -> float:
     """The median of rows' medians, 0 if there are too few or it is next to nothing."""
     if len(away) < enough:
         return 0.0
-    offset = float(np.median(np.nanmedian(away, axis=1)))
+    offset = float(np.median(_medians(away)))
     return offset if abs(offset) > _LEAST_OFFSET_M else 0.0
 
 
-def drive_context(
-    recording: Recording,
-    road: DrivenRoad,
-    side: Side,
-    thresholds: Thresholds,
-    *,
-    tracks: Tracks,
-    extents: RoadExtents,
-    surroundings: Surroundings,
-    ego: int,
-    columns: slice,
-    elsewhere: Flags | None = None,
-) -> DriveContext:
-    """The part of a recording that one drive is about: ``ego``'s row, in a range of columns.
+def _medians(rows: Floats) -> Floats:
+    """The median of the numbers in each row, of which there is one at least, beside NaN."""
+    ascending = np.sort(rows, axis=1)
+    count, number = np.sum(~np.isnan(rows), axis=1), np.arange(len(rows))
+    medians: Floats = (ascending[number, (count - 1) // 2] + ascending[number, count // 2]) / 2
+    return medians
 
-    ``elsewhere``: who drives on lanelets that are not of the road, if anybody is matched to any.
-    """
-    near = _near(ego, tracks, extents, road, thresholds)
-    if elsewhere is None:
-        elsewhere = np.zeros(tracks.present.shape, dtype=bool)
-    near = {name: flags & ~_crosses(tracks, extents, elsewhere) for name, flags in near.items()}
-    near = {name: flags[:, columns] for name, flags in near.items()}
-    rows = np.any([flags.any(axis=1) for flags in near.values()], axis=0).nonzero()[0]
-    own, others = np.array([ego]), extents.part(rows, columns)
+
+def drive_context(
+    surroundings: Surroundings, places: RoadPlaces, side: Side, ego: int, columns: slice
+) -> DriveContext:
+    """The part of a recording that one drive is about: ``ego``'s row, in a range of columns."""
+    relevant, in_sight = _near(ego, places, columns)
+    rows = (relevant | in_sight).any(axis=1).nonzero()[0]
+    own = np.array([ego])
     return DriveContext(
-        recording=recording,
-        thresholds=thresholds,
+        recording=surroundings.recording,
+        thresholds=places.thresholds,
         side=side,
-        road=road,
-        ego=tracks.part(own, columns),
-        ego_extents=extents.part(own, columns),
-        tracks=tracks.part(rows, columns),
-        extents=others,
-        relevant=near["relevant"][rows],
-        in_sight=near["in_sight"][rows],
-        touched=lanes_touched(others, road, thresholds.touching_m),
-        elsewhere=elsewhere[rows, columns],
+        road=places.road,
+        ego=places.tracks.part(own, columns),
+        ego_extents=places.extents.part(own, columns),
+        tracks=places.tracks.part(rows, columns),
+        extents=places.extents.part(rows, columns),
+        relevant=relevant[rows],
+        in_sight=in_sight[rows],
+        there=part_of(places.there, rows, columns),
+        touched=part_of(places.touched, rows, columns),
+        elsewhere=places.elsewhere[rows, columns],
         surroundings=surroundings,
     )
 
 
-def _crosses(tracks: Tracks, extents: RoadExtents, elsewhere: Flags) -> Flags:
-    """Flags of cross traffic: vehicles that drive on another road, and across ego's."""
-    turned = np.abs(np.nan_to_num(extents.turned))
-    across = (turned > _ACROSS) & (turned < np.pi - _ACROSS)
-    crosses: Flags = elsewhere & across & tracks.of_type("vehicle")[:, None]
-    return crosses
-
-
-def _near(
-    ego: int, tracks: Tracks, extents: RoadExtents, road: DrivenRoad, thresholds: Thresholds
-) -> dict[str, Flags]:
-    """Flags of participants (rows) that count for ego, and that are in its sight, by step.
-
-    On ego's lanes everything counts that is near; beside them only vulnerable road users, and
-    oncoming vehicles that move at some time.
-    """
-    own = extents.of(ego)
-    gap = np.maximum(extents.s_min - own.s_max, own.s_min - extents.s_max)
-    on_lanes = lanes_touched(extents, road, thresholds.touching_m).any(axis=-1)
-    beside = thresholds.beside_road_m
-    close = (extents.left_of_max[..., 0] > -beside) & (extents.left_of_min[..., -1] < beside)
-    vulnerable = tracks.of_type("vulnerable_user")
-    fastest = np.nan_to_num(tracks.speed).max(axis=1, initial=0.0)
-    moves = fastest * KMH >= thresholds.standing_kmh
-    oncoming = (np.cos(extents.turned) < _ONCOMING_COSINE) & moves[:, None]
-    counts = (gap <= thresholds.near_m) & (on_lanes | (close & (vulnerable[:, None] | oncoming)))
+def _near(ego: int, places: RoadPlaces, columns: slice) -> tuple[Flags, Flags]:
+    """Flags of participants (rows) that count for ego, and that are in its sight, by step."""
+    limits, extents = places.thresholds, places.extents
+    s_min, s_max, along = (x[:, columns] for x in (extents.s_min, extents.s_max, extents.along))
+    gap = np.maximum(s_min - s_max[ego], s_min[ego] - s_max)
     # A little farther, since speeds are known to some tolerance
-    reach = np.maximum(own.along - extents.along + 1.0, 0.0) * thresholds.catching_up_s
-    near = {
-        "relevant": counts & ~np.isnan(own.s_min),
-        "in_sight": on_lanes & (gap <= np.maximum(thresholds.near_m, reach)),
-    }
-    for flags in near.values():
-        flags[ego] = False
-    return near
+    reach = np.maximum(along[ego] - along + 1.0, 0.0) * limits.catching_up_s
+    relevant = places.counts[:, columns] & (gap <= limits.near_m) & ~np.isnan(s_min[ego])
+    in_sight = places.seen[:, columns] & (gap <= np.maximum(limits.near_m, reach))
+    relevant[ego] = in_sight[ego] = False
+    return relevant, in_sight

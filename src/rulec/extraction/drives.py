@@ -17,12 +17,12 @@ from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.map_matching import MapMatching
 from rulec.extraction.tracks.road_extents import (
     EgoPieces,
-    RoadExtents,
     expected_places,
     road_extents,
 )
+from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
-from rulec.extraction.tracks.tracks import Floats, Tracks, tracks_of
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.recordings.recording import Recording, Side
 
@@ -65,7 +65,7 @@ class Drives:
         self._matching = MapMatching(recording, self._tracks, self._graph)
         self._numbers = {name: number for number, name in enumerate(recording.lanelets)}
         self._surroundings = Surroundings(recording, self._tracks)
-        self._roads: dict[tuple[str, ...], tuple[DrivenRoad, RoadExtents | None] | str] = {}
+        self._roads: dict[tuple[str, ...], RoadPlaces | DrivenRoad | str] = {}
 
     def egos(self) -> tuple[str, ...]:
         """The participants that move and steer, in the order of the file."""
@@ -105,35 +105,32 @@ class Drives:
         laid_out = self._road(stretch.route)
         if isinstance(laid_out, str):
             return NoDrive(ego, laid_out)
-        road, extents = laid_out
-        tracks, columns = self._tracks, slice(stretch.first, stretch.last + 1)
-        lanelets = self._matching.lanelets
-        on_road = np.isin(lanelets, self._numbers_along(road))
-        # Who turns off is still ahead until it has left, unlike who comes from elsewhere
-        elsewhere = (lanelets >= 0) & ~np.logical_or.accumulate(on_road, axis=1)
-        if extents is None:
-            rows = tracks.present[:, columns].any(axis=1).nonzero()[0]
-            row = int(np.searchsorted(rows, row))
-            tracks, columns = tracks.part(rows, columns), slice(0, None)
-            driven = slice(stretch.first, stretch.last + 1)
-            lanelets, elsewhere = lanelets[rows, driven], elsewhere[rows, driven]
-            expected = self._expected(tracks, road, row, stretch, lanelets)
-            extents = road_extents(tracks, road, expected)
-        if np.isnan(extents.s[row, columns]).any():
+        places, columns = laid_out, slice(stretch.first, stretch.last + 1)
+        if isinstance(places, DrivenRoad):
+            places = self._places_during(places, row, stretch)
+            row, columns = int(np.searchsorted(places.tracks.rows, row)), slice(0, None)
+        if np.isnan(places.extents.s[row, columns]).any():
             return NoDrive(ego, "it is far from its road for a while")
-        context = drive_context(
-            self.recording,
-            road,
-            self._side,
-            self._thresholds,
-            tracks=tracks,
-            extents=extents,
-            surroundings=self._surroundings,
-            ego=row,
-            columns=columns,
-            elsewhere=elsewhere,
-        )
+        context = drive_context(self._surroundings, places, self._side, row, columns)
         return to_trace(context, ego, name, self._writer)
+
+    def _places_during(self, road: DrivenRoad, row: int, stretch: RouteStretch) -> RoadPlaces:
+        """The places on a road of those who are there during a drive of one of them."""
+        columns = slice(stretch.first, stretch.last + 1)
+        rows = self._tracks.present[:, columns].any(axis=1).nonzero()[0]
+        tracks, lanelets = self._tracks.part(rows, columns), self._matching.lanelets[rows, columns]
+        row = int(np.searchsorted(rows, row))
+        extents = road_extents(tracks, road, self._expected(tracks, road, row, stretch, lanelets))
+        elsewhere = self._elsewhere(road)[rows, columns]
+        return RoadPlaces(road, tracks, extents, self._thresholds, elsewhere)
+
+    def _elsewhere(self, road: DrivenRoad) -> Flags:
+        """Flags of who drives on lanelets that are not of a road."""
+        lanelets = self._matching.lanelets
+        own = np.zeros(len(self._numbers) + 1, dtype=bool)
+        own[self._numbers_along(road)] = True
+        # Who turns off is still ahead until it has left, unlike who comes from elsewhere
+        return (lanelets >= 0) & ~np.logical_or.accumulate(own[lanelets], axis=1)
 
     def _numbers_along(self, road: DrivenRoad) -> list[int]:
         return [self._numbers[one.id] for row in road.rows for one in row if one is not None]
@@ -154,12 +151,17 @@ class Drives:
         reach_m = self._thresholds.near_m + _LONGEST_M
         return expected_places(tracks, road, ego, lanelets, reach_m)
 
-    def _road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, RoadExtents | None] | str:
+    def _road(self, route: tuple[str, ...]) -> RoadPlaces | DrivenRoad | str:
+        """The road of a route with everybody's places, alone if there are too many of them."""
         if route not in self._roads:
             try:
                 road = driven_road(self.recording, route, self._junctions)
                 shared = self._tracks.present.size <= MOST_PLACES and not road.meets_itself
-                self._roads[route] = road, road_extents(self._tracks, road) if shared else None
+                self._roads[route] = self._places(road) if shared else road
             except ValueError as reason:
                 self._roads[route] = f"its road makes no sense, {reason}"
         return self._roads[route]
+
+    def _places(self, road: DrivenRoad) -> RoadPlaces:
+        tracks, extents = self._tracks, road_extents(self._tracks, road)
+        return RoadPlaces(road, tracks, extents, self._thresholds, self._elsewhere(road))

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.lane_coordinates import kept_off_touched, outline_bounds
 
 
@@ -13,7 +14,9 @@ def test_an_outline_whose_middle_is_not_beside_the_line_has_no_bounds():
         coordinates_near=lambda places, around, reach: places.copy(),
     )
     near, far = np.array([(0.0, 1.0), (4.0, 3.0)]), np.array([(6.0, 1.0), (8.0, 3.0)])
-    low, high = outline_bounds([near, far], line, lambda places: places[:, 1:] * 2)
+    low, high = outline_bounds(
+        JoinedOutlines.of([near, far]), line, lambda places: places[:, 1:] * 2
+    )
     assert low[0].tolist() == [0, 1, 2]
     assert high[0].tolist() == [4, 3, 6]
     assert np.isnan(low[1]).all()

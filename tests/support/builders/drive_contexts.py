@@ -7,6 +7,7 @@ import numpy as np
 from rulec.extraction.drive_context import drive_context
 from rulec.extraction.tracks.driven_road import driven_road, junction_lanelets
 from rulec.extraction.tracks.road_extents import road_extents
+from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
@@ -25,18 +26,11 @@ def context_of(found, route=("1",), side="right", ego=EGO, elsewhere=None, **thr
     road = driven_road(found, route, junction_lanelets(found))
     row = [body.id for body in tracks.participants].index(ego)
     columns = np.flatnonzero(tracks.present[row])
-    return drive_context(
-        found,
-        road,
-        side,
-        limits,
-        tracks=tracks,
-        extents=road_extents(tracks, road),
-        surroundings=Surroundings(found, tracks),
-        ego=row,
-        columns=slice(int(columns[0]), int(columns[-1]) + 1),
-        elsewhere=elsewhere,
-    )
+    if elsewhere is None:
+        elsewhere = np.zeros(tracks.present.shape, dtype=bool)
+    places = RoadPlaces(road, tracks, road_extents(tracks, road), limits, elsewhere)
+    driven = slice(int(columns[0]), int(columns[-1]) + 1)
+    return drive_context(Surroundings(found, tracks), places, side, row, driven)
 
 
 def steady(number, x, y, speed=10.0, steps=4, first=0, step_s=0.5, **more):

@@ -62,11 +62,12 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     limits = context.thresholds
     own_lanes = (context.existing_lanes.sum(axis=1) > 1) & ~_beyond_own_lanes(context)
     pieces = context.road.piece(context.ego_extents.s[0]).tolist()
-    lanelets = [
-        context.road.lanelet(*pair) for pair in zip(pieces, context.ego_lane.tolist(), strict=True)
-    ]
-    directions = [context.surroundings.directions(lanelet)[0] for lanelet in lanelets]
-    alone = own_lanes | np.array([one_way is True for one_way in directions])
+    places = list(zip(pieces, context.ego_lane.tolist(), strict=True))
+    one_way = {
+        place: context.surroundings.directions(context.road.lanelet(*place))[0] is True
+        for place in set(places)
+    }
+    alone = own_lanes | np.array([one_way[place] for place in places])
     own = np.maximum(context.ego_extents.along[0], 0.0)
     against = (context.extents.along * KMH < -limits.standing_kmh) & context.relevant
     against &= np.cos(context.extents.turned) < 0
@@ -189,24 +190,20 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
         return perhaps
     lane, there = _next_lane(context, context.side)
     others, states, step_s = context.extents, np.arange(context.states), context.recording.step_s
-    for row, seen in enumerate(context.driving_along):
-        if not seen.any():
-            continue
-        seen_at = np.flatnonzero(seen)
-        for edge, unseen in (
-            (seen_at[-1], states > seen_at[-1]),
-            (seen_at[0], states < seen_at[0]),
-        ):
-            away_s = (states - edge) * step_s
-            place = others.s[row, edge] + others.along[row, edge] * away_s
-            near = np.abs(place - context.ego_extents.s[0]) < context.thresholds.approach_m
-            near &= others.lane[row, edge] == lane
-            perhaps |= unseen & there & near & (np.abs(away_s) < _UNSEEN_S)
+    rows = np.flatnonzero(context.driving_along.any(axis=1))
+    seen = context.driving_along[rows]
+    first, last = seen.argmax(axis=1), context.states - 1 - seen[:, ::-1].argmax(axis=1)
+    for edge, unseen in ((last, states > last[:, None]), (first, states < first[:, None])):
+        away_s = (states - edge[:, None]) * step_s
+        place = others.s[rows, edge][:, None] + others.along[rows, edge][:, None] * away_s
+        near = np.abs(place - context.ego_extents.s[0]) < context.thresholds.approach_m
+        near &= others.lane[rows, edge][:, None] == lane
+        perhaps |= (unseen & there & near & (np.abs(away_s) < _UNSEEN_S)).any(axis=0)
     return perhaps
 
 
 def _on_next_lane(context: DriveContext, side: Side) -> tuple[Flags, Flags]:
     """Flags of those who go ego's way on the lane at a side of it, and where there is one."""
     lane, there = _next_lane(context, side)
-    on_it = np.take_along_axis(context.touched, lane[None, :, None], axis=2)[..., 0]
+    on_it = context.touched[:, np.arange(context.states), lane]
     return on_it & context.going_along, there

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -25,12 +25,14 @@ _AT_LIMIT_MPS = 0.01
 """Limits are written to a hundredth: a simulated speed so near to one is at it."""
 
 
+@once
 def moves(context: DriveContext) -> Flags:
     """Flags of states in which ego moves."""
     drives: Flags = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
     return drives
 
 
+@once
 def own_speed(context: DriveContext) -> tuple[Floats, Floats]:
     """Ego's speed (m/s), 0 if it stands, and how far it may be wrong.
 
@@ -43,6 +45,7 @@ def own_speed(context: DriveContext) -> tuple[Floats, Floats]:
     return np.where(moves(context), (speed, error), 0.0)  # type: ignore[return-value]
 
 
+@once
 def speed_bounds(context: DriveContext) -> Bounds:
     """The bounds of ego's speed (km/h); it may stand if it may be so slow."""
     speed, error = own_speed(context)
@@ -51,6 +54,7 @@ def speed_bounds(context: DriveContext) -> Bounds:
     return rounded_outward(np.where(may_stand, 0.0, low), (speed + error) * KMH)
 
 
+@once
 def bounds_to_others(context: DriveContext) -> Mapping[str, Bounds]:
     """The bounds of gaps (m), headways (s) and differences of speed (km/h)."""
     place = context.tolerances.place_m
@@ -80,6 +84,7 @@ def bounds_to_others(context: DriveContext) -> Mapping[str, Bounds]:
     }
 
 
+@once
 def safe_distance(context: DriveContext) -> Floats:
     """The distance (m) for ego to stop behind a participant braking fully.
 
@@ -92,6 +97,7 @@ def safe_distance(context: DriveContext) -> Floats:
     return distance
 
 
+@once
 def safe_distance_error(context: DriveContext) -> Floats:
     """How far the safe distance (m) may be wrong, as speeds are."""
     limits = context.thresholds
@@ -101,6 +107,7 @@ def safe_distance_error(context: DriveContext) -> Floats:
     return error
 
 
+@once
 def _ahead(context: DriveContext) -> tuple[Floats, Floats]:
     """The speeds (m/s) of ego and of others, from which they brake.
 

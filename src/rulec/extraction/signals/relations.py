@@ -7,12 +7,14 @@ within a lane is in that lane. For the paper's ``position`` see ``docs/scenarios
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.tracks.road_extents import RoadExtents, lanes_touched
+from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.partition.cells.regions import LATERALS, PAPER_TABLES, STATIONS
 from rulec.scenario.motion import Facing
@@ -27,6 +29,7 @@ _STANDS_MPS = 0.1
 _FACING: tuple[Facing, ...] = ("along", "left", "against", "right")
 
 
+@once
 def station(context: DriveContext) -> Codes:
     """Ego behind, beside or in front of others, as indices into ``STATIONS``."""
     return _along(context.ego_extents, context.extents.s_min, context.extents.s_max)
@@ -36,15 +39,17 @@ def _along(ego: RoadExtents, s_min: Floats, s_max: Floats) -> Codes:
     return np.where(ego.s_max <= s_min, BEHIND, np.where(ego.s_min >= s_max, IN_FRONT_OF, BESIDE))
 
 
+@once
 def lateral(context: DriveContext) -> Codes:
     """Ego right of others, in their lanes or left of them, as indices into ``LATERALS``.
 
     Who is on a mark of ego's lane, reaching beyond it, and clear of ego sideways is at its side;
     who is no farther in but in the way of ego's body is in the lane.
     """
-    return _lateral(context, 0.0, np.zeros(context.states))
+    return _lateral(context, _beside_lane(context), 0.0)
 
 
+@once
 def possible_laterals(context: DriveContext) -> tuple[Codes, ...]:
     """The same as far as places allow: with others further in and out, and the map where it may be.
 
@@ -52,10 +57,10 @@ def possible_laterals(context: DriveContext) -> tuple[Codes, ...]:
     well be at its side.
     """
     place = context.tolerances.place_m
-    shifts = [np.zeros(context.states)]
+    maps = [_beside_lane(context)]
     if context.map_offset_m.any():
-        shifts.append(context.map_offset_m)
-    shifted = (_lateral(context, way * place, shift) for shift in shifts for way in (-1, 1))
+        maps.append(_beside_lane_shifted(context, context.map_offset_m))
+    shifted = (_lateral(context, beside, way * place) for beside in maps for way in (-1, 1))
     at_side = (station(context) == BEHIND) & ~_in_the_way(context)
     return *shifted, np.where(at_side, _ego_at(context), lateral(context))
 
@@ -68,12 +73,13 @@ def _in_the_way(context: DriveContext) -> Flags:
     """
     own, others = context.ego_extents, context.extents
     narrower = np.minimum(own.d_max - own.d_min, others.d_max - others.d_min)
-    both = np.minimum(-np.maximum(*_aside(context)), narrower)
+    both = np.minimum(-_clear(context), narrower)
     part = narrower * np.where(others.lane == own.lane, 0.25, 0.5)
     takes: Flags = both > np.maximum(part, context.tolerances.place_m)
     return takes
 
 
+@once
 def _aside(context: DriveContext) -> tuple[Floats, Floats]:
     """How far (m) others are clear of ego on its left and right, from the middle of ego's lane."""
     lane = context.ego_extents.lane
@@ -82,12 +88,20 @@ def _aside(context: DriveContext) -> tuple[Floats, Floats]:
     return low - own_high, own_low - high
 
 
+@once
+def _clear(context: DriveContext) -> Floats:
+    """How far (m) others are clear of ego at the side where it is more."""
+    return np.maximum(*_aside(context))
+
+
+@once
 def _ego_at(context: DriveContext) -> Codes:
     """On which side of others ego is."""
     on_left, on_right = _aside(context)
     return np.where(on_left > on_right, RIGHT_OF, LEFT_OF)
 
 
+@once
 def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     """Flags of who is ahead in ego's lane: as measured, surely and perhaps."""
     ahead = station(context) == BEHIND
@@ -96,19 +110,55 @@ def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     return measured, measured & np.logical_and.reduce(same), measured | np.logical_or.reduce(same)
 
 
-def _lateral(context: DriveContext, inward: float, shift: Floats) -> Codes:
-    """Sides, with others so much (m) further in ego's lane and all so much right of the map."""
+@dataclass(frozen=True, eq=False, slots=True)
+class _BesideLane:
+    """Where others are beside ego's lane: how far (m) they reach in it and beyond its bounds.
+
+    ``low`` and ``high`` say how far left of its middle they begin and end, ``into`` and ``beyond``
+    how far they reach over the nearer bound and the farther one. ``own`` and ``others`` are the
+    extents.
+    """
+
+    own: RoadExtents
+    others: RoadExtents
+    low: Floats
+    high: Floats
+    into: Floats
+    beyond: Floats
+
+
+@once
+def _beside_lane(context: DriveContext) -> _BesideLane:
+    return _beside_lane_shifted(context, np.zeros(context.states))
+
+
+def _beside_lane_shifted(context: DriveContext, shift: Floats) -> _BesideLane:
+    """The same with all so much (m), by state, farther right on the map."""
     own, others = context.ego_extents.moved(-shift), context.extents.moved(-shift)
+    # How far left of the two bounds of ego's lane they begin and end
+    (low_r, high_r), (low_l, high_l) = (
+        others.from_bound(bound) for bound in (own.lane, own.lane + 1)
+    )
+    return _BesideLane(
+        own=own,
+        others=others,
+        low=(low_r + low_l) / 2,
+        high=(high_r + high_l) / 2,
+        into=np.minimum(high_r, -low_l),
+        beyond=np.maximum(high_l, -low_r),
+    )
+
+
+def _lateral(context: DriveContext, beside: _BesideLane, inward: float) -> Codes:
+    """Sides, with others so much (m) further in ego's lane."""
     reach = context.thresholds.touching_m
     touched = context.touched
-    if inward or shift.any():
-        touched = lanes_touched(others, context.road, reach - inward)
-    lane, clear = own.lane, np.maximum(*_aside(context))
-    # How far left of the two bounds of ego's lane they begin and end
-    (low_r, high_r), (low_l, high_l) = others.from_bound(lane), others.from_bound(lane + 1)
-    sides = _across(own, touched, (low_r + low_l) / 2, (high_r + high_l) / 2)
-    beside_way = (np.maximum(high_l, -low_r) > reach + inward) & (clear > reach + inward)
-    in_the_way = (np.minimum(high_r, -low_l) > -inward) & (clear < inward - reach)
+    if inward or beside.others is not context.extents:
+        touched = lanes_touched(beside.others, context.there, reach - inward)
+    clear = _clear(context)
+    sides = _across(beside.own, touched, beside.low, beside.high)
+    beside_way = (beside.beyond > reach + inward) & (clear > reach + inward)
+    in_the_way = (beside.into > -inward) & (clear < inward - reach)
     sides = np.where((sides == SAME_LANE) & beside_way, _ego_at(context), sides)
     return np.where(in_the_way, SAME_LANE, sides)
 
@@ -118,19 +168,26 @@ def _across(own: RoadExtents, lanes: Flags, low: Floats, high: Floats) -> Codes:
 
     ``low`` and ``high`` say how far (m) left of the middle of ego's lane others begin and end.
     """
-    first = lanes.argmax(axis=-1)
-    last = lanes.shape[-1] - lanes[..., ::-1].argmax(axis=-1)
-    inside, middle = lanes.any(axis=-1), np.add(*own.from_middle(own.lane)) / 2
-    right_of = np.where(inside, own.middle_from(first) <= 0, middle <= low)
-    left_of = np.where(inside, own.middle_from(last) >= 0, middle >= high)
-    return np.where(right_of, RIGHT_OF, np.where(left_of, LEFT_OF, SAME_LANE))
+    by_lane, left_of = np.moveaxis(lanes, -1, 0), np.moveaxis(own.left_of, -1, 0)
+    inside, middle = any_lane(lanes), np.add(*own.from_middle(own.lane)) / 2
+    # Bounds ascend to the left: who is right of the first lane is left of the right bound of none
+    not_right_of = (by_lane & (left_of[:-1] > 0)).any(axis=0)
+    not_left_of = (by_lane & (left_of[1:] < 0)).any(axis=0)
+    right_of = np.where(inside, ~not_right_of, middle <= low)
+    return np.where(
+        right_of,
+        RIGHT_OF,
+        np.where(np.where(inside, ~not_left_of, middle >= high), LEFT_OF, SAME_LANE),
+    )
 
 
+@once
 def gap(context: DriveContext) -> Floats:
     """The distance (m) along the road between bodies, 0 beside each other."""
     return np.maximum(way_along(context), 0.0)
 
 
+@once
 def way_along(context: DriveContext) -> Floats:
     """The same, less than 0 beside each other."""
     ego, others = context.ego_extents, context.extents
@@ -138,11 +195,13 @@ def way_along(context: DriveContext) -> Floats:
     return way
 
 
+@once
 def lateral_gap(context: DriveContext) -> Floats:
     """The distance (m) across the road between bodies, 0 behind each other."""
     return np.maximum(way_across(context), 0.0)
 
 
+@once
 def way_across(context: DriveContext) -> Floats:
     """The same, less than 0 behind each other."""
     ego, others = context.ego_extents, context.extents
@@ -150,6 +209,7 @@ def way_across(context: DriveContext) -> Floats:
     return way
 
 
+@once
 def position(context: DriveContext) -> NDArray[np.str_]:
     """The paper's position letters b, f, l and r.
 
@@ -157,18 +217,22 @@ def position(context: DriveContext) -> NDArray[np.str_]:
     middles decide.
     """
     ego, others = context.ego_extents, context.extents
-    walking = context.tracks.of_type("pedestrian")[:, None]
+    walking = np.flatnonzero(context.tracks.of_type("pedestrian"))
     s_min, s_max = others.s_min, others.s_max
-    facing = np.where(walking, _facing(others), 0)
-    across = walking & (facing % 2 == 1)
-    for start, end in context.road.crossings:
-        on = across & (s_min < end) & (s_max > start)
-        s_min, s_max = (
-            np.where(on, np.minimum(s_min, start), s_min),
-            np.where(on, np.maximum(s_max, end), s_max),
-        )
+    facing = np.zeros(s_min.shape, dtype=intp)
+    touched = context.touched
+    if len(walking):
+        facing[walking] = _facing(others.part(walking, slice(None)))
+        across = facing % 2 == 1
+        touched = touched & ~across[..., None]
+        for start, end in context.road.crossings:
+            on = across & (s_min < end) & (s_max > start)
+            s_min, s_max = (
+                np.where(on, np.minimum(s_min, start), s_min),
+                np.where(on, np.maximum(s_max, end), s_max),
+            )
     column = _along(ego, s_min, s_max)
-    row = _across(ego, context.touched & ~across[..., None], *others.from_middle(ego.lane))
+    row = _across(ego, touched, *others.from_middle(ego.lane))
     inside = (row == SAME_LANE) & (column == BESIDE)
     column = np.where(inside, np.where(ego.s < others.s, BEHIND, IN_FRONT_OF), column)
     tables = np.array([list(PAPER_TABLES[name].decode()) for name in _FACING])

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy import intp
@@ -38,14 +40,14 @@ class EgoPieces:
     numbers: Mapping[str, int]
 
 
-@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RoadExtents:
     """The bounds and the motion of participants in coordinates of the road.
 
     ``left_of_min`` and ``left_of_max`` say how far (m) left of each bound of the lanes (third axis,
-    from the right) bodies begin and end. ``turned`` is the heading relative to the road's direction
-    (rad, in [-pi, pi)), ``along`` and ``across`` are the velocity along the road and to its left
-    (m/s).
+    from the right) bodies begin and end; in memory that axis comes first. ``turned`` is the heading
+    relative to the road's direction (rad, in [-pi, pi)), ``along`` and ``across`` are the velocity
+    along the road and to its left (m/s).
     """
 
     s_min: Floats
@@ -58,36 +60,39 @@ class RoadExtents:
     along: Floats
     across: Floats
 
-    @property
+    @cached_property
     def s(self) -> Floats:
         """The middle along the road (m)."""
         return (self.s_min + self.s_max) / 2
 
-    @property
+    @cached_property
     def left_of(self) -> Floats:
         """How far (m) left of each bound of the lanes the middle is."""
         return (self.left_of_min + self.left_of_max) / 2
 
-    @property
+    @cached_property
     def lane(self) -> NDArray[intp]:
         """The lane of the middle, the nearest one beside the road."""
         last = self.left_of_min.shape[-1] - 2
-        lane: NDArray[intp] = np.clip((self.left_of >= 0).sum(axis=-1) - 1, 0, last)
+        beyond = np.moveaxis(self.left_of, -1, 0) >= 0
+        lane: NDArray[intp] = np.clip(beyond.sum(axis=0) - 1, 0, last)
         return lane
 
-    @property
+    @cached_property
+    def breadth(self) -> Floats:
+        """How far (m) bodies reach across each lane (last axis)."""
+        return self.left_of_max[..., :-1] - self.left_of_min[..., :-1]
+
+    @cached_property
     def inside(self) -> Floats:
         """How far (m) bodies reach into each lane (last axis), less than 0 beside it."""
         into = np.minimum(self.left_of_max[..., :-1], -self.left_of_min[..., 1:])
-        across = (self.left_of_max - self.left_of_min)[..., :-1]
-        return np.minimum(into, np.minimum(across, -np.diff(self.left_of, axis=-1)))
+        widths = self.left_of[..., :-1] - self.left_of[..., 1:]
+        return np.minimum(into, np.minimum(self.breadth, widths))
 
     def from_bound(self, bound: NDArray[intp]) -> tuple[Floats, Floats]:
         """How far (m) left of one bound of the lanes, by column, bodies begin and end."""
-        number = np.atleast_2d(bound)[..., None]
-        low = np.take_along_axis(self.left_of_min, number, axis=-1)
-        high = np.take_along_axis(self.left_of_max, number, axis=-1)
-        return low[..., 0], high[..., 0]
+        return _at_bound(self.left_of_min, bound), _at_bound(self.left_of_max, bound)
 
     def from_middle(self, lane: NDArray[intp]) -> tuple[Floats, Floats]:
         """How far (m) left of the middle of one lane, by column, bodies begin and end."""
@@ -95,10 +100,8 @@ class RoadExtents:
         return (low + low_left) / 2, (high + high_left) / 2
 
     def middle_from(self, bound: NDArray[intp]) -> Floats:
-        """How far (m) left of one bound of the lanes the middle is."""
-        number = np.atleast_2d(bound)[..., None]
-        middle: Floats = np.take_along_axis(self.left_of, number, axis=-1)[..., 0]
-        return middle
+        """How far (m) left of one bound of the lanes, by column, the middle is."""
+        return _at_bound(self.left_of, bound)
 
     def moved(self, across: Floats) -> RoadExtents:
         """The same so much (m), by column, farther left in the lanes."""
@@ -113,9 +116,36 @@ class RoadExtents:
 
     def part(self, rows: NDArray[intp], columns: slice) -> RoadExtents:
         """The extents of some participants in a range of steps."""
-        return RoadExtents(
-            **{field.name: getattr(self, field.name)[rows][:, columns] for field in fields(self)}
+        part = RoadExtents(
+            **{
+                field.name: part_of(getattr(self, field.name), rows, columns)
+                for field in fields(self)
+            }
         )
+        # What is known of all need not be derived again
+        for name in ("s", "lane"):
+            if name in self.__dict__:
+                part.__dict__[name] = part_of(self.__dict__[name], rows, columns)
+        return part
+
+
+def part_of(values: NDArray[Any], rows: NDArray[intp], columns: slice) -> NDArray[Any]:
+    """Some rows and a range of columns; a third axis stays the first in memory."""
+    if values.ndim == 2:
+        return values[rows, columns]
+    by_lane = np.moveaxis(values, -1, 0)[:, :, columns]
+    return np.moveaxis(np.take(by_lane, rows, axis=1), 0, -1)
+
+
+def _at_bound(left_of: Floats, bound: NDArray[intp]) -> Floats:
+    """The values of one bound (last axis), by column, or by row and column."""
+    rows, columns = left_of.shape[:2]
+    # Ego seldom changes lanes
+    if bound.size and (bound == bound.flat[0]).all():
+        same: Floats = left_of[..., bound.flat[0]]
+        return same
+    values: Floats = left_of[np.arange(rows)[:, None], np.arange(columns), np.atleast_2d(bound)]
+    return values
 
 
 def road_extents(
@@ -126,29 +156,31 @@ def road_extents(
     ``expected``: about where along it each is, and how far from there it may be, since a road that
     meets itself passes a place more than once.
     """
-    bounds = {name: np.full(tracks.present.shape, np.nan) for name in _BOUNDS}
-    left_of = np.full((2, *tracks.present.shape, road.lanes.bounds.shape[1]), np.nan)
-    located = list(tracks.outlines(repeated=expected is not None))
-    if located:
-        rows, columns = np.array([(row, column) for row, column, _ in located]).T
+    bounds = np.full((len(_BOUNDS), *tracks.present.shape), np.nan)
+    left_of = np.full((2, road.lanes.bounds.shape[1], *tracks.present.shape), np.nan)
+    bodies = tracks.bodies if expected is None else tracks.repeated_bodies
+    rows, columns = bodies.rows, bodies.columns
+    if len(rows):
         near = expected and (expected[0][rows, columns], expected[1][rows, columns])
-        outlines = [outline for _, _, outline in located]
-        ends = outline_bounds(outlines, road.line, road.lanes.from_bounds, near)
+        ends = outline_bounds(bodies.outlines, road.line, road.lanes.from_bounds, near)
         for which, values in enumerate(ends):
-            left_of[which, rows, columns] = values[:, 2:]
-            for name, column in zip(_BOUNDS[which::2], values.T, strict=False):
-                bounds[name][rows, columns] = column
+            bounds[which::2, rows, columns] = values[:, :2].T
+            left_of[which, :, rows, columns] = values[:, 2:]
         if expected is None:
             standing = [row for row, body in enumerate(tracks.participants) if body.standing]
-            for array in (*bounds.values(), *left_of):
-                array[standing] = array[standing][:, :1]
-    middle = (bounds["s_min"] + bounds["s_max"]) / 2
-    directions = road.line.headings_at(np.nan_to_num(middle))
+            bounds[:, standing] = bounds[:, standing, :1]
+            left_of[:, :, standing] = left_of[:, :, standing, :1]
+    s_min, s_max, d_min, d_max = bounds
+    directions = road.line.headings_at(np.nan_to_num((s_min + s_max) / 2))
     cos, sin = np.cos(directions), np.sin(directions)
+    left_of_min, left_of_max = np.moveaxis(left_of, 1, -1)
     return RoadExtents(
-        **bounds,
-        left_of_min=left_of[0],
-        left_of_max=left_of[1],
+        s_min=s_min,
+        s_max=s_max,
+        d_min=d_min,
+        d_max=d_max,
+        left_of_min=left_of_min,
+        left_of_max=left_of_max,
         turned=turn(directions, tracks.heading),
         along=tracks.vx * cos + tracks.vy * sin,
         across=tracks.vy * cos - tracks.vx * sin,
@@ -186,8 +218,14 @@ def expected_places(
     return around, reaches
 
 
-def lanes_touched(extents: RoadExtents, road: DrivenRoad, touching_m: float) -> Flags:
-    """Flags of lanes (last axis) that bodies reach into by more."""
+def lanes_touched(extents: RoadExtents, there: Flags, touching_m: float) -> Flags:
+    """Flags of the lanes (last axis) that are ``there`` and that bodies reach into by more."""
     # A narrow body, such as a pedestrian's, is in a lane with most of it
-    enough = np.minimum(touching_m, (extents.left_of_max - extents.left_of_min)[..., :-1] / 2)
-    return (extents.inside > enough) & road.lanes.existing_at(extents.s)
+    touched: Flags = (extents.inside > np.minimum(touching_m, extents.breadth / 2)) & there
+    return touched
+
+
+def any_lane(lanes: Flags) -> Flags:
+    """Flags of participants and steps for which a flag of a lane (last axis) is set."""
+    flags: Flags = np.logical_or.reduce(np.moveaxis(lanes, -1, 0), axis=0)
+    return flags

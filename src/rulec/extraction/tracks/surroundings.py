@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import shapely
 
+from rulec.extraction.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.junction_passages import JunctionPassages, junction_passages
 from rulec.extraction.tracks.rings import ring_lanelets
 from rulec.extraction.tracks.tracks import Tracks
@@ -33,6 +34,11 @@ class Surroundings:
     tracks: Tracks
     _directions: dict[str, Directions] = field(default_factory=dict)
     _rings: dict[Side, frozenset[str]] = field(default_factory=dict)
+
+    @cached_property
+    def tolerances(self) -> Tolerances:
+        """How well the source knows places and speeds."""
+        return tolerances_of(self.recording)
 
     @cached_property
     def passages(self) -> JunctionPassages:

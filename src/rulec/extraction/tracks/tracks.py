@@ -6,28 +6,54 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 import shapely
-from numpy import bool_, float64
+from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.source_tolerances import tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
+from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.route import lanelet_area
 
 Floats: TypeAlias = NDArray[float64]
 Flags: TypeAlias = NDArray[bool_]
 
 
-@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class ObjectTypes:
+    """The object types of a recording's participants, as flags that are made once."""
+
+    def __init__(self, participants: Iterable[Participant]) -> None:
+        self._types = [body.object_types for body in participants]
+        self._flags: dict[str, Flags] = {}
+
+    def of(self, name: str) -> Flags:
+        """Flags of all participants that are of a type or its subtypes."""
+        if name not in self._flags:
+            self._flags[name] = np.array([name in types for types in self._types], dtype=bool)
+        return self._flags[name]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Bodies:
+    """Outlines of participants, with the row and the column of each."""
+
+    rows: NDArray[intp]
+    columns: NDArray[intp]
+    outlines: JoinedOutlines
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Tracks:
     """Arrays of participants by steps, NaN where one is not present.
 
+    ``rows`` are the participants' among all of the recording, which ``types`` is about.
     ``x`` and ``y`` are centres (m), ``heading`` is in rad. Velocities (m/s) and accelerations
     (m/s²) are those of ``motion_of``, with their errors.
     ``on_lane`` and ``on_crosswalk``: is the middle of a vulnerable road user on a lane, of any
@@ -35,6 +61,8 @@ class Tracks:
     """
 
     participants: tuple[Participant, ...]
+    types: ObjectTypes
+    rows: NDArray[intp]
     first: int
     present: Flags
     x: Floats
@@ -63,22 +91,47 @@ class Tracks:
             for column in np.flatnonzero(self.present[row]).tolist():
                 yield row, column, body.outlines[self.first + column]
 
-    def part(self, rows: NDArray[np.intp], columns: slice) -> Tracks:
+    @cached_property
+    def bodies(self) -> Bodies:
+        """Outlines of all participants; those that stand for good have one, in the first column."""
+        return _bodies(self, repeated=False)
+
+    @cached_property
+    def repeated_bodies(self) -> Bodies:
+        """The same, with one in each column."""
+        return _bodies(self, repeated=True)
+
+    @cached_property
+    def fastest(self) -> Floats:
+        """The greatest speed (m/s) of each participant, 0 where none is known."""
+        fastest: Floats = np.nan_to_num(self.speed).max(axis=1, initial=0.0)
+        return fastest
+
+    def part(self, rows: NDArray[intp], columns: slice) -> Tracks:
         """The tracks of some participants in a range of steps."""
-        return replace(
-            self,
-            participants=tuple(self.participants[row] for row in rows),
+        return Tracks(
+            participants=tuple(self.participants[row] for row in rows.tolist()),
+            types=self.types,
+            rows=self.rows[rows],
             first=self.first + columns.start,
-            **{
-                field.name: getattr(self, field.name)[rows][:, columns]
-                for field in fields(self)
-                if field.name not in ("participants", "first")
-            },
+            **{name: getattr(self, name)[rows, columns] for name in _ARRAYS},
         )
 
     def of_type(self, name: str) -> Flags:
         """Flags of participants of an object type or its subtypes."""
-        return np.array([name in body.object_types for body in self.participants], dtype=bool)
+        return self.types.of(name)[self.rows]
+
+
+_ARRAYS = tuple(x.name for x in fields(Tracks))[4:]
+
+
+def _bodies(tracks: Tracks, *, repeated: bool) -> Bodies:
+    located = list(tracks.outlines(repeated=repeated))
+    rows, columns = (
+        np.array([(row, column) for row, column, _ in located], dtype=intp).reshape(-1, 2).T
+    )
+    outlines = JoinedOutlines.of([outline for _, _, outline in located] or [np.empty((0, 2))])
+    return Bodies(rows, columns, outlines)
 
 
 _STEERED = frozenset({"vehicle", "light_rider"})
@@ -106,12 +159,14 @@ def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
         recording.step_s,
         tolerances_of(recording),
     )
-    vulnerable = np.array(["vulnerable_user" in body.object_types for body in bodies], dtype=bool)
-    users = present & vulnerable[:, None]
+    types = ObjectTypes(bodies)
+    users = present & types.of("vulnerable_user")[:, None]
     lanelets = recording.lanelets.values()
     crosswalks = (lanelet for lanelet in lanelets if "crosswalk" in lanelet.types)
     return Tracks(
         participants=bodies,
+        types=types,
+        rows=np.arange(len(bodies)),
         first=first,
         present=present,
         x=x,

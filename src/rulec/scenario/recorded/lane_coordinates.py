@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from rulec.recordings.polylines import densified
 from rulec.recordings.recording import Lanelet, Points, Recording
+from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at
 from rulec.scenario.recorded.route import lanelet_length, lanes_beside
 from rulec.scenario.scenario_model import MissingLane
@@ -29,7 +30,6 @@ NARROWEST_LANE_M = 1.0
 TOUCHING_M = 0.3
 """Who reaches into a lane by less is not in it: positions are no better than that."""
 
-_REACH_FACTOR, _REACH_MORE_M = 2.0, 3.0
 _NARROWEST_M = 0.1
 _EDGE_EVERY_M = 0.5
 _EVERY_M = 1.0
@@ -233,7 +233,7 @@ def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> 
 
 
 def outline_bounds(
-    outlines: Sequence[Points],
+    outlines: JoinedOutlines,
     line: ReferenceLine,
     across: Callable[[Points], Points],
     expected: tuple[_Values, _Values] | None = None,
@@ -245,15 +245,14 @@ def outline_bounds(
     that no body is torn apart where a road meets itself. ``expected``: for each middle about which
     ``s``, and how far from there, its foot is.
     """
-    counts = np.array([len(outline) for outline in outlines])
-    starts = np.append(0, np.cumsum(counts)[:-1])
-    corners = np.concatenate(outlines)
-    middles = np.add.reduceat(corners, starts) / counts[:, None]
-    away = np.hypot(*(corners - np.repeat(middles, counts, axis=0)).T)
-    reach = np.maximum.reduceat(away, starts) * _REACH_FACTOR + _REACH_MORE_M
-    found = line.coordinates_near(middles, *expected) if expected else line.coordinates(middles)
-    around = np.repeat(found[:, 0], counts)
-    feet = line.coordinates_near(corners, around, np.repeat(reach, counts))
+    starts = outlines.starts
+    found = (
+        line.coordinates_near(outlines.middles, *expected)
+        if expected
+        else line.coordinates(outlines.middles)
+    )
+    around = np.repeat(found[:, 0], outlines.counts)
+    feet = line.coordinates_near(outlines.corners, around, outlines.reach)
     feet[np.isnan(around)] = np.nan
     coordinates = np.column_stack((feet, across(feet)))
     return np.minimum.reduceat(coordinates, starts), np.maximum.reduceat(coordinates, starts)

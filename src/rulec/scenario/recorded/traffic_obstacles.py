@@ -12,6 +12,7 @@ import numpy as np
 from rulec.recordings.recording import Participant, Points, Recording
 from rulec.scenario import scenario_model as model
 from rulec.scenario.geometry import Box
+from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.lane_coordinates import Lanes, kept_off_touched, outline_bounds
 from rulec.scenario.recorded.reference_line import ReferenceLine
 from rulec.scenario.recorded.route import REACH_M
@@ -55,7 +56,8 @@ class TrafficView:
         near = np.full(len(outlines), self.ego_s), np.full(len(outlines), REACH_M + _FAR_M)
         if not outlines:
             return []
-        low, high = outline_bounds(outlines, self.line, self.lanes.straightened, near)
+        joined = JoinedOutlines.of(outlines)
+        low, high = outline_bounds(joined, self.line, self.lanes.straightened, near)
         low[:, 2], high[:, 2] = kept_off_touched(low[:, 2], high[:, 2], self.lanes.straight)
         low, high = low[:, ::2] - (self.ego_s, 0.0), high[:, ::2] - (self.ego_s, 0.0)
         wide = Box(

@@ -1,0 +1,82 @@
+"""Everybody beside one road: what is the same for all who drive along it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rulec.extraction.tracks.driven_road import DrivenRoad
+from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, lanes_touched
+from rulec.extraction.tracks.tracks import Flags, Tracks
+from rulec.extraction.traffic_thresholds import Thresholds
+
+KMH = 3.6
+"""km/h in one m/s."""
+
+_ACROSS = np.pi / 4
+"""The angle to the road from which on who comes from another one drives across."""
+
+_ONCOMING_COSINE = -0.7
+"""The cosine of the angle to the road from which on a vehicle counts as coming towards ego."""
+
+
+@dataclass(frozen=True, eq=False)
+class RoadPlaces:
+    """The places of participants on a road, a row each, by step.
+
+    ``elsewhere``: who drives on lanelets that are not of the road.
+    """
+
+    road: DrivenRoad
+    tracks: Tracks
+    extents: RoadExtents
+    thresholds: Thresholds
+    elsewhere: Flags
+
+    @cached_property
+    def there(self) -> Flags:
+        """Flags of the lanes (last axis) that exist where participants are."""
+        by_lane = np.moveaxis(self.road.lanes.existing_at(self.extents.s), -1, 0)
+        return np.moveaxis(np.ascontiguousarray(by_lane), 0, -1)
+
+    @cached_property
+    def touched(self) -> Flags:
+        """Flags of the lanes (last axis) that participants reach into."""
+        return lanes_touched(self.extents, self.there, self.thresholds.touching_m)
+
+    @cached_property
+    def on_lanes(self) -> Flags:
+        """Flags of who reaches into any."""
+        return any_lane(self.touched)
+
+    @cached_property
+    def counts(self) -> Flags:
+        """Flags of who counts for one that is near.
+
+        On the lanes everybody does; beside them only vulnerable road users, and oncoming vehicles
+        that move at some time.
+        """
+        beside = self.thresholds.beside_road_m
+        close = (self.extents.left_of_max[..., 0] > -beside) & (
+            self.extents.left_of_min[..., -1] < beside
+        )
+        vulnerable = self.tracks.of_type("vulnerable_user")[:, None]
+        moves = self.tracks.fastest * KMH >= self.thresholds.standing_kmh
+        oncoming = (np.cos(self.extents.turned) < _ONCOMING_COSINE) & moves[:, None]
+        flags: Flags = (self.on_lanes | (close & (vulnerable | oncoming))) & ~self.crosses
+        return flags
+
+    @cached_property
+    def crosses(self) -> Flags:
+        """Flags of cross traffic: vehicles that drive on another road, and across this one."""
+        turned = np.abs(np.nan_to_num(self.extents.turned))
+        across = (turned > _ACROSS) & (turned < np.pi - _ACROSS)
+        crosses: Flags = self.elsewhere & across & self.tracks.of_type("vehicle")[:, None]
+        return crosses
+
+    @cached_property
+    def seen(self) -> Flags:
+        """Flags of who is in sight of one that is near enough."""
+        return self.on_lanes & ~self.crosses

@@ -1,0 +1,47 @@
+"""The outlines of bodies end to end, so that all are projected together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy import float64, intp
+from numpy.typing import NDArray
+
+from rulec.recordings.recording import Points
+
+_REACH_FACTOR, _REACH_MORE_M = 2.0, 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedOutlines:
+    """Outlines end to end: the ``corners`` of all (m), and how many each one has, at least one."""
+
+    corners: Points
+    counts: NDArray[intp]
+
+    @classmethod
+    def of(cls, outlines: Sequence[Points]) -> JoinedOutlines:
+        """Join outlines, of which there is one at least."""
+        return cls(np.concatenate(outlines), np.array([len(outline) for outline in outlines]))
+
+    @cached_property
+    def starts(self) -> NDArray[intp]:
+        """The number of the first corner of each."""
+        return np.append(0, np.cumsum(self.counts)[:-1])
+
+    @cached_property
+    def middles(self) -> Points:
+        """The mean of the corners of each."""
+        middles: Points = np.add.reduceat(self.corners, self.starts) / self.counts[:, None]
+        return middles
+
+    @cached_property
+    def reach(self) -> NDArray[float64]:
+        """How far (m) along a line the foot of each corner may be from that of its middle."""
+        away = np.hypot(*(self.corners - np.repeat(self.middles, self.counts, axis=0)).T)
+        farthest = np.maximum.reduceat(away, self.starts) * _REACH_FACTOR + _REACH_MORE_M
+        reach: NDArray[float64] = np.repeat(farthest, self.counts)
+        return reach
