@@ -31,6 +31,7 @@ from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
 from rulec.rulebook.elaborate.rule_messages import no_multiple
 from rulec.rulebook.rulebook_model import Rule, Rulebook
+from rulec.rulebook.rules.exemptions import rule_trigger
 from rulec.version import __version__
 
 CPU_LIMIT_S = 5
@@ -220,4 +221,5 @@ def _compiled(rule: Rule, step: Fraction | None, done: Done) -> CompiledRule:
         hoa=done.hoa,
         step_s=step,
         weight=rule.weight,
+        trigger=rule_trigger(rule),
     )

@@ -23,6 +23,7 @@ from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
+from rulec.logic.opportunities import trigger_of
 from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.rulebook_model import Rule, Rulebook, SourceFile, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
@@ -216,7 +217,19 @@ def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str
         machine=machine,
         step_s=_step(rule, formula),
         weight=weight,
+        trigger=_trigger(rule, formula, vocabulary),
     )
+
+
+def _trigger(
+    rule: schema.BundleRule, formula: ltl.Formula, vocabulary: Vocabulary
+) -> ltl.Formula | None:
+    if rule.trigger is None:
+        return trigger_of(formula)
+    trigger = from_data(rule.trigger)
+    names = {name for name, _ in rule.variables}
+    _check_formula(trigger, vocabulary, names, f"the trigger of rule `{rule.name}`", counted=False)
+    return trigger
 
 
 def _step(rule: schema.BundleRule, formula: ltl.Formula) -> Fraction | None:

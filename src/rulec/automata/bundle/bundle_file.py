@@ -28,6 +28,7 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.files import make_folder, opened, written_whole
 from rulec.logic.codec import terms_to_data, to_data
+from rulec.logic.opportunities import trigger_of
 from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
 
@@ -97,6 +98,7 @@ def _rule(rule: CompiledRule, cut: schema.CutMachineEntry | None) -> schema.Bund
         step_s=None if rule.step_s is None else str(rule.step_s),
         formula=formula_text(rule.formula),
         tree=to_data(rule.formula),
+        trigger=_trigger(rule),
         machine=schema.MachineEntry(
             reads=[_read(read) for read in machine.reads],
             letters=machine.letters,
@@ -106,6 +108,13 @@ def _rule(rule: CompiledRule, cut: schema.CutMachineEntry | None) -> schema.Bund
             accepting_sink=machine.accepting_sink,
         ),
     )
+
+
+def _trigger(rule: CompiledRule) -> Any:
+    """The tree of a trigger; none if it is what the formula's form names, as most are."""
+    if rule.trigger is None or rule.trigger == trigger_of(rule.formula):
+        return None
+    return to_data(rule.trigger)
 
 
 def _read(read: Read | NumberRead) -> schema.ReadEntry | schema.NumberReadEntry:

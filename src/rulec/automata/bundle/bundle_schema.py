@@ -128,7 +128,10 @@ class CutMachineEntry(_Strict, rename={"successors": "following", "outputs": "ou
 
 
 class BundleRule(_Strict, omit_defaults=True):
-    """One rule; ``cut`` is null in version 4 if that machine would be too large."""
+    """One rule; ``cut`` is null in version 4 if that machine would be too large.
+
+    Without a ``trigger`` that is what the formula's form names.
+    """
 
     name: str
     strength: Strength
@@ -146,6 +149,7 @@ class BundleRule(_Strict, omit_defaults=True):
     machine: MachineEntry
     hoa: str
     cut: CutMachineEntry | None = None
+    trigger: Any = None
 
 
 class AxiomEntry(_Strict):

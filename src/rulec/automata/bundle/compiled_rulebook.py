@@ -26,7 +26,8 @@ class CompiledRule:
     """A rule with its machine; ``hoa`` is its automaton in HOA v1.
 
     ``step_s`` is the step of the traces that the machine can judge; None if it can judge any,
-    because the formula has no bounds in seconds.
+    because the formula has no bounds in seconds. ``trigger`` is what has to hold for the rule to
+    ask for anything, None where its form names nothing (``logic.opportunities``).
     """
 
     __repr__ = short_repr
@@ -45,6 +46,7 @@ class CompiledRule:
     source: str = ""
     certainty: model.Certainty = ""
     book: str = ""
+    trigger: Formula | None = None
 
 
 @dataclass(frozen=True, slots=True)

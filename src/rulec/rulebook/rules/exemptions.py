@@ -17,8 +17,9 @@ from math import comb
 from typing import Literal
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
+from rulec.logic.opportunities import trigger_of
 from rulec.rulebook.arithmetic.linear_arithmetic import all_of, any_of, negated
-from rulec.rulebook.rulebook_model import Exemption, ExemptionScope
+from rulec.rulebook.rulebook_model import Exemption, ExemptionScope, Rule
 
 _AND, _THEN, _UNTIL = BinaryOperator.AND, BinaryOperator.THEN, BinaryOperator.UNTIL
 
@@ -56,6 +57,26 @@ def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
         case _:
             raise ExemptionError("no stretch")
     return any_of([*initially, formula])
+
+
+def rule_trigger(rule: Rule) -> Formula | None:
+    """What has to hold in a state for the rule to be breached there; None where nothing is named.
+
+    The exceptions of a sequence are about what comes after its first phase, so they are left out.
+    """
+    required, condition = rule.required or rule.formula, rule.condition
+    apart: list[Formula] = []
+    initially: list[Formula] = []
+    for exemption in rule.exemptions:
+        among = initially if exemption.scope == "initially" else apart
+        among.append(negated(exemption.formula))
+    if condition is not None:
+        guards = isinstance(required, Unary) and required.operator in _GUARDING
+        (apart if guards else initially).append(condition)
+    return trigger_of(required, apart=apart, initially=initially)
+
+
+_GUARDING = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,215 @@
+"""Opportunities to violate a rule: its trigger, and where it is breached.
+
+A rule asks for something where its trigger holds: the left side of an implication, the first phase
+of a sequence, all that a prohibition names but for the last. So an exposure can be counted, as
+traffic psychology does (Chapman, "The concept of exposure", 1973): an opportunity is one stretch of
+states in which the trigger holds. The trigger is read off the formula's form, docs/rates.md has the
+forms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import reduce
+
+from rulec.logic.bounds import BOOLEAN, operations_of
+from rulec.logic.fold import fold_constants
+from rulec.logic.formula import (
+    Binary,
+    BinaryOperator,
+    Bound,
+    Constant,
+    Formula,
+    Unary,
+    UnaryOperator,
+)
+
+_TRUE = Constant(True)
+
+BEGINNING: Formula = Unary(UnaryOperator.WEAK_PREVIOUSLY, Constant(False))
+"""What holds in the first state alone."""
+
+
+def breach_of(formula: Formula) -> Formula:
+    """What holds in a state if the formula is violated there.
+
+    A word violates the formula if this holds in one of its states, and only then. What guards no
+    stretch of time is violated in the first state.
+    """
+    return fold_constants(_breach(formula) or _at_first(_negated(formula)))
+
+
+def trigger_of(
+    required: Formula, *, apart: Sequence[Formula] = (), initially: Sequence[Formula] = ()
+) -> Formula | None:
+    """What has to hold in a state for a rule to be breached there; None where nothing is named.
+
+    ``required`` is the rule's formula without its exceptions. ``apart`` are those that hold of a
+    single state, negated, and ``initially`` those of the first state, which a sequence, whose
+    exceptions are about what comes later, leaves out.
+    """
+    trigger = _trigger(required)
+    parts = [] if trigger is None else [trigger]
+    if guards_one_state(required):
+        parts += apart
+    parts += map(_at_first_once, initially)
+    found = fold_constants(_all(parts)) if parts else None
+    return None if found == _TRUE else found
+
+
+def guards_one_state(formula: Formula) -> bool:
+    """Whether a rule is of the form ``always p`` or ``never p``, p being no sequence."""
+    match formula:
+        case Unary(UnaryOperator.ALWAYS):
+            return True
+        case Unary(UnaryOperator.NEVER, operand):
+            return not (isinstance(operand, Binary) and operand.operator is BinaryOperator.THEN)
+    return False
+
+
+def conjuncts(formula: Formula) -> Iterator[Formula]:
+    """The parts of a conjunction from left to right, however they are grouped."""
+    yield from _operands(formula, BinaryOperator.AND)
+
+
+def looks_elsewhere(formula: Formula) -> bool:
+    """Whether a formula speaks of other states than the present one."""
+    return any(operation.operator not in BOOLEAN for operation in operations_of(formula))
+
+
+def _breach(formula: Formula) -> Formula | None:
+    match formula:
+        case Binary(BinaryOperator.AND, left, right):
+            return _any([_breach_at_all(left), _breach_at_all(right)])
+        case Binary(BinaryOperator.IMPLIES, left, right):
+            later = _breach(right)
+            return None if later is None else _all([later, _at_first_once(left)])
+        case Binary(BinaryOperator.OR, left, right):
+            first, second = _breach(left), _breach(right)
+            if (first is None) == (second is None):
+                return None
+            later, other = (first, right) if second is None else (second, left)
+            return None if later is None else _all([later, _at_first_once(_negated(other))])
+        case Unary(UnaryOperator.ALWAYS, operand, bound):
+            return _within(_negated(operand), bound)
+        case Unary(UnaryOperator.NEVER, operand, bound):
+            return _within(_without_lead(operand), bound)
+        case Unary(UnaryOperator.NOT, Unary(UnaryOperator.EVENTUALLY, operand, bound)):
+            return _within(_without_lead(operand), bound)
+    return None
+
+
+def _breach_at_all(formula: Formula) -> Formula:
+    return _breach(formula) or _at_first(_negated(formula))
+
+
+def _within(formula: Formula, bound: Bound | None) -> Formula:
+    """The formula as far as the bound of what guards it reaches."""
+    return formula if bound is None else _all([formula, _reached(bound)])
+
+
+def _reached(bound: Bound) -> Formula:
+    return Unary(UnaryOperator.ONCE, BEGINNING, bound)
+
+
+def _without_lead(formula: Formula) -> Formula:
+    """A sequence without a first phase that is anything; it has begun before, then."""
+    match formula:
+        case Binary(BinaryOperator.THEN, Constant(True), rest, None):
+            later = Unary(UnaryOperator.PREVIOUSLY, _TRUE)
+            return _all([_without_lead(rest), later])
+    return formula
+
+
+def _trigger(formula: Formula) -> Formula | None:
+    match formula:
+        case Binary(BinaryOperator.AND, left, right):
+            return _either(_trigger(left), _trigger(right))
+        case Binary(BinaryOperator.IMPLIES, left, right) if _breach(right) is not None:
+            return _all([_at_first_once(left), _trigger(right) or _TRUE])
+        case Binary(BinaryOperator.OR, left, right) if _breach(formula) is not None:
+            guarding, other = (left, right) if _breach(right) is None else (right, left)
+            return _all([_at_first_once(_negated(other)), _trigger(guarding) or _TRUE])
+        case Unary(UnaryOperator.ALWAYS, operand, bound):
+            return _bounded(_condition(operand), bound)
+        case Unary(UnaryOperator.NEVER, operand, bound):
+            return _bounded(_beginning(operand), bound)
+        case Unary(UnaryOperator.NOT, Unary(UnaryOperator.EVENTUALLY, operand, bound)):
+            return _bounded(_beginning(operand), bound)
+    return None
+
+
+def _bounded(trigger: Formula | None, bound: Bound | None) -> Formula | None:
+    if bound is None:
+        return trigger
+    return _all([trigger or _TRUE, _reached(bound)])
+
+
+def _condition(formula: Formula) -> Formula | None:
+    """The condition under which a formula that always holds asks for anything."""
+    match formula:
+        case Binary(BinaryOperator.IMPLIES, left, right):
+            return _all([left, _condition(right) or _TRUE])
+        case Binary(BinaryOperator.AND, left, right):
+            return _either(_condition(left), _condition(right))
+        case Binary(BinaryOperator.OR):
+            parts = list(_operands(formula, BinaryOperator.OR))
+            asking = [(part, _condition(part)) for part in parts]
+            conditions = [condition for _, condition in asking if condition is not None]
+            others = [_negated(part) for part, condition in asking if condition is None]
+            return _all([*others, *conditions]) if conditions else None
+        case Unary(UnaryOperator.NOT, operand):
+            return _beginning(operand)
+    return None
+
+
+def _beginning(formula: Formula) -> Formula | None:
+    """What what never happens begins with, or all that it takes but for the last."""
+    match formula:
+        case Binary(BinaryOperator.THEN, left, right):
+            return left if left != _TRUE else _beginning(right) or right
+        case Binary(BinaryOperator.AND):
+            parts = [part for part in conjuncts(formula) if part != _TRUE]
+            last = _beginning(parts[-1]) if parts else None
+            before = [*parts[:-1], *([] if last is None else [last])]
+            return _all(before) if before else None
+        case Binary(BinaryOperator.OR, left, right):
+            return _either(_beginning(left), _beginning(right))
+    return None
+
+
+def _either(left: Formula | None, right: Formula | None) -> Formula | None:
+    return None if left is None or right is None else _any([left, right])
+
+
+def _at_first(formula: Formula) -> Formula:
+    return _all([formula, BEGINNING])
+
+
+def _at_first_once(formula: Formula) -> Formula:
+    """What held in the first state."""
+    return Unary(UnaryOperator.ONCE, _at_first(formula))
+
+
+def _negated(formula: Formula) -> Formula:
+    match formula:
+        case Unary(UnaryOperator.NOT, operand):
+            return operand
+    return Unary(UnaryOperator.NOT, formula)
+
+
+def _operands(formula: Formula, operator: BinaryOperator) -> Iterator[Formula]:
+    match formula:
+        case Binary(own, left, right) if own is operator:
+            yield from _operands(left, operator)
+            yield from _operands(right, operator)
+        case _:
+            yield formula
+
+
+def _all(formulas: Iterable[Formula]) -> Formula:
+    return reduce(lambda left, right: Binary(BinaryOperator.AND, left, right), formulas)
+
+
+def _any(formulas: Iterable[Formula]) -> Formula:
+    return reduce(lambda left, right: Binary(BinaryOperator.OR, left, right), formulas)

@@ -1,0 +1,187 @@
+"""The evaluation of a formula on rows: choices of objects times states."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.mealy_monitor import NumberRead, Threshold
+from rulec.automata.thresholds import scale
+from rulec.logic import formula as ltl
+from rulec.logic.bounds import BOOLEAN
+from rulec.monitoring.batch.columns.column_reader import digits_of_sum
+from rulec.monitoring.moments import truth_rows as rows_of
+from rulec.monitoring.moments.name_tables import NameTables, ValueRows
+from rulec.monitoring.moments.truth_rows import RowStretches, TruthRows, known
+from rulec.trace.trace_columns import Array
+from rulec.vocabulary import Enumeration
+
+Places = NDArray[np.intp]
+"""Numbers of objects in a trace's order, one a row, or one for all rows."""
+
+_SIDES: Mapping[ltl.Relation, tuple[int, ...]] = {
+    "<": (0,),
+    "<=": (0, 1),
+    "=": (1,),
+    "!=": (0, 2),
+    ">=": (1, 2),
+    ">": (2,),
+}
+"""The sides of a limit, below, at and above it, on which a number stands in a relation to it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RowEvaluation:
+    """The evaluation of formulas on some rows.
+
+    ``spans`` (objects x 2) are the first and the last state in which each object is there,
+    ``states`` the states of the trace that the columns show.
+    """
+
+    tables: NameTables
+    spans: Places
+    stretches: RowStretches
+    states: Places
+
+    @property
+    def n_states(self) -> int:
+        """The number of columns."""
+        return len(self.states)
+
+    @property
+    def _shows_all(self) -> bool:
+        """Whether the columns are the states of the trace."""
+        n_states = self.tables.n_states
+        return self.n_states == n_states and int(self.states[-1]) == n_states - 1
+
+    def of(self, formula: ltl.Formula, bound: Mapping[str, Places]) -> TruthRows:
+        """The truth of a formula; ``bound`` has the objects' places, one a row or one for all."""
+        match formula:
+            case ltl.Atom():
+                return self._atom(formula, bound)
+            case ltl.Comparison():
+                return self._comparison(formula, bound)
+            case ltl.Same(left, right):
+                return known((bound[left] == bound[right])[:, None])
+            case ltl.Constant(value):
+                return known(np.full((1, self.n_states), value))
+            case ltl.Unary(operator, operand):
+                inner = self.of(operand, bound)
+                if operator in BOOLEAN:
+                    return rows_of.negation(inner)
+                return rows_of.temporal_unary(
+                    formula, self._spread(inner), self.stretches, self.n_states
+                )
+            case ltl.Binary():
+                return self._binary(formula, bound)
+
+    def _binary(self, formula: ltl.Binary, bound: Mapping[str, Places]) -> TruthRows:
+        first = self.of(formula.left, bound)
+        match formula.operator:
+            case ltl.BinaryOperator.AND:
+                if not first.possible.any():
+                    return first
+                return rows_of.conjunction(first, self.of(formula.right, bound))
+            case ltl.BinaryOperator.OR:
+                if first.sure.all():
+                    return first
+                return rows_of.disjunction(first, self.of(formula.right, bound))
+            case ltl.BinaryOperator.IMPLIES:
+                if not first.possible.any():
+                    return rows_of.negation(first)
+                return rows_of.disjunction(rows_of.negation(first), self.of(formula.right, bound))
+            case ltl.BinaryOperator.IFF:
+                return rows_of.equivalence(first, self.of(formula.right, bound))
+            case ltl.BinaryOperator.XOR:
+                same = rows_of.equivalence(first, self.of(formula.right, bound))
+                return rows_of.negation(same)
+            case _:
+                second = self.of(formula.right, bound)
+                return rows_of.temporal_binary(
+                    formula, self._spread(first), self._spread(second), self.stretches
+                )
+
+    def _spread(self, truth: TruthRows) -> TruthRows:
+        """Truth with a column for each state."""
+        if truth.sure.shape[1] == self.n_states:
+            return truth
+        shape = len(truth.sure), self.n_states
+        return TruthRows(np.broadcast_to(truth.sure, shape), np.broadcast_to(truth.possible, shape))
+
+    def _atom(self, atom: ltl.Atom, bound: Mapping[str, Places]) -> TruthRows:
+        rows = self._rows(atom.name, atom.arguments, bound)
+        values = rows.values
+        declaration = self.tables.vocabulary.declarations[atom.name]
+        if isinstance(declaration, Enumeration):
+            assert atom.value is not None, "the formula has been checked"
+            values = values == declaration.values.index(atom.value)
+        return TruthRows(values & ~rows.unknown, values | rows.unknown)
+
+    def _rows(
+        self, name: str, arguments: tuple[str, ...], bound: Mapping[str, Places]
+    ) -> ValueRows:
+        """What is said of a name, asked of variables."""
+        tables = self.tables
+        if not arguments:
+            rows = tables.world(name)
+        elif len(arguments) == 1:
+            rows = tables.about(name).at(rows=bound[arguments[0]])
+        else:
+            several = np.broadcast_arrays(*[bound[one] for one in arguments])
+            rows = tables.about_several(name, np.stack(several, axis=1).tolist())
+        return rows if self._shows_all else rows.at(states=self.states)
+
+    def _comparison(self, comparison: ltl.Comparison, bound: Mapping[str, Places]) -> TruthRows:
+        at = Threshold(comparison.limit, inclusive=True)
+        above = Threshold(comparison.limit, inclusive=False)
+        read = NumberRead(comparison.terms, (at, above))
+        parts = [(factor, self._term(term, bound)) for factor, term in comparison.terms]
+        unknown = np.zeros((1, self.n_states), dtype=bool)
+        for _, part in parts:
+            unknown = unknown | part.unknown
+        lows = [(f, part.values if f > 0 else part.upper) for f, part in parts]
+        highs = [(f, part.upper if f > 0 else part.values) for f, part in parts]
+        low = _digits(read, lows, unknown)
+        same = all(one is other for (_, one), (_, other) in zip(lows, highs, strict=True))
+        high = low if same else _digits(read, highs, unknown)
+        stands = np.array([side in _SIDES[comparison.relation] for side in range(3)])
+        every = np.array([[stands[a : b + 1].all() for b in range(3)] for a in range(3)])
+        some = np.array([[stands[a : b + 1].any() for b in range(3)] for a in range(3)])
+        return TruthRows(every[low, high] & ~unknown, some[low, high] | unknown)
+
+    def _term(self, term: ltl.Term, bound: Mapping[str, Places]) -> ValueRows:
+        if isinstance(term, ltl.QuantityTerm):
+            return self._rows(term.name, term.arguments, bound)
+        sure = np.zeros((1, self.n_states), dtype=np.int64)
+        possible = sure
+        vocabulary = self.tables.vocabulary
+        for place, kind in enumerate(self.tables.types):
+            if vocabulary.is_subtype(kind, term.type):
+                body = self.of(term.body, {**bound, term.variable: np.array([place])})
+                first, last = self.spans[place]
+                there = (self.states >= first) & (self.states <= last)
+                sure = sure + (body.sure & there)
+                possible = possible + (body.possible & there)
+        return ValueRows(sure, possible, np.zeros((1, self.n_states), dtype=bool))
+
+
+def _digits(
+    read: NumberRead, summands: list[tuple[Fraction, Array]], ignored: NDArray[np.bool_]
+) -> NDArray[np.intp]:
+    """For each row and state the side of the limit that a sum is on; any if it is ignored."""
+    ready = scale(read)
+    if ready.quantity is not None:
+        ((_, numbers),) = summands
+        digits = np.zeros(numbers.shape, dtype=np.intp)
+        for floor in ready.floors:
+            digits += numbers >= floor
+        return digits
+    spread = np.broadcast_arrays(ignored, *[numbers for _, numbers in summands])
+    shape = spread[0].shape
+    flat = [one.ravel() for one in spread]
+    parts = [(factor, one) for (factor, _), one in zip(summands, flat[1:], strict=True)]
+    return digits_of_sum(read, parts, flat[0].size, flat[0]).astype(np.intp).reshape(shape)

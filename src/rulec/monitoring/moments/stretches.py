@@ -1,0 +1,70 @@
+"""Stretches of states in which something holds, for sure or perhaps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Flags = NDArray[np.bool_]
+Places = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stretches:
+    """Maximal stretches of states, ``first`` to ``last`` (both included), of ``rows``.
+
+    They come row by row, each row from its beginning.
+    """
+
+    rows: Places
+    first: Places
+    last: Places
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def of_row(self, row: int) -> Stretches:
+        """The stretches of one row, as that of rows of which it is the only one."""
+        own = self.rows == row
+        return Stretches(np.zeros(int(own.sum()), dtype=np.intp), self.first[own], self.last[own])
+
+    def with_some(self, flags: Flags) -> Flags:
+        """For each stretch whether some of its states has a flag (rows x states)."""
+        if not len(self):
+            return np.zeros(0, dtype=bool)
+        n_states = flags.shape[1]
+        before = np.concatenate([[0], np.cumsum(flags.ravel())])
+        begin, end = self.rows * n_states + self.first, self.rows * n_states + self.last + 1
+        result: Flags = before[end] > before[begin]
+        return result
+
+
+def stretches_of(flags: Flags) -> Stretches:
+    """The stretches of states that have a flag (rows x states)."""
+    edges = np.zeros((flags.shape[0], flags.shape[1] + 1), dtype=np.int8)
+    edges[:, :-1] += flags
+    edges[:, 1:] -= flags
+    rows, first = np.nonzero(edges > 0)
+    _, behind = np.nonzero(edges < 0)
+    return Stretches(rows, first, behind - 1)
+
+
+def opportunity_stretches(sure: Flags, possible: Flags) -> tuple[Stretches, Stretches]:
+    """The opportunities that there are for sure, and those that there may be at most.
+
+    A stretch in which something possibly holds is one for sure if it holds for sure somewhere in
+    it. There may be as many as it has stretches in which it holds for sure, and one if it has none.
+    """
+    joined = stretches_of(possible)
+    for_sure = joined.with_some(sure)
+    certain = stretches_of(sure)
+    doubtful = Stretches(*[part[~for_sure] for part in (joined.rows, joined.first, joined.last)])
+    at_least = Stretches(*[part[for_sure] for part in (joined.rows, joined.first, joined.last)])
+    at_most = Stretches(
+        np.concatenate([certain.rows, doubtful.rows]),
+        np.concatenate([certain.first, doubtful.first]),
+        np.concatenate([certain.last, doubtful.last]),
+    )
+    return at_least, at_most

@@ -1,0 +1,182 @@
+"""Three-valued truth of formulas at every state, a row for each choice of objects.
+
+Operators are Kleene's, and those of time are what ``logic.semantics`` says on the stretch of a row.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.logic import formula as ltl
+from rulec.logic.bounds import PAST, Range, range_of
+
+Flags = NDArray[np.bool_]
+
+RowEnding = Literal["over", "goes on", "cut"]
+"""What is behind a row's last state: nothing, that state for ever, or what nobody has seen.
+
+Where a row is cut, nobody has seen what was before its first state either.
+"""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TruthRows:
+    """Where something is ``sure`` and where it is ``possible`` (rows x states, or one row for all).
+
+    What is sure is possible.
+    """
+
+    sure: Flags
+    possible: Flags
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RowStretches:
+    """The ``first`` and the ``last`` state (rows x 1, both included) of each row."""
+
+    first: NDArray[np.intp]
+    last: NDArray[np.intp]
+    ends: RowEnding
+
+
+def known(values: Flags) -> TruthRows:
+    """Truth that is known everywhere."""
+    return TruthRows(values, values)
+
+
+def negation(operand: TruthRows) -> TruthRows:
+    """What is sure of a negation is what is not possible of its operand."""
+    return TruthRows(~operand.possible, ~operand.sure)
+
+
+def conjunction(left: TruthRows, right: TruthRows) -> TruthRows:
+    """Both."""
+    return TruthRows(left.sure & right.sure, left.possible & right.possible)
+
+
+def disjunction(left: TruthRows, right: TruthRows) -> TruthRows:
+    """One of them, or both."""
+    return TruthRows(left.sure | right.sure, left.possible | right.possible)
+
+
+def equivalence(left: TruthRows, right: TruthRows) -> TruthRows:
+    """Both or neither."""
+    other, another = negation(left), negation(right)
+    return disjunction(conjunction(left, right), conjunction(other, another))
+
+
+_TRUE = known(np.ones((1, 1), dtype=bool))
+
+
+def temporal_unary(
+    formula: ltl.Unary, operand: TruthRows, stretches: RowStretches, n_states: int
+) -> TruthRows:
+    """An operator of time on one formula; its bound is in steps."""
+    always = known(np.broadcast_to(_TRUE.sure, (1, n_states)))
+    join = _since if formula.operator in PAST else _until
+    span = range_of(formula)
+    match formula.operator:
+        case (
+            ltl.UnaryOperator.NEXT
+            | ltl.UnaryOperator.EVENTUALLY
+            | ltl.UnaryOperator.PREVIOUSLY
+            | ltl.UnaryOperator.ONCE
+        ):
+            return join(always, operand, span, stretches)
+        case ltl.UnaryOperator.NEVER:
+            return negation(join(always, operand, span, stretches))
+        case _:
+            return negation(join(always, negation(operand), span, stretches))
+
+
+def temporal_binary(
+    formula: ltl.Binary, left: TruthRows, right: TruthRows, stretches: RowStretches
+) -> TruthRows:
+    """An operator of time between two formulas; its bound is in steps."""
+    span = range_of(formula)
+    match formula.operator:
+        case ltl.BinaryOperator.UNTIL | ltl.BinaryOperator.THEN:
+            return _until(left, right, span, stretches)
+        case ltl.BinaryOperator.SINCE:
+            return _since(left, right, span, stretches)
+        case ltl.BinaryOperator.WEAK_UNTIL:
+            return _weak_until(left, right, span, stretches)
+        case ltl.BinaryOperator.RELEASE:
+            return negation(_until(negation(left), negation(right), span, stretches))
+        case _:
+            return negation(_weak_until(negation(left), negation(right), span, stretches))
+
+
+def _weak_until(
+    left: TruthRows, right: TruthRows, span: Range, stretches: RowStretches
+) -> TruthRows:
+    """Until, or ``left`` from here to the range's end."""
+    always = known(np.broadcast_to(_TRUE.sure, (1, left.sure.shape[-1])))
+    breaks = _until(always, negation(left), Range(0, span.high), stretches)
+    return disjunction(_until(left, right, span, stretches), negation(breaks))
+
+
+def _since(left: TruthRows, right: TruthRows, span: Range, stretches: RowStretches) -> TruthRows:
+    return _looked_back(left, right, span, stretches.first, "cut" if _is_cut(stretches) else "over")
+
+
+def _until(left: TruthRows, right: TruthRows, span: Range, stretches: RowStretches) -> TruthRows:
+    """Until is since, read from the end."""
+    behind = left.sure.shape[-1] - 1 - stretches.last
+    back = _looked_back(_turned(left), _turned(right), span, behind, stretches.ends)
+    return _turned(back)
+
+
+def _is_cut(stretches: RowStretches) -> bool:
+    return stretches.ends == "cut"
+
+
+def _turned(truth: TruthRows) -> TruthRows:
+    return TruthRows(truth.sure[:, ::-1], truth.possible[:, ::-1])
+
+
+def _looked_back(
+    left: TruthRows,
+    right: TruthRows,
+    span: Range,
+    first: NDArray[np.intp],
+    beyond: RowEnding,
+) -> TruthRows:
+    """Since, with what is ``beyond`` a row's ``first`` state."""
+    sure, _ = _since_known(left.sure, right.sure, span, first, goes_on=beyond == "goes on")
+    possible, unbroken = _since_known(
+        left.possible, right.possible, span, first, goes_on=beyond == "goes on"
+    )
+    if beyond == "cut" and (span.high is None or span.low <= span.high):
+        state = np.arange(possible.shape[-1])
+        reaches = True if span.high is None else state - span.high < first
+        possible = possible | (unbroken & reaches)
+    return TruthRows(sure, possible)
+
+
+def _since_known(
+    left: Flags, right: Flags, span: Range, first: NDArray[np.intp], *, goes_on: bool
+) -> tuple[Flags, Flags]:
+    """Since of what is known, and where ``left`` holds in all states back to the first one."""
+    n_states = right.shape[-1]
+    state = np.arange(n_states)
+    there = state >= first
+    latest = np.maximum.accumulate(np.where(right & there, state, -1), axis=1)
+    broken = np.maximum.accumulate(np.where(~left & there, state, -1), axis=1)
+    unbroken = (broken < 0) & there
+    if span.low:
+        earlier = np.full_like(latest, -1)
+        earlier[:, span.low :] = latest[:, : max(n_states - span.low, 0)]
+        latest = earlier
+    result = (latest >= 0) & (broken <= latest)
+    if span.high is not None:
+        result &= latest >= state - span.high
+    if goes_on and span.low and (span.high is None or span.low <= span.high):
+        # Beyond the first state all are like it.
+        like_first = (right & (state == first)).any(axis=1, keepdims=True)
+        result = result | (like_first & unbroken & (state - span.low < first))
+    return result, unbroken

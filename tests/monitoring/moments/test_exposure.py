@@ -1,0 +1,184 @@
+"""Opportunities counted by hand, and on random rulebooks beside the verdict."""
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import Phase, given, settings
+
+from rulec.diagnostics import RulecError
+from rulec.logic.free_names import names_in
+from rulec.monitoring.moments.exposure import Exposure, exposures
+from rulec.monitoring.verify import verify
+from rulec.rulebook.loader import parse_rulebook
+from rulec.trace import Trace
+from rulec.vocabulary.partial_values import UNKNOWN
+from support.builders.rulebooks import compile_here
+from support.generators.blurred_traces import blurred
+from support.generators.random_rulebooks import rulebook
+from support.generators.random_traces import traces
+from support.generators.seeds import seeds
+
+HEAD = """
+rulebook counted
+type vehicle
+signal red, go, siren, way_free, ordered default false
+signal behind(v: vehicle), beside(v: vehicle), ahead(v: vehicle) default false
+"""
+
+
+def counted(
+    rule, *states, objects=("a",), step_s=0.5, ends="complete", present=None, semantics="stutter"
+):
+    """The exposure to a rule of a trace whose states are the names that are true in each."""
+    head = HEAD.replace("counted", f"counted semantics {semantics}")
+    compiled = compile_here(parse_rulebook(head + rule), Fraction(step_s))
+    trace = Trace(
+        "t",
+        step_s,
+        dict.fromkeys(objects, "vehicle"),
+        tuple(map(state_of, states)),
+        present or {},
+        ends=ends,
+    )
+    return exposures(trace, compiled, verify(trace, compiled))["r"]
+
+
+def state_of(text):
+    """``red ?go behind(a)`` as a state in which these are true, and go is unknown."""
+    state = {}
+    for word in text.split():
+        value = UNKNOWN if word.startswith("?") else True
+        name, _, item = word.lstrip("?").rstrip(")").partition("(")
+        if item:
+            state.setdefault(name, {})[item] = value
+        else:
+            state[name] = value
+    return state
+
+
+IMPLICATION = "hard rule r { require always (red implies not go) }"
+
+
+def test_an_implication():
+    """Two red lights, the first for two states; ego goes at the second one."""
+    found = counted(IMPLICATION, "", "red", "red", "go", "red go", "")
+    assert found == Exposure(2, 2, 1.5, 1.5, 1, 1)
+
+
+def test_a_rule_may_be_violated_at_several_opportunities():
+    """The verdict knows one violation, the one that cannot be mended."""
+    found = counted(IMPLICATION, "red go", "red go", "", "red", "", "red go")
+    assert (found.opportunities, found.violated) == (3, 2)
+
+
+def test_a_prohibition_is_read_as_an_implication():
+    prohibition = "hard rule r { require never (red and go) }"
+    found = counted(prohibition, "", "red", "red", "go", "red go", "")
+    assert found == Exposure(2, 2, 1.5, 1.5, 1, 1)
+
+
+def test_an_exception_takes_its_states_out():
+    """Where somebody orders it, a red light is none: it parts the first stretch into two."""
+    rule = "hard rule r { require never (red and go) unless ordered }"
+    found = counted(rule, "red", "red ordered go", "red", "ordered", "red go")
+    assert found == Exposure(3, 3, 1.5, 1.5, 1, 1)
+
+
+SEQUENCE = """hard rule r (v: vehicle) {
+  require never (behind(v) then beside(v) and red then ahead(v))
+}"""
+
+
+def test_a_sequence():
+    """Ego is behind a twice and behind b once; at red it passes a, and b goes off."""
+    found = counted(
+        SEQUENCE,
+        "behind(a) behind(b)",
+        "behind(a) behind(b)",
+        "beside(a) red beside(b)",
+        "ahead(a)",
+        "behind(a)",
+        objects=("a", "b"),
+    )
+    # Two states behind both count once, and the last one behind a.
+    assert found == Exposure(3, 3, 1.5, 1.5, 1, 1)
+
+
+DUTY = "hard rule r { require always (siren implies eventually[<= 1 s] way_free) }"
+
+
+def test_a_bounded_duty():
+    """A siren for three states, free after one; then one that nobody made way for."""
+    found = counted(DUTY, "siren", "siren way_free", "", "", "siren", "siren", "", "", "")
+    assert found == Exposure(2, 2, 2.0, 2.0, 1, 1)
+
+
+def test_a_duty_that_is_pending_when_the_recording_ends_is_open():
+    found = counted(DUTY, "siren way_free", "", "siren", ends="cut")
+    assert found == Exposure(2, 2, 1.0, 1.0, 0, 1)
+
+
+def test_what_is_unknown_may_be_an_opportunity():
+    """Known red parted by an unknown state is one for sure and may be two."""
+    found = counted(IMPLICATION, "red", "?red", "red", "", "?red", "?red")
+    assert found == Exposure(1, 3, 1.0, 2.5, 0, 0)
+
+
+def test_what_may_be_violated():
+    found = counted(IMPLICATION, "?red", "", "red ?go", "", "red go", "", "?red go")
+    assert found == Exposure(2, 4, 1.0, 2.0, 1, 3)
+
+
+def test_an_open_rule_may_have_been_violated_and_is_not_for_sure():
+    assert counted(IMPLICATION, "red ?go", "", "red") == Exposure(2, 2, 1.0, 1.0, 0, 1)
+
+
+def test_without_a_trigger_each_choice_is_one_opportunity():
+    rule = "hard rule r (v: vehicle) { require always behind(v) }"
+    present = {"b": (1, 2)}
+    states = ("behind(a)", "behind(a)", "behind(a) behind(b)", "behind(a)")
+    found = counted(rule, *states, objects=("a", "b"), present=present)
+    assert found == Exposure(2, 2, 2.0, 2.0, 1, 1)
+
+
+def test_without_objects_there_is_no_opportunity():
+    rule = "hard rule r (v: vehicle) { require always behind(v) }"
+    assert counted(rule, "red", objects=()) == Exposure(0, 0, 0.0, 0.0, 0, 0)
+
+
+def test_a_trigger_that_holds_only_once_the_last_state_is_repeated():
+    """The paper's reading: the last state goes on for ever, so it was red before."""
+    rule = "hard rule r { require always (previously red implies go) }"
+    assert counted(rule, "", "red") == Exposure(1, 1, 0.0, 0.0, 1, 1)
+    assert counted(rule, "", "red", semantics="finite") == Exposure(0, 0, 0.0, 0.0, 0, 0)
+
+
+@pytest.mark.parametrize("clause", ["unless ordered initially", "when not ordered"])
+def test_a_rule_of_the_whole_trace_applies_or_not(clause):
+    rule = f"hard rule r {{ require eventually go {clause} }}"
+    assert counted(rule, "ordered", "") == Exposure(0, 0, 0.0, 0.0, 0, 0)
+    assert counted(rule, "", "ordered") == Exposure(1, 1, 1.0, 1.0, 1, 1)
+
+
+@given(seeds)
+@settings(phases=[Phase.generate], max_examples=30)
+def test_violations_lie_in_opportunities(chance):
+    """Of each rule some opportunity is violated exactly if the verdict says that the rule is."""
+    book = rulebook(chance, Fraction(1))
+    compiled = compile_here(book, Fraction(1))
+    names = {name for rule in book.rules for name in names_in(rule.formula)}
+    for whole in traces(chance, Fraction(1))[:3]:
+        for trace in (whole, blurred(chance, whole, names)):
+            try:
+                verdict = verify(trace, compiled)
+            except RulecError:
+                continue
+            found = exposures(trace, compiled, verdict)
+            for name, own in found.items():
+                violated = [one for one in verdict.violations if one.rule == name]
+                doubtful = [one for one in verdict.open if one.rule == name]
+                assert len(violated) <= own.violated <= own.perhaps_violated <= own.perhaps
+                assert own.violated <= own.opportunities <= own.perhaps
+                assert (own.violated > 0) == bool(violated)
+                assert (own.perhaps_violated > 0) == bool(violated or doubtful)
+                assert own.exposed_s <= own.perhaps_exposed_s <= len(trace.states)
