@@ -5,16 +5,16 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
 from rulec.extraction.to_trace import Drive
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleNotJudged, Verdict, Violation
-from rulec.trace import Trace
+from rulec.trace.trace_arrays import TraceArrays
 
 
 def drive(name, start_s=0.0, kinds=("speed",)):
-    return Drive(name, start_s, Trace(name, 0.5, {}, ({},) * 4, {}), dict.fromkeys(kinds, float))
+    return Drive(name, start_s, TraceArrays(name, 0.5, 4), dict.fromkeys(kinds, float))
 
 
 def verdict(own, *violations):
     found = [Violation(rule, strength, {}, step) for rule, strength, step in violations]
-    return DriveVerdict(own, Verdict(own.trace.id, tuple(found)))
+    return DriveVerdict(own, Verdict(own.arrays.id, tuple(found)))
 
 
 def tally(*verdicts):

@@ -91,7 +91,7 @@ def _chosen_drive(
         found = answer.drive, answer.answer
         first = first or found
         violated = {violation.rule for violation in answer.answer.violations}
-        if trace == answer.drive.trace.id if trace else violated & (kept or violated):
+        if trace == answer.drive.arrays.id if trace else violated & (kept or violated):
             return found
     if first is None or trace:
         message = why if first is None else f"there is no drive `{trace}`"

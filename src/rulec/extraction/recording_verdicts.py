@@ -65,7 +65,7 @@ class RecordingVerdicts(Rows):
         states = 0
         for drive in (drive for ego in self.egos for drive in self.drives.of(ego)):
             waiting.append(drive)
-            states += len(drive.trace.states) if isinstance(drive, Drive) else 0
+            states += drive.arrays.n_states if isinstance(drive, Drive) else 0
             if states >= MOST_STATES:
                 yield from self._verified(waiting)
                 waiting, states = [], 0
@@ -112,7 +112,7 @@ def _row(answer: DriveVerdict | NoDrive) -> dict[str, Any]:
     if isinstance(answer, NoDrive):
         return row | {"ego": answer.ego, "why": answer.why}
     drive, verdict = answer.drive, answer.answer
-    row |= {"ego": drive.ego, "trace": drive.trace.id, "start_s": drive.start_s}
+    row |= {"ego": drive.ego, "trace": drive.arrays.id, "start_s": drive.start_s}
     if isinstance(verdict, NotJudged):
         return row | {"why": str(verdict.error)}
     violated = [violation.rule for violation in verdict.violations]
@@ -158,15 +158,15 @@ class ViolationTally:
             return
         self.words = drive.words if self.words is None else self.words & drive.words
         by_outcome = {True: self.satisfied, False: self.violated, None: self.doubtful}
-        by_outcome[answer.satisfied].append(drive.trace.id)
+        by_outcome[answer.satisfied].append(drive.arrays.id)
         for violation in answer.violations:
             times = self.first_s.setdefault(violation.rule, {})
             at = drive.time_s(violation.step)
-            times[drive.trace.id] = min(at, times.get(drive.trace.id, at))
+            times[drive.arrays.id] = min(at, times.get(drive.arrays.id, at))
             about = self.causes.setdefault(violation.rule, {})
             members = about.setdefault(tuple(violation.binding.values()), [])
-            if drive.trace.id not in members:
-                members.append(drive.trace.id)
+            if drive.arrays.id not in members:
+                members.append(drive.arrays.id)
         for result in answer.open:
             names = self.open_rules.setdefault(result.rule, {})
             names.update(dict.fromkeys(result.depends_on))

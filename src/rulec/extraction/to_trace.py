@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import count
 from math import hypot
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signal_arrays import (
+    Presence,
+    with_assumed,
+    with_likeliest,
+    with_signals,
+    written,
+)
 from rulec.extraction.signals.clearance_signals import clearance_signals
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
@@ -31,27 +39,16 @@ from rulec.extraction.signals.participant_signals import (
     participant_signals,
 )
 from rulec.extraction.signals.settling import settled
-from rulec.extraction.signals.signal_columns import Bounds, SignalColumn, SignalColumns
-from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
-from rulec.partition.cell_graph import PAPER_SURFACE
-from rulec.trace import State, Trace, Value
-from rulec.trace.vocabulary_projection import fits, is_about, known_type, known_types
+from rulec.trace import Trace, Value
+from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.vocabulary_projection import known_types
 from rulec.value_display import short_repr
-from rulec.vocabulary import Declaration, Enumeration, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval
-
-
-@dataclass(frozen=True, slots=True)
-class Presence:
-    """An object of a trace: a participant's row, first and last column of its presence."""
-
-    name: str
-    row: int
-    first: int
-    last: int
+from rulec.vocabulary import Vocabulary
 
 
 def presences(context: DriveContext) -> Iterator[Presence]:
@@ -101,8 +98,6 @@ _SIGNALS: tuple[Callable[[DriveContext], SignalColumns], ...] = (
 )
 """The signal passes, in the order in which traces name their signals."""
 
-_KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float}
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DecidedBy:
@@ -148,23 +143,29 @@ class Place(NamedTuple):
     lanelet: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Drive:
     """A drive of ``ego`` as a trace from ``start_s`` (s of the recording) on.
 
-    ``kinds`` are the Python types of the signals that the recording supplies, whether or not any
-    object is there to have them; ``decided_by`` has the numbers behind Boolean ones. ``places`` are
-    where ego's middle is in each state.
+    Its states are made of ``arrays`` when they are first asked for. ``kinds`` are the Python types
+    of the signals that the recording supplies, whether or not any object is there to have them;
+    ``decided_by`` has the numbers behind Boolean ones. ``places`` are where ego's middle is in each
+    state.
     """
 
     __repr__ = short_repr
 
     ego: str
     start_s: float
-    trace: Trace
+    arrays: TraceArrays
     kinds: Mapping[str, type]
     decided_by: Mapping[str, DecidedBy] = field(default_factory=dict, compare=False)
     places: tuple[Place, ...] = field(default=(), compare=False)
+
+    @cached_property
+    def trace(self) -> Trace:
+        """The trace with its states."""
+        return self.arrays.trace()
 
     @property
     def words(self) -> frozenset[str]:
@@ -173,8 +174,8 @@ class Drive:
 
     def time_s(self, state: int | None) -> float:
         """The time of a state (s of the recording), None being the last state."""
-        number = len(self.trace.states) - 1 if state is None else state
-        return round(self.start_s + number * self.trace.step_s, 9)
+        number = self.arrays.n_states - 1 if state is None else state
+        return round(self.start_s + number * self.arrays.step_s, 9)
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,11 +202,10 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
         signals |= signals_of(context)
     signals = settled(signals, LEAST_S, context.recording.step_s)
     types = [body.object_types for body in context.tracks.participants]
-    if writer.vocabulary is not None:
-        signals = _projected(signals, types, writer.vocabulary, writer.names)
-    signals = _with_assumed(signals, writer.assumed, context.states)
+    chosen = written(signals, types, writer.vocabulary, writer.names)
+    chosen = with_assumed(chosen, writer.assumed, context.states)
     if writer.defaults and writer.vocabulary is not None:
-        signals = _with_likeliest(signals, writer.vocabulary)
+        chosen = with_likeliest(chosen, writer.vocabulary)
     present = list(presences(context))
     own_types = {presence.name: types[presence.row] for presence in present}
     if writer.vocabulary is None:
@@ -213,48 +213,25 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     else:
         objects = known_types(own_types, writer.vocabulary)
     present = [presence for presence in present if presence.name in objects]
-    spans = {presence.name: (presence.first, presence.last) for presence in present}
-    whole = (0, context.states - 1)
-    trace = Trace(
+    kinds = chosen.kinds()
+    empty = TraceArrays(
         name,
         context.recording.step_s,
+        context.states,
         objects,
-        _states(signals, present, context.states, defaults=writer.defaults),
-        {object_name: span for object_name, span in spans.items() if span != whole},
         ends="complete" if writer.defaults else "cut",
-        told=None if writer.defaults else frozenset((*signals.world, *signals.about)),
+        told=None if writer.defaults else frozenset(kinds),
     )
+    arrays = with_signals(empty, chosen, present, defaults=writer.defaults)
     start_s = round(context.first_step * context.recording.step_s, 9)
-    columns = {**signals.world, **signals.about}
-    kinds = {name: _KINDS.get(column.dtype.kind, str) for name, column in columns.items()}
     decided_by = {}
-    if "safe_gap" in signals.about:
+    if "safe_gap" in chosen.columns.about:
         rows = {presence.name: presence.row for presence in present}
         gap, safe = gap_beside_safe_distance(context)
         errors = context.tolerances.place_m, safe_distance_error(context)
         decided_by["safe_gap"] = DecidedBy("gap", "m", rows, gap, safe, *errors)
     places = tuple(_places(context))
-    return Drive(ego, start_s, trace, kinds, decided_by=decided_by, places=places)
-
-
-def _with_assumed(
-    signals: SignalColumns, assumed: Mapping[str, Value], states: int
-) -> SignalColumns:
-    values = {name: np.full(states, value) for name, value in assumed.items()}
-    unknown = {name: rows for name, rows in signals.unknown.items() if name not in assumed}
-    bounds = {name: rows for name, rows in signals.bounds.items() if name not in assumed}
-    return replace(signals, world={**signals.world, **values}, unknown=unknown, bounds=bounds)
-
-
-def _with_likeliest(signals: SignalColumns, vocabulary: Vocabulary) -> SignalColumns:
-    """The signals with measured values for what is unknown and has no default."""
-    declared = vocabulary.declarations
-    unknown = {
-        name: rows
-        for name, rows in signals.unknown.items()
-        if name not in declared or declared[name].default is not None
-    }
-    return replace(signals, unknown=unknown)
+    return Drive(ego, start_s, arrays, kinds, decided_by=decided_by, places=places)
 
 
 def _places(context: DriveContext) -> Iterator[Place]:
@@ -263,90 +240,3 @@ def _places(context: DriveContext) -> Iterator[Place]:
     rows = zip(context.ego.x[0].tolist(), context.ego.y[0].tolist(), pieces, lanes, strict=True)
     for x, y, piece, lane in rows:
         yield Place(round(x, 2), round(y, 2), context.road.lanelet(piece, lane).id)
-
-
-def _projected(
-    signals: SignalColumns,
-    types: Sequence[Sequence[str]],
-    vocabulary: Vocabulary,
-    names: frozenset[str] | None,
-) -> SignalColumns:
-    """The signals that a vocabulary declares, optionally only those in ``names``.
-
-    ``types`` are those of the objects, a row each, the most specific first.
-    """
-    own_types = [known_type(row, vocabulary) for row in types]
-    world, about, only = {}, {}, dict(signals.only)
-    for name, declaration in vocabulary.declarations.items():
-        if names is not None and name not in names:
-            continue
-        if name in signals.world and not declaration.parameters:
-            column = _in_paper_words(name, signals.world[name], declaration)
-            if _fits(name, column, signals.unknown.get(name), declaration):
-                world[name] = column
-        if name in signals.about and len(declaration.parameters) == 1:
-            column = signals.about[name]
-            if _fits(name, column, signals.unknown.get(name), declaration):
-                about[name] = column
-                suits = [is_about(declaration, own, vocabulary) for own in own_types]
-                only[name] = np.array(suits, dtype=bool) & only.get(name, True)
-    return replace(signals, world=world, about=about, only=only)
-
-
-def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -> SignalColumn:
-    """Surfaces in the paper's two words, for vocabularies with only those."""
-    if name != "surface" or not isinstance(declaration, Enumeration):
-        return column
-    if not set(PAPER_SURFACE.values()).issuperset(declaration.values):
-        return column
-    return np.array([PAPER_SURFACE.get(surface, "R_cw") for surface in column.tolist()])
-
-
-def _fits(name: str, column: SignalColumn, unknown: Flags | None, declaration: Declaration) -> bool:
-    """Whether all values of a column that are known are a declaration's."""
-    # All floats are alike; the distinct values of others are few
-    if column.dtype.kind == "f":
-        return fits(name, column.ravel()[:1].tolist(), declaration)
-    known = column if unknown is None or unknown.all() else column[~unknown]
-    return fits(name, np.unique(known).tolist(), declaration)
-
-
-def _states(
-    signals: SignalColumns, present: Sequence[Presence], count: int, *, defaults: bool
-) -> tuple[State, ...]:
-    states: list[dict[str, Any]] = [{} for _ in range(count)]
-    known_bounds = {} if defaults else signals.bounds
-    for name, column in signals.world.items():
-        unknown, bounds = signals.unknown.get(name), known_bounds.get(name)
-        for state, value in enumerate(_values(column, bounds, ())):
-            if unknown is None or not unknown[state]:
-                states[state][name] = value
-            elif not defaults:
-                states[state][name] = UNKNOWN
-    for name, rows in signals.about.items():
-        only, unknown = signals.only.get(name), signals.unknown.get(name)
-        bounds = known_bounds.get(name)
-        by_state: list[dict[str, Any]] = [{} for _ in range(count)]
-        for presence in present:
-            if only is None or only[presence.row]:
-                span = range(presence.first, presence.last + 1)
-                values = _values(rows, bounds, (presence.row, span))
-                for state, value in zip(span, values, strict=True):
-                    if unknown is None or not unknown[presence.row, state]:
-                        by_state[state][presence.name] = value
-                    elif not defaults:
-                        by_state[state][presence.name] = UNKNOWN
-        for state, of_objects in enumerate(by_state):
-            if of_objects:
-                states[state][name] = of_objects
-    return tuple(states)
-
-
-def _values(column: SignalColumn, bounds: Bounds | None, part: Any) -> list[Any]:
-    """The values in a part of a column; intervals where bounds are apart."""
-    if bounds is None:
-        values: list[Any] = column[part].tolist()
-        return values
-    low, high = bounds
-    ends = zip(low[part].tolist(), high[part].tolist(), strict=True)
-    return [first if first == last else Interval(first, last) for first, last in ends]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.to_trace import Drive, Place
 from rulec.logic.free_names import names_in
@@ -12,7 +14,6 @@ from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.verdict import Violation
 from rulec.trace import Value
-from rulec.vocabulary.partial_values import UNKNOWN
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +50,7 @@ def evidence_of(
     partial = {name for name in told if _is_partial(drive, name)}
     declared = rules.vocabulary.declarations
     untold = [name for name in read if name not in drive.kinds]
-    by_default = [name for name in untold if drive.trace.told is None or declared[name].presumed]
+    by_default = [name for name in untold if drive.arrays.told is None or declared[name].presumed]
     first, last = explained.lasts
     unknown = [name for name in untold if name not in by_default]
     return ViolationEvidence(
@@ -65,9 +66,12 @@ def evidence_of(
 
 
 def _is_partial(drive: Drive, name: str) -> bool:
-    for state in drive.trace.states:
-        value = state.get(name)
-        values = value.values() if isinstance(value, Mapping) else (value,)
-        if any(inner is UNKNOWN for inner in values):
-            return True
-    return False
+    """Whether a name is unknown in some state, of somebody of whom it is said."""
+    arrays = drive.arrays
+    unknown = arrays.unknown.get(name)
+    if unknown is None:
+        return False
+    if name in arrays.about and name in arrays.only:
+        lengths = np.diff(arrays.starts)
+        unknown = unknown & np.repeat(arrays.only[name], lengths)
+    return bool(unknown.any())

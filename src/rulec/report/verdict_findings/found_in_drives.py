@@ -37,7 +37,7 @@ class DriveFindings:
         drive, answer = result.drive, result.answer
         if isinstance(answer, NotJudged):
             why = answer.error.diagnostics[0].message
-            own = self._own(vehicle=drive.trace.id, because=why)
+            own = self._own(vehicle=drive.arrays.id, because=why)
             self._found.append(VerdictFinding(outcome="not_judged", **own))
             return
         self._drives[True] += 1
@@ -50,7 +50,7 @@ class DriveFindings:
             self._found.append(
                 VerdictFinding(
                     outcome="open",
-                    vehicle=drive.trace.id,
+                    vehicle=drive.arrays.id,
                     other=tuple(result_.binding.values()),
                     from_s=drive.time_s(0),
                     to_s=drive.time_s(None),
@@ -60,7 +60,7 @@ class DriveFindings:
                 )
             )
         for rule in answer.not_judged:
-            self._not_judged.setdefault(rule.rule, {})[drive.trace.id] = rule
+            self._not_judged.setdefault(rule.rule, {})[drive.arrays.id] = rule
 
     def whole(self) -> FoundInRecording:
         """All findings; a rule that is judged in no drive is one finding."""
@@ -103,7 +103,7 @@ class DriveFindings:
         rules = {rule.name: rule for rule in verdicts.rules.rules}
         return VerdictFinding(
             outcome="violated",
-            vehicle=drive.trace.id,
+            vehicle=drive.arrays.id,
             other=tuple(violation.binding.values()),
             from_s=evidence.from_s,
             to_s=evidence.to_s,

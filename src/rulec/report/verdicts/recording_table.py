@@ -181,7 +181,7 @@ def as_json(
     drive, answer = result.drive, result.answer
     recorded |= {
         "start_s": drive.start_s,
-        "step_s": drive.trace.step_s,
+        "step_s": drive.arrays.step_s,
         "by_default": defaulted_names(verdicts, drive.words),
     }
     if isinstance(answer, NotJudged):

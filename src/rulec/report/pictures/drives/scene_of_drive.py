@@ -60,7 +60,7 @@ def drive_scene(
         recording = mirrored_recording(recording)
     tracks = tracks_of(recording, verdicts.request.thresholds)
     first = round(drive.start_s / recording.step_s)
-    columns = slice(first - tracks.first, first - tracks.first + len(drive.trace.states))
+    columns = slice(first - tracks.first, first - tracks.first + drive.arrays.n_states)
     tracks = tracks.part(np.arange(len(tracks.participants)), columns)
     row = next(n for n, body in enumerate(tracks.participants) if body.id == drive.ego)
     path = np.stack([tracks.x[row], tracks.y[row]], axis=1)
@@ -69,17 +69,17 @@ def drive_scene(
     bodies = _bodies(tracks, row, origin)
     participants = {
         name: _participant(name, {body.id for body in tracks.participants})
-        for name in drive.trace.objects
+        for name in drive.arrays.objects
     }
     ids = {body.id: body for body in bodies}
-    steps = range(first, first + len(drive.trace.states))
+    steps = range(first, first + drive.arrays.n_states)
     return DriveScene(
         title=f"{recording.name}, {trace_title(verdict, verdicts.rules)}",
         notes=tuple(_notes(verdicts, verdict)),
         ego=drive.ego,
         start_s=drive.start_s,
         step_s=recording.step_s,
-        states=len(drive.trace.states),
+        states=drive.arrays.n_states,
         areas=tuple(scene_map.road_areas(lanelets, origin)),
         marks=tuple(scene_map.road_marks(lanelets, origin)),
         lights=tuple(scene_map.scene_lights(lanelets, origin, steps)),

@@ -1,0 +1,203 @@
+"""The signals of a drive in the words of a vocabulary, as a trace in arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.tracks.tracks import Flags
+from rulec.partition.cell_graph import PAPER_SURFACE
+from rulec.trace import Value
+from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_columns import smallest_unsigned
+from rulec.trace.vocabulary_projection import fits, is_about, known_type
+from rulec.vocabulary import Declaration, Enumeration, Vocabulary
+
+_KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float, "u": float}
+
+
+@dataclass(frozen=True, slots=True)
+class Presence:
+    """An object of a trace: a participant's row, first and last column of its presence."""
+
+    name: str
+    row: int
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenSignals:
+    """Signals in columns in which texts are places among the ``texts`` of their names."""
+
+    columns: SignalColumns
+    texts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def kinds(self) -> dict[str, type]:
+        """The Python types of the signals' values."""
+        columns = {**self.columns.world, **self.columns.about}
+        return {
+            name: str if name in self.texts else _KINDS[column.dtype.kind]
+            for name, column in columns.items()
+        }
+
+
+def written(
+    signals: SignalColumns,
+    types: Sequence[Sequence[str]],
+    vocabulary: Vocabulary | None,
+    names: frozenset[str] | None,
+) -> WrittenSignals:
+    """The signals that a vocabulary declares, optionally only those in ``names``.
+
+    ``types`` are those of the objects, a row each, the most specific first.
+    """
+    if vocabulary is None:
+        return _all(signals)
+    own_types = [known_type(row, vocabulary) for row in types]
+    world, about, only = {}, {}, dict(signals.only)
+    texts: dict[str, tuple[str, ...]] = {}
+    for name, declaration in vocabulary.declarations.items():
+        if names is not None and name not in names:
+            continue
+        unknown = signals.unknown.get(name)
+        if name in signals.world and not declaration.parameters:
+            column = _in_paper_words(name, signals.world[name], declaration)
+            numbers = _numbers(name, column, unknown, declaration)
+            if numbers is not None:
+                world[name] = numbers
+        if name in signals.about and len(declaration.parameters) == 1:
+            numbers = _numbers(name, signals.about[name], unknown, declaration)
+            if numbers is not None:
+                about[name] = numbers
+                suits = [is_about(declaration, own, vocabulary) for own in own_types]
+                only[name] = np.array(suits, dtype=bool) & only.get(name, True)
+        if isinstance(declaration, Enumeration) and (name in world or name in about):
+            texts[name] = declaration.values
+    return WrittenSignals(replace(signals, world=world, about=about, only=only), texts)
+
+
+def _all(signals: SignalColumns) -> WrittenSignals:
+    texts: dict[str, tuple[str, ...]] = {}
+
+    def numbers(name: str, column: SignalColumn) -> SignalColumn:
+        if column.dtype.kind != "U":
+            return column
+        found, places = np.unique(column, return_inverse=True)
+        texts[name] = tuple(found.tolist())
+        return places.reshape(column.shape)
+
+    world, about = (
+        {name: numbers(name, column) for name, column in columns.items()}
+        for columns in (signals.world, signals.about)
+    )
+    return WrittenSignals(replace(signals, world=world, about=about), texts)
+
+
+def _numbers(
+    name: str, column: SignalColumn, unknown: Flags | None, declaration: Declaration
+) -> SignalColumn | None:
+    """A column, texts as places among a declaration's; None if it says anything else."""
+    if not isinstance(declaration, Enumeration) or column.dtype.kind != "U":
+        # All values but texts are alike
+        return column if fits(name, column.ravel()[:1].tolist(), declaration) else None
+    n_values = len(declaration.values)
+    places = np.full(column.shape, n_values, dtype=smallest_unsigned(n_values + 1))
+    for place, value in enumerate(declaration.values):
+        places[column == value] = place
+    strange = places == n_values
+    if strange.any():
+        if unknown is None or unknown.all() or (strange & ~unknown).any():
+            return None
+        places[strange] = 0
+    return places
+
+
+def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -> SignalColumn:
+    """Surfaces in the paper's two words, for vocabularies with only those."""
+    if name != "surface" or not isinstance(declaration, Enumeration):
+        return column
+    if not set(PAPER_SURFACE.values()).issuperset(declaration.values):
+        return column
+    return np.array([PAPER_SURFACE.get(surface, "R_cw") for surface in column.tolist()])
+
+
+def with_assumed(
+    signals: WrittenSignals, assumed: Mapping[str, Value], states: int
+) -> WrittenSignals:
+    """The signals with these values in every state, whatever the recording says."""
+    if not assumed:
+        return signals
+    columns = signals.columns
+    texts = {name: own for name, own in signals.texts.items() if name not in assumed}
+    texts |= {name: (value,) for name, value in assumed.items() if isinstance(value, str)}
+    values = {
+        name: np.full(states, 0 if isinstance(value, str) else value)
+        for name, value in assumed.items()
+    }
+    known = replace(
+        columns,
+        world={**columns.world, **values},
+        unknown={name: own for name, own in columns.unknown.items() if name not in assumed},
+        bounds={name: own for name, own in columns.bounds.items() if name not in assumed},
+    )
+    return WrittenSignals(known, texts)
+
+
+def with_likeliest(signals: WrittenSignals, vocabulary: Vocabulary) -> WrittenSignals:
+    """The signals with measured values for what is unknown and has no default."""
+    declared = vocabulary.declarations
+    unknown = {
+        name: own
+        for name, own in signals.columns.unknown.items()
+        if name not in declared or declared[name].default is not None
+    }
+    return replace(signals, columns=replace(signals.columns, unknown=unknown))
+
+
+def with_signals(
+    trace: TraceArrays, signals: WrittenSignals, present: Sequence[Presence], *, defaults: bool
+) -> TraceArrays:
+    """The trace, in whose objects' order ``present`` is, with these signals.
+
+    With ``defaults`` what is unknown is left out, and numbers are as measured.
+    """
+    columns = signals.columns
+    cells = _cells(present, trace.n_states)
+    rows = np.array([presence.row for presence in present], dtype=intp)
+    names = columns.world.keys() | columns.about.keys()
+
+    def own(name: str, column: SignalColumn) -> SignalColumn:
+        return column.ravel().take(cells) if name in columns.about else column
+
+    unknown = {name: own(name, flags) for name, flags in columns.unknown.items() if name in names}
+    bounds = {
+        name: (own(name, low), own(name, high))
+        for name, (low, high) in columns.bounds.items()
+        if name in names
+    }
+    return replace(
+        trace,
+        spans=np.array([(each.first, each.last) for each in present], dtype=intp).reshape(-1, 2),
+        world=columns.world,
+        about={name: own(name, column) for name, column in columns.about.items()},
+        texts=signals.texts,
+        unknown={} if defaults else unknown,
+        absent=unknown if defaults else {},
+        bounds={} if defaults else bounds,
+        only={name: columns.only[name][rows] for name in columns.about if name in columns.only},
+    )
+
+
+def _cells(present: Sequence[Presence], n_states: int) -> NDArray[intp]:
+    """Where the values of each presence stand in rows of so many states, one after the other."""
+    parts = [
+        np.arange(each.row * n_states + each.first, each.row * n_states + each.last + 1)
+        for each in present
+    ]
+    return np.concatenate([np.empty(0, dtype=intp), *parts])

@@ -1,0 +1,122 @@
+"""One trace as arrays: what is said of the world, and of each object while it is there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.trace.trace_columns import Array
+from rulec.trace.trace_model import Ending, Trace
+from rulec.value_display import short_repr
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TraceArrays:
+    """A trace of ``n_states`` states, ``step_s`` seconds apart, as arrays.
+
+    ``objects`` are its objects with their types, ``spans`` (objects x 2) the first and the last
+    state in which each is there. ``world`` has for a name a value for each state; ``about`` has
+    those of the first object in the states of its span, then those of the second one, and so on:
+    object ``i``'s begin at ``starts[i]``. Values are Booleans, numbers, or places in ``texts``.
+
+    Of the shapes of their names' values are ``unknown``: where a value is not known; ``absent``:
+    where nothing is said; ``bounds``: the least and the greatest that a number may be, which stand
+    for its values. ``only`` are the objects that a name is said of, all if it is not there.
+    ``ends`` and ``told`` are as in a ``Trace``.
+    """
+
+    __repr__ = short_repr
+
+    id: str
+    step_s: float
+    n_states: int
+    objects: Mapping[str, str] = field(default_factory=dict)
+    spans: NDArray[np.intp] = field(default_factory=lambda: np.empty((0, 2), dtype=np.intp))
+    world: Mapping[str, Array] = field(default_factory=dict)
+    about: Mapping[str, Array] = field(default_factory=dict)
+    texts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    unknown: Mapping[str, Flags] = field(default_factory=dict)
+    absent: Mapping[str, Flags] = field(default_factory=dict)
+    bounds: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
+    only: Mapping[str, Flags] = field(default_factory=dict)
+    ends: Ending = "complete"
+    told: frozenset[str] | None = None
+
+    @property
+    def starts(self) -> NDArray[np.intp]:
+        """Where the values about each object begin, and where those about the last end."""
+        return starts_of(self.spans)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the states are the same."""
+        return isinstance(other, TraceArrays) and self.trace() == other.trace()
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def trace(self) -> Trace:
+        """The trace with its states."""
+        states: list[dict[str, Any]] = [{} for _ in range(self.n_states)]
+        for name, column in self.world.items():
+            for state, value in zip(states, self._values(name, column), strict=True):
+                if value is not _NOTHING:
+                    state[name] = value
+        starts, spans = self.starts.tolist(), self.spans.tolist()
+        for name, column in self.about.items():
+            by_state: list[dict[str, Any]] = [{} for _ in range(self.n_states)]
+            values, only = self._values(name, column), self.only.get(name)
+            for number, (item, (first, last)) in enumerate(zip(self.objects, spans, strict=True)):
+                if only is None or only[number]:
+                    own = values[starts[number] : starts[number + 1]]
+                    for of_objects, value in zip(by_state[first : last + 1], own, strict=True):
+                        if value is not _NOTHING:
+                            of_objects[item] = value
+            for state, of_objects in zip(states, by_state, strict=True):
+                if of_objects:
+                    state[name] = of_objects
+        whole = [0, self.n_states - 1]
+        present = {
+            item: (span[0], span[1])
+            for item, span in zip(self.objects, spans, strict=True)
+            if span != whole
+        }
+        return Trace(
+            self.id,
+            self.step_s,
+            self.objects,
+            tuple(states),
+            present,
+            ends=self.ends,
+            told=self.told,
+        )
+
+    def _values(self, name: str, column: Array) -> list[Any]:
+        """The values of a name as states have them."""
+        values: list[Any] = column.tolist()
+        if name in self.texts:
+            texts = self.texts[name]
+            values = [texts[code] for code in values]
+        elif name in self.bounds:
+            ends = zip(*[bound.tolist() for bound in self.bounds[name]], strict=True)
+            values = [low if low == high else Interval(low, high) for low, high in ends]
+        for flags, instead in ((self.unknown, UNKNOWN), (self.absent, _NOTHING)):
+            if name in flags:
+                for place in np.flatnonzero(flags[name]).tolist():
+                    values[place] = instead
+        return values
+
+
+def starts_of(spans: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Where the values about each object begin, and where those about the last end."""
+    lengths = spans[:, 1] - spans[:, 0] + 1
+    return np.concatenate([np.zeros(1, dtype=np.intp), np.cumsum(lengths)])
+
+
+_NOTHING = object()
+"""Stands for what is not said."""
