@@ -46,7 +46,6 @@ def read_as_recording(folder: Path, sample: Sample, form: str) -> None:
     roads = folder / sample.roads if sample.roads else None
     for recording in read_recordings(RecordingSource(folder / sample.entry, roads, form)):
         assert recording.step_s > 0
-        assert recording.participants or recording.problems, "nobody is in it"
         _assert_sound(recording.lanelets)
 
 

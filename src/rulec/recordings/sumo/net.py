@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rulec.recordings.encodings.safe_xml import scan
-from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat
+from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat, short
 from rulec.recordings.recording import LONGEST_M, Light, Points, Side
 
 NET = XmlFormat("a SUMO net", "net", "SUMO's program `netconvert` makes such files")
@@ -201,7 +201,7 @@ def read_net(path: Path) -> SumoNet:
                     raise element.wrong("a `lane` is in no `edge`")
                 lane = _lane(element, edge)
                 if lane.id in net.lanes:
-                    raise element.wrong(f"there are two lanes `{lane.id}`")
+                    raise element.wrong(f"there are two lanes `{short(lane.id)}`")
                 net.lanes[lane.id] = lane
             case "param" if edge is not None:
                 edge.parameters[element.get("key")] = element.get("value")
