@@ -27,8 +27,9 @@ def test_every_format_has_its_line(listed):
     assert recordings.splitlines()[0] == "recordings"
     assert [line.split()[0] for line in recordings.splitlines()[1:]] == [x.name for x in FORMATS]
     assert [line.split()[0] for line in maps.splitlines()[1:]] == [x.name for x in MAP_FORMATS]
-    assert "with --map" in next(line for line in out.splitlines() if line.startswith("  sumo "))
-    assert "with --map" not in recordings.splitlines()[1]
+    assert "beside it, or --map" in next(x for x in out.splitlines() if x.startswith("  sumo "))
+    assert "its own, or --map" in next(x for x in out.splitlines() if x.startswith("  osi "))
+    assert "--map" not in recordings.splitlines()[1]
 
 
 def test_some_formats(listed):
@@ -73,7 +74,10 @@ def test_the_end_of_the_file_says_the_format(listed, tmp_path):
     page = tmp_path / "formats.md"
     assert listed("sumo", "--words", "-o", str(page)) == (0, f"wrote {page}\n", "")
     text = page.read_text()
-    assert "| SUMO's floating-car data, with their net | `sumo` | \\*.xml | with `--map` |" in text
+    assert (
+        "| SUMO's floating-car data, with their net | `sumo` | \\*.xml | beside it, or `--map` |"
+        in text
+    )
     assert "| `wet` |  |" in text
     assert listed("-o", str(tmp_path / "formats.json"))[0] == 0
     assert json.loads((tmp_path / "formats.json").read_text())["version"] == 1

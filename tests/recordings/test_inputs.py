@@ -5,8 +5,9 @@ import os
 
 import pytest
 
-from rulec.recordings.recording_inputs import input_files
+from rulec.recordings.recording_inputs import SearchedFolder, input_files
 from support.builders.recordings import ROAD_XML
+from support.mutations.format_samples import RECORDINGS
 
 
 @pytest.fixture
@@ -79,3 +80,23 @@ def test_links_are_not_followed_and_pipes_not_opened(folder):
     (folder / "drives" / "loop").symlink_to(folder / "drives", target_is_directory=True)
     os.mkfifo(folder / "drives" / "pipe.xml")
     assert input_files(["drives"]).paths == ("drives/b.xml", "drives/deep/a.xml.gz")
+
+
+@pytest.mark.parametrize("name", RECORDINGS)
+def test_what_lies_beside_a_recording_is_passed_over(tmp_path, name):
+    """Maps, types, meta files and other parts of it are counted, and not judged one by one."""
+    for number, sample in enumerate(RECORDINGS[name]()):
+        folder = tmp_path / str(number)
+        files = sample.packed()
+        for key, file in files.items():
+            (folder / key).parent.mkdir(parents=True, exist_ok=True)
+            (folder / key).write_bytes(file.whole())
+        found = input_files([str(folder)])
+        assert found.problems == ()
+        if found.searched:
+            # A map or problems in a file of its own name the others, and may be asked for
+            (path,) = found.paths
+            assert path == str(folder / sample.entry.replace("-SC.pb", ".pb"))
+            assert found.searched == (SearchedFolder(str(folder), 1, len(files) - 1),)
+        else:
+            assert found.paths == (str(folder),)

@@ -146,6 +146,20 @@ def _is_part(glance: Glance) -> bool:
     return any(path.parent.glob(f"{escape(stem)}_*.pb*"))
 
 
+def _is_about_tracks(glance: Glance) -> bool:
+    """True for what is said of a recording of levelX's, and of its tracks, in files beside it."""
+    number, _, what = glance.path.name.partition("_")
+    if not what.lower().startswith(("tracksmeta.csv", "recordingmeta.csv")):
+        return False
+    return any(glance.path.parent.glob(f"{escape(number)}_tracks.csv*"))
+
+
+def _is_beside_vehicles(glance: Glance) -> bool:
+    """True for people on foot whose vehicles are in another file of INTERACTION's."""
+    name = glance.path.name.replace("pedestrian_tracks_", "vehicle_tracks_")
+    return name != glance.path.name and glance.path.with_name(name).is_file()
+
+
 FORMATS = (
     RecordingFormat(
         name="commonroad",
@@ -168,7 +182,7 @@ FORMATS = (
         files="*.xml",
         recognises=lambda glance: glance.root == "fcd-export",
         read=_sumo,
-        takes_map=True,
+        roads="beside it, or --map",
     ),
     RecordingFormat(
         name="argoverse-motion",
@@ -176,7 +190,7 @@ FORMATS = (
         files="scenario_*.parquet, or its folder",
         recognises=lambda glance: is_named(glance.path, SCENARIO),
         read=_argoverse_motion,
-        takes_map=True,
+        roads="beside it, or --map",
     ),
     RecordingFormat(
         name="argoverse-sensor",
@@ -184,7 +198,7 @@ FORMATS = (
         files="annotations*.feather, or its folder",
         recognises=lambda glance: is_named(glance.path, ANNOTATIONS),
         read=_argoverse_sensor,
-        takes_map=True,
+        roads="beside it, or --map",
     ),
     RecordingFormat(
         name="waymo",
@@ -200,6 +214,7 @@ FORMATS = (
         files="*_tracks.csv, with *_tracksMeta.csv and *_recordingMeta.csv",
         recognises=lambda glance: heads.is_highd_head(heads.head_of(glance)),
         read=_highd,
+        is_companion=_is_about_tracks,
     ),
     RecordingFormat(
         name="levelx",
@@ -207,7 +222,8 @@ FORMATS = (
         files="*_tracks.csv, with *_tracksMeta.csv and *_recordingMeta.csv",
         recognises=lambda glance: heads.is_levelx_head(heads.head_of(glance)),
         read=_levelx,
-        takes_map=True,
+        roads="with --map",
+        is_companion=_is_about_tracks,
     ),
     RecordingFormat(
         name="interaction",
@@ -215,7 +231,8 @@ FORMATS = (
         files="vehicle_tracks_*.csv, pedestrian_tracks_*.csv",
         recognises=lambda glance: heads.is_interaction_head(heads.head_of(glance)),
         read=_interaction,
-        takes_map=True,
+        roads="beside it, or --map",
+        is_companion=_is_beside_vehicles,
     ),
     RecordingFormat(
         name="ngsim",
@@ -223,7 +240,7 @@ FORMATS = (
         files="trajectories-*.txt, *.csv",
         recognises=lambda glance: heads.is_ngsim_head(heads.head_of(glance)),
         read=_ngsim,
-        takes_map=True,
+        roads="beside it, or --map",
     ),
     RecordingFormat(
         name="omega-prime",
@@ -231,7 +248,7 @@ FORMATS = (
         files="*.csv, *.parquet",
         recognises=lambda glance: heads.is_omega_prime_head(heads.head_of(glance)),
         read=_omega_prime,
-        takes_map=True,
+        roads="beside it, or --map",
     ),
     RecordingFormat(
         name="tracks",
@@ -239,7 +256,7 @@ FORMATS = (
         files="*.csv, *.parquet",
         recognises=lambda glance: heads.is_track_head(heads.head_of(glance)),
         read=_tracks,
-        takes_map=True,
+        roads="beside it, or --map",
     ),
     RecordingFormat(
         name="osi",
@@ -247,7 +264,7 @@ FORMATS = (
         files="*.osi, *.mcap",
         recognises=_is_osi,
         read=_osi,
-        takes_map=True,
+        roads="its own, or --map",
     ),
     RecordingFormat(
         name="scenarionet",

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from rulec.files import opened
 from rulec.recordings.encodings.safe_xml import is_xml, root_of
@@ -64,6 +64,10 @@ class Glance:
         return root_of(self.path, RECORDING) if is_xml(self.path) else ""
 
 
+Roads = Literal["its own", "its own, or --map", "beside it, or --map", "with --map"]
+"""Where a format's roads are: in the file, in another one of their own, or in one that is named."""
+
+
 def _reads_alone(_: Glance) -> bool:
     return False
 
@@ -73,7 +77,7 @@ class RecordingFormat:
     """A format of recorded traffic.
 
     ``name`` is what ``--input-format`` calls it, ``title`` what people do, ``files`` says how its
-    files are called. ``takes_map``: it has no roads of its own. ``read`` raises RulecError.
+    files are called, ``roads`` where these are. ``read`` raises RulecError.
     ``names`` finds the names of a file's recordings, where that is much faster than reading them.
     ``is_companion`` is true for a file that it recognises and reads along with another one.
     """
@@ -83,6 +87,11 @@ class RecordingFormat:
     files: str
     recognises: Callable[[Glance], bool]
     read: Callable[[RecordingSource], Iterator[Recording]]
-    takes_map: bool = False
+    roads: Roads = "its own"
     names: Callable[[Path], Iterator[str]] | None = None
     is_companion: Callable[[Glance], bool] = _reads_alone
+
+    @property
+    def takes_map(self) -> bool:
+        """May the roads be those of another file?"""
+        return self.roads != "its own"

@@ -22,8 +22,9 @@ TELLS_NOT = "."
 class ListedFormat:
     """A format of recordings or, if ``is_map``, of maps.
 
-    ``files`` says how its files are called. ``takes_map``: it has no roads of its own. ``words``
-    are those that some file of it can tell, in the order of the vocabulary; None if not known.
+    ``files`` says how its files are called, ``roads`` where those of recordings are. ``words`` are
+    those that some file of it can tell, in the order of the vocabulary; None if not known.
+    ``takes_map``: its roads may be those of a map that is named.
     """
 
     __repr__ = short_repr
@@ -33,6 +34,7 @@ class ListedFormat:
     files: str
     is_map: bool = False
     takes_map: bool = False
+    roads: str = ""
     words: tuple[str, ...] | None = None
 
 
@@ -49,6 +51,7 @@ def listed_formats(order: Sequence[str]) -> tuple[ListedFormat, ...]:
             form.title,
             form.files,
             takes_map=form.takes_map,
+            roads=form.roads,
             words=_words_of(form.name, order),
         )
         for form in FORMATS
@@ -68,10 +71,7 @@ def as_text(listed: Sequence[ListedFormat], order: Sequence[str], *, words: bool
     """Write a line for each format, and one for each word if these are wanted."""
     parts = []
     for title, forms in _kinds(listed):
-        rows = [
-            (f"  {form.name}", form.files, "with --map" * form.takes_map, form.title)
-            for form in forms
-        ]
+        rows = [(f"  {form.name}", form.files, form.roads, form.title) for form in forms]
         parts.append("\n".join([title, *table_lines(rows)]))
     if words:
         forms, table = _word_table(listed, order)
@@ -91,7 +91,7 @@ def as_markdown(listed: Sequence[ListedFormat], order: Sequence[str], *, words: 
         head = (title, "name", "files", "map") if with_map else (title, "name", "files")
         rows = [
             (markdown.escaped(form.title), f"`{form.name}`", markdown.escaped(form.files))
-            + ((("with `--map`" if form.takes_map else "its own"),) if with_map else ())
+            + ((form.roads.replace("--map", "`--map`"),) if with_map else ())
             for form in forms
         ]
         parts.append(markdown.table(head, rows))
