@@ -73,15 +73,16 @@ class OutcomeMachine:
         size = len(self.successors)
         if size > MOST_COMPARED:
             return np.eye(size, dtype=bool)
-        successors, outputs = np.array(self.successors), np.array(self.outputs)
+        successors, outputs = np.array(self.successors), np.array(self.outputs, dtype=np.int8)
         order = np.ones((size, size), dtype=bool)
         for symbol in range(self.n_classes):
             order &= outputs[:, None, symbol] <= outputs[None, :, symbol]
+        targets = list({column.tobytes(): column for column in successors.T}.values())
         while True:
             before = order.sum()
-            for symbol in range(self.n_classes):
-                target = successors[:, symbol]
-                order &= order[target[:, None], target[None, :]]
+            for target in targets:
+                # Two takes are several times as fast as one index of two arrays.
+                order &= order.take(target, axis=0).take(target, axis=1)
             if order.sum() == before:
                 return order
 

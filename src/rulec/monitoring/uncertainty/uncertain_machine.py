@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
-from itertools import product
+from itertools import product, zip_longest
 from math import prod
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.outcome_machine import (
     KEPT,
     PENDING,
@@ -32,6 +32,7 @@ MOST_OUTCOMES = 1 << 4
 """For so many combinations of values it is said how an open verdict comes out."""
 
 _MOST_REMEMBERED = 1 << 14
+_BITS = 64
 _NAMES: Mapping[tuple[int, int], OutcomeName] = {
     (KEPT, KEPT): "kept",
     (VIOLATED, VIOLATED): "violated",
@@ -243,21 +244,10 @@ class UncertainMachine:
         return tuple(lacking)
 
     def _can_fire(self, untold: frozenset[str]) -> bool:
-        sizes = [read.size for read in self._reads]
-        dark = [
-            n for n, read in enumerate(self._reads) if not untold.isdisjoint(names_of_read(read))
-        ]
-        table = np.array(self.machine.letters).reshape(sizes[::-1])
-        last = len(sizes) - 1
-        axes = [last - n for n in range(len(sizes)) if n not in dark] + [last - n for n in dark]
-        rows = np.transpose(table, axes).reshape(-1, prod(sizes[n] for n in dark))
-        masks = {
-            sum(1 << symbol for symbol in set(row) - {IMPOSSIBLE})
-            for row in np.unique(rows, axis=0).tolist()
-        }
+        masks = self._classes_in_the_dark(untold)
         reached = {self.monitor.start}
         for here in (waiting := [self.monitor.start]):
-            for classes in masks - {0}:
+            for classes in masks:
                 step = self.monitor.step(here, classes)
                 if step.best == VIOLATED:
                     return True
@@ -265,6 +255,24 @@ class UncertainMachine:
                     reached.add(step.states)
                     waiting.append(step.states)
         return False
+
+    def _classes_in_the_dark(self, untold: frozenset[str]) -> frozenset[int]:
+        """The sets of classes, as bits, that letters may have, by the reads that are told."""
+        # The last read, whose digit counts most, is the first axis.
+        reads = self._reads[::-1]
+        dark = tuple(
+            [n for n, read in enumerate(reads) if not untold.isdisjoint(names_of_read(read))]
+        )
+        table = np.array(self.machine.letters).reshape([read.size for read in reads])
+        masks: list[int] = []
+        for first in range(0, self.machine.n_classes, _BITS):
+            bits = np.zeros(_BITS + 1, dtype=np.uint64)
+            bits[:_BITS] = np.uint64(1) << np.arange(_BITS, dtype=np.uint64)
+            inside = (table >= first) & (table < first + _BITS)
+            part = bits[np.where(inside, table - first, _BITS)]
+            united = np.bitwise_or.reduce(part, axis=dark).ravel().tolist()
+            masks = [mask | more << first for mask, more in zip_longest(masks, united, fillvalue=0)]
+        return frozenset(masks) - {0}
 
 
 def _is_open(letters: Letters, read: int) -> bool:
