@@ -12,6 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.compiled_cache import CompiledQuestion, remembered
 from rulec.automata.compiler import lower
 from rulec.automata.step_compilation import StepCompiler, build_automata
 from rulec.book_tests.example_runs import example_warnings
@@ -28,6 +29,7 @@ def compile_source(
     *,
     any_step: bool = False,
     on_warning: Callable[[Sequence[Diagnostic]], object],
+    question: CompiledQuestion | None = None,
 ) -> CompiledRulebook:
     """Compile a rulebook, given by name or by its source's path.
 
@@ -40,11 +42,16 @@ def compile_source(
         any_step: rules without examples need not fit the step that these would have.
         on_warning: is told what is odd, but not wrong: an example, for one, that comes out
             otherwise than it says.
+        question: the key by which the cache is to keep the rulebook, compiled for any step.
     """
     file = find(reference, search_path)
     trees = parse_all(file)
     book = resolve(trees, at)
     steps = StepCompiler(book.rulebook)
-    on_warning([*book.warnings, *example_warnings(book.rulebook, steps.at_own_steps)])
+    warnings = [*book.warnings, *example_warnings(book.rulebook, steps.at_own_steps)]
+    on_warning(warnings)
     formulas = lower(book.rulebook, step_s, any_step=any_step)
-    return build_automata(formulas, steps)
+    compiled = build_automata(formulas, steps)
+    if question is None or trees.dependencies is None:
+        return compiled
+    return remembered(question, compiled, steps, warnings, trees.dependencies)

@@ -26,17 +26,33 @@ def machines(
     search_path: Sequence[str | Path] = (),
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     at: str = "",
+    *,
+    recalls: bool = False,
 ) -> CompiledRulebook:
     """Compile rules into automata that adapt to any trace's step.
 
     ``warn`` is told what is odd, but not wrong, in a source: an example that comes out otherwise
     than it says, for one. ``at`` is the day (ISO) whose law it is; if empty, that of the rulebook's
-    `law` line or else today.
+    `law` line or else today. ``recalls``: a source's machines may come from the cache where nothing
+    has changed, and go there.
     """
     # On every trace that is judged, so a rulebook that is compiled already comes first.
     if isinstance(rules, CompiledRulebook):
         return rules
-    return compile_rulebook(rules, search_path, warn, at=at, any_step=True)
+    if not recalls or not isinstance(rules, str | Path) or Path(rules).suffix == ".json":
+        return compile_rulebook(rules, search_path, warn, at=at, any_step=True)
+    from rulec.automata.compiled_cache import asked, recalled
+
+    question = asked(rules, search_path, at)
+    known = None if question is None else recalled(question)
+    if known is None:
+        from rulec.pipeline import compile_source
+
+        return compile_source(
+            rules, search_path, at, any_step=True, on_warning=warn, question=question
+        )
+    warn(known[1])
+    return known[0]
 
 
 def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:

@@ -35,7 +35,7 @@ def read_machines(rulebook: str, at: str = "") -> CompiledRulebook:
     # The tables of automata, 20 ms: not for --help.
     from rulec.api.rulebook_compilation import machines
 
-    return machines(rulebook, search_path(), print_diagnostics, at)
+    return machines(rulebook, search_path(), print_diagnostics, at, recalls=True)
 
 
 @contextmanager

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Container, Set
-from fractions import Fraction
 from itertools import chain
 from math import prod
 
@@ -29,8 +28,11 @@ from rulec.rulebook.rulebook_model import Rule, Rulebook, SourceFile, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 
-def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
-    """Compiled rulebook of a sound file; ValueError for any other."""
+def rulebook_of(read: schema.BundleFile, *, own: bool = False) -> CompiledRulebook:
+    """Compiled rulebook of a sound file; ValueError for any other.
+
+    ``own``: this rulec has written it so, and its rules need no check.
+    """
     kind_of = {entry: kind for kind, entry in schema.ENTRY_OF.items()}
     vocabulary = Vocabulary(
         read.vocabulary.name,
@@ -49,21 +51,21 @@ def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
         rulec=read.rulec,
         spot=read.spot,
         vocabulary=vocabulary,
-        rules=tuple(_rule(rule, vocabulary, read.levels) for rule in read.rules),
+        rules=tuple(_rule(rule, vocabulary, read.levels, own=own) for rule in read.rules),
         sources=tuple(SourceFile(source.name, source.sha256) for source in read.sources),
         priorities=_priorities(read),
         axioms=tuple(_axiom(fact, vocabulary) for fact in read.facts),
-        prefixes=_prefixes(read),
+        prefixes=_prefixes(read, own=own),
     )
 
 
-def _prefixes(read: schema.BundleFile) -> StoredPrefixes | None:
+def _prefixes(read: schema.BundleFile, *, own: bool) -> StoredPrefixes | None:
     """The machines for cut traces, checked; None in a file that has none."""
     if read.version != schema.WITH_CUT:
         none = all(rule.cut is None for rule in read.rules)
         _require(none, "it has machines for traces that are cut, which its version has not")
         return None
-    for rule in read.rules:
+    for rule in () if own else read.rules:
         if rule.cut is not None:
             _check_table(rule.cut, len(rule.machine.letters), rule.name)
             known = len(rule.cut.starts) > 0 and set(rule.cut.starts) <= set(
@@ -109,25 +111,31 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
 
 
 def _axiom(fact: schema.AxiomEntry, vocabulary: Vocabulary) -> CompiledAxiom:
-    variables, formula = _formula(fact, vocabulary, "a fact")
-    timeless = all(part.operator in BOOLEAN for part in operations_of(formula))
+    axiom = CompiledAxiom(
+        tuple([Variable(name, type_name) for name, type_name in fact.variables]),
+        from_data(fact.tree),
+        SourceLocation(fact.file, fact.line) if fact.file else None,
+    )
+    _check_parts(axiom, fact, vocabulary, "a fact")
+    timeless = all(part.operator in BOOLEAN for part in operations_of(axiom.formula))
     _require(timeless, "a fact speaks of more than one state")
-    place = SourceLocation(fact.file, fact.line) if fact.file else None
-    return CompiledAxiom(variables, formula, place)
+    return axiom
 
 
-def _formula(
-    read: schema.AxiomEntry | schema.BundleRule, vocabulary: Vocabulary, of: str
-) -> tuple[tuple[Variable, ...], ltl.Formula]:
-    variables = tuple(Variable(name, type_name) for name, type_name in read.variables)
-    names = {variable.name for variable in variables}
-    _require(len(names) == len(variables), f"{of} names a variable twice")
-    for variable in variables:
+def _check_parts(
+    compiled: CompiledAxiom | CompiledRule,
+    read: schema.AxiomEntry | schema.BundleRule,
+    vocabulary: Vocabulary,
+    of: str,
+) -> None:
+    """Check the variables and the formula ``of`` something."""
+    names = {variable.name for variable in compiled.variables}
+    _require(len(names) == len(compiled.variables), f"{of} names a variable twice")
+    for variable in compiled.variables:
         _require(variable.type in vocabulary.types, f"{of} is about an unknown type")
-    formula = from_data(read.tree)
-    _check_formula(formula, vocabulary, names, of, counted=False)
-    _require(formula_text(formula) == read.formula, f"{of} has two different formulas")
-    return variables, formula
+    _check_formula(compiled.formula, vocabulary, names, of, counted=False)
+    same = formula_text(compiled.formula) == read.formula
+    _require(same, f"{of} has two different formulas")
 
 
 def _check_formula(
@@ -200,51 +208,49 @@ def _check_term(term: ltl.Term, vocabulary: Vocabulary, variables: Set[str], of:
             _check_formula(body, vocabulary, variables | {variable}, of, counted=True)
 
 
-def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str]) -> CompiledRule:
-    variables, formula = _formula(rule, vocabulary, f"rule `{rule.name}`")
-    machine = _machine(rule.machine, rule.name)
-    same = machine.reads == reads_of(formula, vocabulary)
-    _require(same, f"the table of rule `{rule.name}` does not read what its formula does")
-    level = rule.level
-    _require(not level or level in levels, f"rule `{rule.name}` has an unknown level")
-    weight = number_from_data(rule.weight)
-    _require(weight > 0, f"rule `{rule.name}` has no weight")
-    return CompiledRule(
+def _rule(
+    rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str], *, own: bool
+) -> CompiledRule:
+    reads = tuple([_read(item) for item in rule.machine.reads])
+    formula = from_data(rule.tree)
+    compiled = CompiledRule(
         **alike(Rule, rule),
         hoa=rule.hoa,
-        variables=variables,
+        variables=tuple([Variable(name, type_name) for name, type_name in rule.variables]),
         formula=formula,
-        machine=machine,
-        step_s=_step(rule, formula),
-        weight=weight,
-        trigger=_trigger(rule, formula, vocabulary),
+        machine=monitors.MealyMonitor(reads, *astuple(rule.machine)[1:]),
+        step_s=None if rule.step_s is None else number_from_data(rule.step_s),
+        weight=number_from_data(rule.weight),
+        trigger=trigger_of(formula) if rule.trigger is None else from_data(rule.trigger),
     )
+    if not own:
+        _check_rule(compiled, rule, vocabulary, levels)
+    return compiled
 
 
-def _trigger(
-    rule: schema.BundleRule, formula: ltl.Formula, vocabulary: Vocabulary
-) -> ltl.Formula | None:
-    if rule.trigger is None:
-        return trigger_of(formula)
-    trigger = from_data(rule.trigger)
-    names = {name for name, _ in rule.variables}
-    _check_formula(trigger, vocabulary, names, f"the trigger of rule `{rule.name}`", counted=False)
-    return trigger
+def _check_rule(
+    rule: CompiledRule, read: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str]
+) -> None:
+    name, formula = rule.name, rule.formula
+    _check_parts(rule, read, vocabulary, f"rule `{name}`")
+    _check_machine(read.machine, name)
+    same = rule.machine.reads == reads_of(formula, vocabulary)
+    _require(same, f"the table of rule `{name}` does not read what its formula does")
+    known = not rule.level or rule.level in levels
+    _require(known, f"rule `{name}` has an unknown level")
+    _require(rule.weight > 0, f"rule `{name}` has no weight")
+    fits = has_seconds(formula) is (rule.step_s is not None)
+    _require(fits, f"rule `{name}` is for a wrong step")
+    if rule.step_s is not None:
+        in_steps(formula, rule.step_s)
+    if rule.trigger is not None:
+        variables = {variable.name for variable in rule.variables}
+        of = f"the trigger of rule `{name}`"
+        _check_formula(rule.trigger, vocabulary, variables, of, counted=False)
 
 
-def _step(rule: schema.BundleRule, formula: ltl.Formula) -> Fraction | None:
-    needed = has_seconds(formula)
-    _require(needed is (rule.step_s is not None), f"rule `{rule.name}` is for a wrong step")
-    if rule.step_s is None:
-        return None
-    step = number_from_data(rule.step_s)
-    in_steps(formula, step)
-    return step
-
-
-def _machine(read: schema.MachineEntry, rule: str) -> monitors.MealyMonitor:
-    reads = tuple(_read(item) for item in read.reads)
-    _check_table(read, prod(item.size for item in reads), rule)
+def _check_machine(read: schema.MachineEntry, rule: str) -> None:
+    _check_table(read, prod(_read(item).size for item in read.reads), rule)
     traps = [
         monitors.sink_of(read.successors, read.outputs, verdict=verdict)
         for verdict in (False, True)
@@ -253,7 +259,6 @@ def _machine(read: schema.MachineEntry, rule: str) -> monitors.MealyMonitor:
         traps == [read.rejecting_sink, read.accepting_sink],
         f"rule `{rule}` names a wrong dead or safe state",
     )
-    return monitors.MealyMonitor(reads, *astuple(read)[1:])
 
 
 def _check_table(

@@ -34,14 +34,20 @@ from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
 
 
 def to_json(rulebook: CompiledRulebook) -> str:
-    """Text of a compiled rulebook's file, one row of numbers per line.
+    """Text of a compiled rulebook's file, one row of numbers per line."""
+    text = json.dumps(msgspec.to_builtins(entry_of(rulebook)), indent=1, ensure_ascii=False)
+    return _STRING_OR_ROW.sub(_on_one_line, text) + "\n"
+
+
+def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
+    """A compiled rulebook as its file has it.
 
     Machines for cut traces are in it if the rulebook has them stored.
     """
     has_cut = isinstance(rulebook.prefixes, StoredPrefixes)
     cut = rulebook.prefixes.entries if isinstance(rulebook.prefixes, StoredPrefixes) else {}
     vocabulary = rulebook.vocabulary
-    file = schema.BundleFile(
+    return schema.BundleFile(
         **alike(Rulebook, rulebook),
         version=schema.WITH_CUT if has_cut else schema.VERSION,
         rulec=rulebook.rulec,
@@ -59,8 +65,6 @@ def to_json(rulebook: CompiledRulebook) -> str:
         facts=[_axiom(axiom) for axiom in rulebook.axioms],
         rules=[_rule(rule, cut.get(rule.name)) for rule in rulebook.rules],
     )
-    text = json.dumps(msgspec.to_builtins(file), indent=1, ensure_ascii=False)
-    return _STRING_OR_ROW.sub(_on_one_line, text) + "\n"
 
 
 _STRING_OR_ROW = re.compile(r'"(?:[^"\\]|\\.)*"|\[\s[^\[\]{}"]*\]')

@@ -53,7 +53,7 @@ class CheckQuestion:
 
     def stamp(self) -> list[str]:
         """The content that has to be as it was."""
-        return [sha256(self.data).hexdigest(), self.day, __version__, _program()]
+        return [sha256(self.data).hexdigest(), self.day, __version__, program_digest()]
 
 
 def cache_folder() -> Path | None:
@@ -81,9 +81,9 @@ def recall(question: CheckQuestion) -> tuple[Diagnostic, ...] | None:
             return None
         dependencies = [Dependency(**dependency) for dependency in data["dependencies"]]
         folders = [Path(folder) for folder in question.search_path]
-        if not all(_as_it_was(dependency, folders) for dependency in dependencies):
+        if not all(is_as_it_was(dependency, folders) for dependency in dependencies):
             return None
-        diagnostics = tuple(map(_diagnostic, data["findings"]))
+        diagnostics = tuple(map(diagnostic_of, data["findings"]))
     except (OSError, ValueError, TypeError, LookupError):
         return None
     with suppress(OSError):
@@ -107,7 +107,7 @@ def remember(
         folder.mkdir(parents=True, exist_ok=True)
         with written_whole(folder / f"{question.place()}.json") as stream:
             stream.write(json.dumps(data).encode())
-        _tidy(folder)
+        tidy(folder, "*.json", MOST_FILES)
 
 
 def _size(findings: Sequence[Diagnostic]) -> int:
@@ -116,7 +116,8 @@ def _size(findings: Sequence[Diagnostic]) -> int:
     return sum(_WORDS + len(place.excerpt) for place in places)
 
 
-def _as_it_was(dependency: Dependency, search_path: Sequence[Path]) -> bool:
+def is_as_it_was(dependency: Dependency, search_path: Sequence[Path]) -> bool:
+    """Tell whether the same name still leads to the same content."""
     user = Path(dependency.user) if dependency.user else None
     locate = locate_base if dependency.kind == "base" else locate_vocabulary
     path = locate(dependency.name, user, search_path)
@@ -128,22 +129,25 @@ def _as_it_was(dependency: Dependency, search_path: Sequence[Path]) -> bool:
         return False
 
 
-def _diagnostic(data: dict[str, Any]) -> Diagnostic:
+def diagnostic_of(data: dict[str, Any]) -> Diagnostic:
+    """The diagnostic that ``asdict`` made this of. Raises TypeError or LookupError."""
     place = None if data["place"] is None else SourceLocation(**data["place"])
     labels = [Label(SourceLocation(**label["place"]), label["message"]) for label in data["labels"]]
     parts = {"place": place, "labels": tuple(labels), "notes": tuple(data["notes"])}
     return Diagnostic(**{**data, **parts})
 
 
-def _program() -> str:
+def program_digest() -> str:
+    """A digest of rulec's own files, by their times and sizes."""
     seen = sha256()
     for path, status in package_files():
         seen.update(f"{path}\0{status.st_mtime_ns}\0{status.st_size}\n".encode())
     return seen.hexdigest()
 
 
-def _tidy(folder: Path) -> None:
-    kept = list(folder.glob("*.json"))
-    if len(kept) > MOST_FILES:
+def tidy(folder: Path, pattern: str, most: int) -> None:
+    """Remove the half of some files that was unused longest, if there are too many."""
+    kept = list(folder.glob(pattern))
+    if len(kept) > most:
         for path in sorted(kept, key=lambda file: file.stat().st_mtime)[: len(kept) // 2]:
             path.unlink(missing_ok=True)

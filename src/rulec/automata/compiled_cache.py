@@ -1,0 +1,281 @@
+"""Cache of compiled rulebooks, valid while all that they were compiled from is unchanged.
+
+A file for each rulebook and step, in the folder of the cache of checks. Anything odd about one, and
+the rulebook is compiled anew. Machines for traces that are cut join the file once they are made.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from datetime import date
+from fractions import Fraction
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.bundle.mapped_rulebook import MappedRulebook, placed, rulebook_from
+from rulec.automata.bundle.mapped_tables import TableWriter, mapped
+from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.files import written_whole
+from rulec.rulebook.batch.check_cache import cache_folder, is_as_it_was, program_digest, tidy
+from rulec.rulebook.files.search_path import Dependency, find_rulebook, read_bytes
+from rulec.version import __version__
+
+if TYPE_CHECKING:
+    from rulec.automata.outcome_machine import OutcomeMachine
+    from rulec.automata.step_compilation import StepCompiler
+    from rulec.rulebook.rulebook_model import SourceFile
+
+MOST_FILES = 100
+"""So many are kept; those longest unused go first."""
+
+_ENDING = ".tables"
+_OWN = "own"
+"""The steps of the rules' own examples."""
+
+_NOT_A_MULTIPLE = "R0407"
+"""Written out, since its messages would load the parser."""
+
+
+@dataclass(frozen=True, slots=True)
+class CompiledQuestion:
+    """Key of a compilation: where its source is, and what is in it.
+
+    ``file`` is how the names of the cache's files begin, ``stamp`` a digest of the source and of
+    rulec itself.
+    """
+
+    source: str
+    search_path: tuple[str, ...]
+    at: str
+    file: str
+    stamp: str
+
+
+def asked(
+    reference: str | Path, search_path: Sequence[str | Path], at: str
+) -> CompiledQuestion | None:
+    """The key of a rulebook; None if there is no cache.
+
+    Raises RulecError as reading the rulebook does: R0703 for an unknown name, R0701.
+    """
+    folder = cache_folder()
+    if folder is None:
+        return None
+    folders = tuple([str(path) for path in search_path])
+    path = str(find_rulebook(reference, [Path(path) for path in folders]))
+    seen = sha256(f"{__version__}\0{program_digest()}\0".encode())
+    seen.update(read_bytes(Path(path)))
+    # Messages have the path as it was given, so the same file by another one is another key.
+    parts = (path, at, *folders)
+    here = "" if all(map(os.path.isabs, (path, *folders))) else str(Path.cwd())
+    name = sha256("\0".join((here, *parts)).encode("utf-8", "surrogatepass")).hexdigest()[:40]
+    return CompiledQuestion(path, folders, at, str(folder / name), seen.hexdigest())
+
+
+class Compilation(msgspec.Struct):
+    """The text of a file: what it depends on, what there was to be said, and the rulebook.
+
+    ``day`` is the one whose law it is, if nothing else says that; empty if something does.
+    ``problems`` say why there is no rulebook.
+    """
+
+    stamp: str
+    day: str
+    dependencies: tuple[Dependency, ...]
+    warnings: tuple[Diagnostic, ...] = ()
+    problems: tuple[Diagnostic, ...] = ()
+    rulebook: MappedRulebook | None = None
+
+
+def recalled(
+    question: CompiledQuestion,
+) -> tuple[CompiledRulebook, tuple[Diagnostic, ...]] | None:
+    """The rulebook with its warnings; None if it has to be compiled."""
+    file = _File(question, _OWN)
+    known = file.read()
+    if known is None or not _is_valid(known[0], question):
+        return None
+    text, compiled = known
+    if compiled is None:
+        return None
+    return _cached(
+        compiled, CachedSteps(question, text, compiled.sources), file, text
+    ), text.warnings
+
+
+def remembered(
+    question: CompiledQuestion,
+    compiled: CompiledRulebook,
+    steps: StepCompiler,
+    warnings: Sequence[Diagnostic],
+    dependencies: Sequence[Dependency],
+) -> CompiledRulebook:
+    """Cache a rulebook that has been compiled; it will cache what it leads to."""
+    day = "" if question.at or compiled.as_of else _today()
+    text = Compilation(question.stamp, day, tuple(dependencies), tuple(warnings))
+    file = _File(question, _OWN)
+    file.write(text, compiled)
+    return _cached(compiled, CachedSteps(question, text, compiled.sources, steps), file, text)
+
+
+def _today() -> str:
+    return date.today().isoformat()  # noqa: DTZ011 - the reader's own day
+
+
+def _is_valid(text: Compilation, question: CompiledQuestion) -> bool:
+    folders = [Path(folder) for folder in question.search_path]
+    return (
+        text.stamp == question.stamp
+        and text.day in ("", _today())
+        and all(is_as_it_was(dependency, folders) for dependency in text.dependencies)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _File:
+    """A file of the cache."""
+
+    question: CompiledQuestion
+    step: str
+
+    @property
+    def path(self) -> Path:
+        return Path(f"{self.question.file}-{self.step}{_ENDING}")
+
+    def read(self) -> tuple[Compilation, CompiledRulebook | None] | None:
+        with suppress(OSError, ValueError):  # what msgspec says is a ValueError, too
+            tables = mapped(self.path)
+            text = msgspec.json.decode(tables.text, type=Compilation)
+            compiled = None if text.rulebook is None else rulebook_from(text.rulebook, tables)
+            os.utime(self.path)
+            return msgspec.structs.replace(text, rulebook=None), compiled
+        return None
+
+    def write(self, text: Compilation, compiled: CompiledRulebook | None) -> None:
+        tables = TableWriter()
+        with suppress(OSError, RulecError, ValueError):
+            entry = None if compiled is None else placed(compiled, tables)
+            written = msgspec.structs.replace(text, rulebook=entry)
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            with written_whole(self.path) as stream:
+                stream.write(tables.file(msgspec.json.encode(written)))
+            tidy(self.path.parent, f"*{_ENDING}", MOST_FILES)
+
+
+def _cached(
+    compiled: CompiledRulebook, steps: CachedSteps, file: _File, text: Compilation
+) -> CompiledRulebook:
+    known = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
+    return replace(compiled, recompile=steps, prefixes=CachedPrefixes(file, text, known))
+
+
+class CachedSteps:
+    """A ``Recompiler`` that asks the cache first. Pickled, it is its key."""
+
+    def __init__(
+        self,
+        question: CompiledQuestion,
+        text: Compilation,
+        sources: tuple[SourceFile, ...],
+        steps: StepCompiler | None = None,
+    ) -> None:
+        self._question = question
+        self._text = msgspec.structs.replace(text, warnings=())
+        self._sources = sources
+        self._steps = steps
+        self._answers: dict[str, CompiledRulebook | RulecError] = {}
+
+    def __reduce__(self) -> tuple[type[CachedSteps], tuple[object, ...]]:
+        return CachedSteps, (self._question, self._text, self._sources)
+
+    def __call__(self, step_s: Fraction) -> CompiledRulebook:
+        """The rulebook for a step. Raises RulecError as ``StepCompiler``."""
+        return self._answer(_name(step_s), lambda: self._compiler()(step_s))
+
+    def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
+        """The rulebook with bounds rounded down to multiples of a step, and rounded up."""
+        name = _name(step_s)
+        down = self._answer(f"{name}-down", lambda: self._compiler().rounded(step_s)[0])
+        return down, self._answer(f"{name}-up", lambda: self._compiler().rounded(step_s)[1])
+
+    def _answer(self, step: str, compile_it: Callable[[], CompiledRulebook]) -> CompiledRulebook:
+        if step not in self._answers:
+            if len(self._answers) >= MOST_FILES:
+                self._answers.clear()
+            self._answers[step] = self._found(_File(self._question, step), compile_it)
+        answer = self._answers[step]
+        if isinstance(answer, RulecError):
+            raise answer
+        return answer
+
+    def _found(
+        self, file: _File, compile_it: Callable[[], CompiledRulebook]
+    ) -> CompiledRulebook | RulecError:
+        text = self._text
+        known = file.read()
+        if known is not None and _depends_on(known[0]) == _depends_on(text):
+            if known[1] is None:
+                return RulecError(known[0].problems)
+            return _cached(known[1], self, file, text)
+        try:
+            compiled = compile_it()
+        except RulecError as error:
+            # Whether a machine gets too large, or Spot is there, is another question next time.
+            if all(problem.code == _NOT_A_MULTIPLE for problem in error.diagnostics):
+                file.write(msgspec.structs.replace(text, problems=error.diagnostics), None)
+            return error
+        # Its source may have been changed since it was recalled.
+        if compiled.sources == self._sources:
+            file.write(text, compiled)
+        return _cached(compiled, self, file, text)
+
+    def _compiler(self) -> StepCompiler:
+        if self._steps is None:
+            # The parser, 60 ms: only where the cache has no answer.
+            from rulec.automata.step_compilation import StepCompiler
+            from rulec.rulebook.loader import read_rulebook
+
+            asked = self._question
+            book = read_rulebook(asked.source, asked.search_path, asked.at).rulebook
+            self._steps = StepCompiler(book)
+        return self._steps
+
+
+def _depends_on(text: Compilation) -> tuple[object, ...]:
+    return text.stamp, text.day, text.dependencies
+
+
+def _name(step_s: Fraction) -> str:
+    return f"{step_s.numerator}_{step_s.denominator}"
+
+
+@dataclass(slots=True)
+class CachedPrefixes:
+    """A ``PrefixCompiler`` whose machines join the file of their rulebook."""
+
+    _file: _File
+    _text: Compilation
+    _stored: StoredPrefixes | None = None
+
+    def __call__(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
+        """The machines of the rulebook's rules. Raises RulecError R0403 if Spot is not there."""
+        if self._stored is not None:
+            return self._stored(rulebook)
+        # The compiler, 30 ms: only where the cache has no machines.
+        from rulec.automata.prefix_machines import prefix_machines
+
+        machines = prefix_machines(rulebook)
+        whole = self._file.read()
+        if whole is not None and whole[1] is not None:
+            prefixes = stored(replace(whole[1], prefixes=lambda _: machines))
+            if all(rule.name in machines for rule in whole[1].rules):
+                self._file.write(whole[0], replace(whole[1], prefixes=prefixes))
+        return machines

@@ -1,0 +1,252 @@
+"""Compiled rulebooks are recalled while nothing has changed, and only then."""
+
+import os
+import pickle
+from contextlib import contextmanager
+from fractions import Fraction
+
+import pytest
+
+from rulec import pipeline
+from rulec.api.rulebook_compilation import machines
+from rulec.automata import compiled_cache, compiler, prefix_machines
+from rulec.automata.bundle.mapped_tables import MappedTables, TableWriter, mapped
+from rulec.diagnostics import RulecError
+
+WORDS = "vocabulary words {\n  signal p, q \n}\n"
+BASE = "rulebook base\nuse words\nhard rule first { require always (q implies once p) }\n"
+BOOK = """\
+rulebook book
+extends base
+hard rule second {
+    require always (p implies eventually[<= 1 s] q)
+    accept { p and not q; not p and q }
+    reject "in time" { p and not q; not p and q }
+}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "cache"))
+    project = tmp_path / "project"
+    project.mkdir()
+    monkeypatch.chdir(project)
+    for name, text in (("words", WORDS), ("base", BASE), ("book", BOOK)):
+        (project / f"{name}.rules").write_text(text)
+    return project
+
+
+@pytest.fixture
+def made(monkeypatch):
+    """The rulebooks that have been compiled anew."""
+    names = []
+
+    def noting(file):
+        names.append(file.source.name)
+        return original(file)
+
+    original = pipeline.parse_all
+    monkeypatch.setattr(pipeline, "parse_all", noting)
+    return names
+
+
+class _NoWorker:
+    """Lets no process of Spot start, except where it is allowed."""
+
+    def __init__(self, monkeypatch):
+        self._monkeypatch = monkeypatch
+        self._forbid()
+
+    def _forbid(self):
+        self._monkeypatch.setattr(compiler, "_worker", _refuse)
+
+    @contextmanager
+    def allowed(self):
+        self._monkeypatch.setattr(compiler, "_worker", _WORKER)
+        yield
+        self._forbid()
+
+
+_WORKER = compiler._worker
+
+
+def _refuse():
+    raise AssertionError("it has been compiled before")
+
+
+@pytest.fixture
+def no_worker(monkeypatch):
+    monkeypatch.setattr(prefix_machines, "_KNOWN", {})
+    return _NoWorker(monkeypatch)
+
+
+def kept():
+    return sorted(compiled_cache.cache_folder().glob("*.tables"))
+
+
+def compiled(reference="book.rules", **more):
+    return machines(reference, recalls=True, **more)
+
+
+def test_what_is_recalled_is_what_was_compiled(folder, made):
+    told = []
+    fresh = machines("book.rules", warn=told.append)
+    first, again = compiled(warn=told.append), compiled(warn=told.append)
+    assert fresh == first == again
+    assert [axiom.place for axiom in fresh.axioms] == [axiom.place for axiom in again.axioms]
+    assert made == ["book.rules", "book.rules"]
+    assert list(told[0]) == list(told[1]) == list(told[2])
+    assert [one.code for one in told[2]] == ["R0406"]
+
+
+def test_another_step_is_compiled_once(folder, no_worker):
+    step = Fraction(1, 10)
+    with no_worker.allowed():
+        fresh = compiled().at_step(step)
+        cut = fresh.prefixes(fresh)
+    again = compiled().at_step(step)
+    assert again == fresh
+    assert again.at_step(step) is again
+    recalled = again.prefixes(again)
+    assert {name: table(machine) for name, machine in recalled.items()} == {
+        name: table(machine) for name, machine in cut.items()
+    }
+    # One rule asks what was before the first state.
+    assert max(len(machine.starts) for machine in recalled.values()) > 1
+
+
+def table(machine):
+    return machine.reads, machine.letters, rows(machine.successors), rows(machine.outputs)
+
+
+def rows(table):
+    return [list(row) for row in table]
+
+
+def test_bounds_that_do_not_fit_are_rounded_once(folder, no_worker):
+    step = Fraction(3, 10)
+    with no_worker.allowed():
+        first = compiled().rounded_to(step)
+        with pytest.raises(RulecError) as problem:
+            compiled().at_step(step)
+    assert compiled().rounded_to(step) == first
+    assert len(first) == 2
+    assert first[0].rules[1].formula != first[1].rules[1].formula
+    with pytest.raises(RulecError) as again:
+        compiled().at_step(step)
+    assert again.value.diagnostics == problem.value.diagnostics
+    assert [one.code for one in again.value.diagnostics] == ["R0407"]
+
+
+@pytest.mark.parametrize("name", ["book", "base", "words"])
+def test_a_change_anywhere_counts(folder, made, name):
+    compiled().at_step(0.5)
+    path = folder / f"{name}.rules"
+    path.write_text(f"{path.read_text()}# more\n")
+    assert compiled().sources != ()
+    assert compiled().at_step(0.5).sources == compiled().sources
+    assert made == ["book.rules", "book.rules"]
+    assert compiled() == machines("book.rules")
+
+
+def test_a_file_that_comes_before_another_counts(folder, made):
+    compiled()
+    (folder / "vocabulary").mkdir()
+    (folder / "words.rules").rename(folder / "vocabulary" / "words.rules")
+    compiled()
+    compiled()
+    assert len(made) == 2
+
+
+def test_the_day_counts_where_the_rulebook_says_none(folder, made, monkeypatch):
+    compiled()
+    monkeypatch.setattr(compiled_cache, "_today", lambda: "2020-01-01")
+    compiled()
+    assert len(made) == 2
+    monkeypatch.setattr(compiled_cache, "_today", lambda: "2020-01-02")
+    compiled(at="2020-01-01")
+    monkeypatch.setattr(compiled_cache, "_today", lambda: "2020-01-03")
+    compiled(at="2020-01-01")
+    assert len(made) == 3
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda path: path.write_bytes(b""),
+        lambda path: path.write_bytes(path.read_bytes()[:-9]),
+        lambda path: path.write_bytes(path.read_bytes()[:20]),
+        lambda path: path.write_bytes(path.read_bytes().replace(b"second", b"third!")),
+        lambda path: path.write_bytes(TableWriter().file(b"{}")),
+        lambda path: path.write_bytes(TableWriter().file(b"\xff")),
+    ],
+)
+def test_a_damaged_file_is_made_anew(folder, made, damage):
+    first = compiled()
+    (path,) = kept()
+    damage(path)
+    assert compiled() == first
+    assert compiled() == first
+    assert len(made) == 2
+
+
+def test_what_somebody_else_has_written_is_not_trusted(folder, made, monkeypatch):
+    first = compiled()
+    monkeypatch.setattr(os, "geteuid", lambda: os.getuid() + 1)
+    assert compiled() == first
+    assert len(made) == 2
+
+
+def test_without_a_folder_to_write_to_it_is_compiled_each_time(folder, made, tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "file" / "cache"))
+    assert compiled() == compiled()
+    assert len(made) == 2
+
+
+def test_few_files_are_kept(folder, monkeypatch):
+    monkeypatch.setattr(compiled_cache, "MOST_FILES", 3)
+    book = compiled()
+    for number, step in enumerate((1, 0.5, 0.25, 0.125)):
+        for path in kept():
+            os.utime(path, (number, number))
+        book.recompile(Fraction(step))
+    assert 1 <= len(kept()) <= 3
+
+
+def test_a_pickled_one_still_asks_the_cache(folder, no_worker):
+    with no_worker.allowed():
+        compiled().at_step(0.5)
+    book = pickle.loads(pickle.dumps(compiled()))
+    assert book.at_step(0.5) == compiled().at_step(0.5)
+
+
+def test_a_row_is_what_was_placed(tmp_path):
+    tables = TableWriter()
+    written = [(1, -1, 0), (), (1 << 40, -(1 << 40)), (127, 128), (1, -1, 0)]
+    places = [tables.place(row) for row in written]
+    assert places[0] == places[-1]
+    path = tmp_path / "x.tables"
+    path.write_bytes(tables.file(b"text"))
+    read = mapped(path)
+    assert read.text == b"text"
+    assert [read.row(place) for place in places] == written
+    assert read.rows(places[2], 1) == ((1 << 40,), (-(1 << 40),))
+    with pytest.raises(ValueError, match="width"):
+        read.rows(places[0], 2)
+    with pytest.raises(ValueError, match="cut off"):
+        read.row(("q", 8, 1000))
+    with pytest.raises(ValueError, match="no place"):
+        read.row(("b", -1, 1))
+
+
+def test_every_bit_of_a_file_counts():
+    tables = TableWriter()
+    tables.place((1, 2, 3))
+    data = tables.file(b"text")
+    for number in range(8 * len(data)):
+        changed = bytearray(data)
+        changed[number // 8] ^= 1 << number % 8
+        with pytest.raises(ValueError, match="it is"):
+            MappedTables(bytes(changed))
