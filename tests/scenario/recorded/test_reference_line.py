@@ -84,3 +84,39 @@ def test_what_has_no_foot_has_no_coordinates():
     assert np.isnan(found[0]).all()
     assert found[1].tolist() == [5, 1]
     assert line.coordinates(np.empty((0, 2))).shape == (0, 2)
+
+
+def feet_one_by_one(line, place, pieces):
+    """The nearest foot of a place, each piece of the line being tried by itself."""
+    feet = []
+    for k in pieces:
+        across_piece = np.array([-line.ahead[k, 1], line.ahead[k, 0]])
+        along, across = (
+            (place - line.start[k]) @ line.ahead[k],
+            (place - line.start[k]) @ across_piece,
+        )
+        length = line.lengths[k] - across * line.change[k]
+        part = (along + across * line.first[k]) / length if length > 0 else np.nan
+        if 0 <= part <= 1:
+            off = np.hypot(along - part * line.lengths[k], across)
+            feet.append((off, line.arc[k] + part * line.lengths[k], np.copysign(off, across)))
+    return min(feet)[1:] if feet else (np.nan, np.nan)
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([2.0, 30.0]), st.sampled_from([0.0, 1e6]))
+def test_the_foot_is_the_nearest_of_all_pieces_however_the_line_winds(seed, step, offset):
+    random = np.random.default_rng(seed)
+    corners = np.cumsum(random.normal(size=(12, 2)) * step, axis=0) + offset
+    line = reference_line(corners)
+    places = corners[random.integers(0, 12, 20)] + random.normal(size=(20, 2)) * step
+    around, reach = random.uniform(0, line.length, 20), random.uniform(0, 2 * step, 20)
+    low, high = (
+        np.clip(np.searchsorted(line.arc, around + way * reach, "right") - 1, 0, None)
+        for way in (-1, 1)
+    )
+    every = range(len(line.arc))
+    whole, near = line.coordinates(places), line.coordinates_near(places, around, reach)
+    for k, place in enumerate(places):
+        one, own = feet_one_by_one(line, place, every), range(low[k], high[k] + 1)
+        assert whole[k] == pytest.approx(one, abs=1e-5, nan_ok=True)
+        assert near[k] == pytest.approx(feet_one_by_one(line, place, own), abs=1e-5, nan_ok=True)

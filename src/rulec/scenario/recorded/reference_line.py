@@ -11,6 +11,7 @@ line goes on straight.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
@@ -19,6 +20,7 @@ from numpy.typing import NDArray
 
 from rulec.recordings.polylines import densified, without_repeats
 from rulec.recordings.recording import Points
+from rulec.scenario.recorded.line_fans import LineFans, line_fans
 
 BEYOND_M = 2000.0
 """How far the line goes on straight beyond its ends."""
@@ -28,13 +30,12 @@ _PIECE_M = 5.0
 _SMOOTH_M = 5.0
 _STEP_M = 0.5
 _TURN_RAD = np.radians(5.0)
-_AT_ONCE = 1 << 18
 _HAIR = 1e-9
 _Values = NDArray[float64]
 Angle = TypeVar("Angle", float, _Values)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class ReferenceLine:
     """A line of straight pieces: start, direction and length of each.
 
@@ -65,32 +66,26 @@ class ReferenceLine:
 
     def coordinates(self, places: Points) -> Points:
         """Frenet coordinates ``s`` and ``d`` of places, a row each; NaN without a foot."""
-        every = np.arange(len(self.arc))[None, :]
-        size = max(1, _AT_ONCE // len(self.arc))
-        parts = [self._nearest(places[at : at + size], every) for at in range(0, len(places), size)]
-        return np.concatenate(parts) if parts else np.empty((0, 2))
+        low = np.zeros(len(places), dtype=intp)
+        return self._nearest(places, low, low + len(self.arc) - 1)
 
     def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
         """Frenet coordinates of feet within ``reach`` of a given ``s`` each."""
-        low, high = self._piece(around - reach), self._piece(around + reach)
-        steps = np.arange(int((high - low).max(initial=0)) + 1)
-        size = max(1, _AT_ONCE // len(steps))
-        parts = [
-            self._nearest(
-                places[at : at + size],
-                np.minimum(low[at : at + size, None] + steps, high[at : at + size, None]),
-            )
-            for at in range(0, len(places), size)
-        ]
-        return np.concatenate(parts) if parts else np.empty((0, 2))
+        return self._nearest(places, self._piece(around - reach), self._piece(around + reach))
 
     def _piece(self, s: _Values) -> NDArray[intp]:
         return np.clip(np.searchsorted(self.arc, s, "right") - 1, 0, len(self.arc) - 1)
 
-    def _nearest(self, places: Points, pieces: NDArray[intp]) -> Points:
-        ux, uy = self.ahead[pieces, 0], self.ahead[pieces, 1]
-        dx = places[:, :1] - self.start[pieces, 0]
-        dy = places[:, 1:] - self.start[pieces, 1]
+    @cached_property
+    def _fans(self) -> LineFans:
+        slopes = np.stack((self.first, self.first + self.change), axis=1)
+        return line_fans(self.start, self.ahead, self.lengths, slopes)
+
+    def _nearest(self, places: Points, low: NDArray[intp], high: NDArray[intp]) -> Points:
+        """The coordinates of the nearest foot on one of the pieces from ``low`` to ``high``."""
+        numbers, pieces = self._fans.candidates(places, low, high)
+        (ux, uy), (x, y) = self.ahead[pieces].T, self.start[pieces].T
+        dx, dy = places[numbers, 0] - x, places[numbers, 1] - y
         along = dx * ux + dy * uy
         across = ux * dy - uy * dx
         lengths, first = self.lengths[pieces], self.first[pieces]
@@ -98,13 +93,25 @@ class ReferenceLine:
         with np.errstate(divide="ignore", invalid="ignore"):
             part = (along + across * first) / turned_lengths
         good = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
-        distance = np.where(good, np.hypot(along - part * lengths, across), np.inf)
-        best = np.argmin(distance, axis=1)
-        row = np.arange(len(places))
-        piece = np.broadcast_to(pieces, distance.shape)[row, best]
-        s = self.arc[piece] + part[row, best] * self.lengths[piece]
-        d = np.copysign(distance[row, best], across[row, best])
-        return np.where(np.isfinite(d)[:, None], np.stack((s, d), axis=1), np.nan)
+        distance = np.hypot(along - part * lengths, across)
+        best = good.nonzero()[0]
+        best = best[_least_of_each(numbers[best], distance[best])]
+        found = np.full((len(places), 2), np.nan)
+        found[numbers[best], 0] = self.arc[pieces[best]] + part[best] * lengths[best]
+        found[numbers[best], 1] = np.copysign(distance[best], across[best])
+        return found
+
+
+def _least_of_each(groups: NDArray[intp], values: _Values) -> NDArray[intp]:
+    """Where the first of the least values of each group is; groups are ascending."""
+    if not len(groups):
+        return groups
+    begins = np.concatenate(([True], groups[1:] != groups[:-1]))
+    if begins.all():
+        return np.arange(len(groups))
+    least = np.minimum.reduceat(values, begins.nonzero()[0])[np.cumsum(begins) - 1]
+    at = np.flatnonzero(values == least)
+    return at[np.concatenate(([True], groups[at[1:]] != groups[at[:-1]]))]
 
 
 def reference_line(corners: Points) -> ReferenceLine:
