@@ -11,7 +11,7 @@ from rulec.logic.kleene import holds
 from rulec.logic.semantics import truth_values
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.moments import trace_truth
-from rulec.monitoring.moments.trace_truth import TraceTruth
+from rulec.monitoring.moments.trace_truth import ReadyFormula, TraceTruth
 from rulec.monitoring.state_view import StateView
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
@@ -68,7 +68,7 @@ def word_of(formula, trace, car, first, last):
 def rows_of(formula, trace, semantics):
     return {
         choice[0]: (int(part.first[row]), int(part.last[row]), part.sure[row], part.possible[row])
-        for part in TraceTruth(trace, TIMED_VOCABULARY, semantics).of(formula, X)
+        for part in TraceTruth(trace, TIMED_VOCABULARY, semantics).of(ReadyFormula(formula), X)
         for row, choice in enumerate(part.choices)
     }
 

@@ -19,13 +19,13 @@ from numpy.typing import NDArray
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.thresholds import exact_step
 from rulec.logic.bounds import in_steps
-from rulec.logic.formula import Formula
 from rulec.logic.opportunities import breach_of
 from rulec.logic.semantics import steps_to_settle
 from rulec.monitoring.moments.stretches import Stretches, opportunity_stretches
-from rulec.monitoring.moments.trace_truth import FormulaTruth, TraceTruth
+from rulec.monitoring.moments.trace_truth import FormulaTruth, ReadyFormula, TraceTruth
 from rulec.monitoring.verdict import Verdict
 from rulec.trace import Trace
+from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import short_repr
 
 Counts = NDArray[np.intp]
@@ -56,17 +56,13 @@ class _Watched:
     """A rule with its trigger and its breach, bounds in steps."""
 
     rule: CompiledRule
-    trigger: Formula | None
-    breach: Formula
-
-    @property
-    def settles(self) -> int:
-        """How long either goes on to change where the last state goes on for ever."""
-        both = (self.breach,) if self.trigger is None else (self.breach, self.trigger)
-        return max(map(steps_to_settle, both))
+    trigger: ReadyFormula | None
+    breach: ReadyFormula
 
 
-def exposures(trace: Trace, rulebook: CompiledRulebook, verdict: Verdict) -> dict[str, Exposure]:
+def exposures(
+    trace: Trace | TraceArrays, rulebook: CompiledRulebook, verdict: Verdict
+) -> dict[str, Exposure]:
     """The exposure to each rule that was judged, by its name.
 
     The ``verdict`` on the trace says for which objects a rule is violated or open.
@@ -79,7 +75,9 @@ def exposures(trace: Trace, rulebook: CompiledRulebook, verdict: Verdict) -> dic
     left_out = {rule.rule for rule in verdict.not_judged}
     truth = TraceTruth(trace, rulebook.vocabulary, rulebook.semantics)
     return {
-        watched.rule.name: _exposure(truth, trace, watched, outcomes.get(watched.rule.name, {}))
+        watched.rule.name: _exposure(
+            truth, trace.step_s, watched, outcomes.get(watched.rule.name, {})
+        )
         for watched in _watched(rulebook, exact_step(trace.step_s))
         if watched.rule.name not in left_out
     }
@@ -88,42 +86,45 @@ def exposures(trace: Trace, rulebook: CompiledRulebook, verdict: Verdict) -> dic
 def _watched(rulebook: CompiledRulebook, step_s: Fraction) -> Sequence[_Watched]:
     known: dict[Fraction, Sequence[_Watched]] = rulebook.prepared.setdefault(_Watched, {})
     if step_s not in known:
-        known[step_s] = [
-            _Watched(
-                rule,
-                None if rule.trigger is None else in_steps(rule.trigger, step_s, math.floor),
-                in_steps(breach_of(rule.formula), step_s, math.floor),
-            )
-            for rule in rulebook.rules
-        ]
+        known[step_s] = [_watched_rule(rule, step_s) for rule in rulebook.rules]
     return known[step_s]
+
+
+def _watched_rule(rule: CompiledRule, step_s: Fraction) -> _Watched:
+    breach = in_steps(breach_of(rule.formula), step_s, math.floor)
+    if rule.trigger is None:
+        return _Watched(rule, None, ReadyFormula(breach))
+    trigger = in_steps(rule.trigger, step_s, math.floor)
+    # Both have the same columns where the last state goes on for ever.
+    settles = max(steps_to_settle(breach), steps_to_settle(trigger))
+    return _Watched(rule, ReadyFormula(trigger, settles), ReadyFormula(breach, settles))
 
 
 def _exposure(
     truth: TraceTruth,
-    trace: Trace,
+    step_s: float,
     watched: _Watched,
     outcomes: Mapping[tuple[str, ...], Literal["violated", "open"]],
 ) -> Exposure:
-    tally = _Tally(len(trace.states))
-    variables, settles = watched.rule.variables, watched.settles
+    tally = _Tally(truth.n_states)
+    variables = watched.rule.variables
     found = set()
     if watched.trigger is None:
         tally.add_whole(*truth.stretches_of(variables))
     else:
-        for part in truth.of(watched.trigger, variables, settles=settles):
+        for part in truth.of(watched.trigger, variables):
             at_least, at_most = opportunity_stretches(part.sure, part.possible)
             tally.add(part, at_least, at_most)
             decided = [row for row, choice in enumerate(part.choices) if choice in outcomes]
             for row in decided:
                 choice = part.choices[row]
                 found.add(choice)
-                own = truth.of(watched.breach, variables, choice, settles=settles)
+                own = truth.of(watched.breach, variables, choice)
                 tally.violated_in(row, (at_least, at_most), next(own, None), outcomes[choice])
     for choice, outcome in outcomes.items():
         if choice not in found:
             tally.violated_at_all(outcome, is_counted=watched.trigger is None)
-    return tally.exposure(trace.step_s)
+    return tally.exposure(step_s)
 
 
 class _Tally:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -45,34 +46,80 @@ class ValueRows:
         return ValueRows(values, upper, self.unknown[chosen])
 
 
-class NameTables:
+class NameTables(ABC):
     """Tables of a checked trace, each made when it is first asked for.
 
-    ``objects`` are those of the trace, in its order, with their types.
+    ``objects`` are those of the trace, in its order, with their types, ``spans`` (objects x 2) the
+    first and the last state in which each is there. ``vocabulary`` has unknown defaults for what
+    the source cannot tell.
     """
 
-    def __init__(self, trace: Trace, vocabulary: Vocabulary) -> None:
-        if vocabulary.constants:
-            trace = with_constants(spelled_out(trace, vocabulary), vocabulary)
-        untold = untold_names(vocabulary, trace.told)
+    def __init__(
+        self,
+        told: frozenset[str] | None,
+        objects: Mapping[str, str],
+        n_states: int,
+        vocabulary: Vocabulary,
+    ) -> None:
+        untold = untold_names(vocabulary, told)
         self.vocabulary = with_untold(vocabulary, untold) if untold else vocabulary
-        self.objects = tuple(trace.objects)
-        self.types = tuple(trace.objects.values())
-        self.n_states = len(trace.states)
-        self._columns = _columns_of(trace, self.vocabulary)
+        self.objects = tuple(objects)
+        self.types = tuple(objects.values())
+        self.n_states = n_states
         self._known: dict[str, ValueRows] = {}
+
+    @property
+    @abstractmethod
+    def spans(self) -> NDArray[np.intp]:
+        """The first and the last state of each object."""
 
     def world(self, name: str) -> ValueRows:
         """The one row of a name that is about no object."""
         if name not in self._known:
-            self._known[name] = self._stacked([(name, ())])
+            self._known[name] = self._world(name)
         return self._known[name]
 
     def about(self, name: str) -> ValueRows:
         """The rows of a name that is about one object, one for each of the trace's."""
         if name not in self._known:
-            self._known[name] = self._stacked([(name, (item,)) for item in self.objects])
+            self._known[name] = self._about(name)
         return self._known[name]
+
+    @abstractmethod
+    def about_several(self, name: str, rows: Sequence[tuple[int, ...]]) -> ValueRows:
+        """The rows of a name for these objects, which are given by their numbers."""
+
+    @abstractmethod
+    def _world(self, name: str) -> ValueRows:
+        """The row of a name."""
+
+    @abstractmethod
+    def _about(self, name: str) -> ValueRows:
+        """The rows of a name."""
+
+
+class StateTables(NameTables):
+    """Tables of a trace with states."""
+
+    def __init__(self, trace: Trace, vocabulary: Vocabulary) -> None:
+        super().__init__(trace.told, trace.objects, len(trace.states), vocabulary)
+        if vocabulary.constants:
+            trace = with_constants(spelled_out(trace, vocabulary), vocabulary)
+        self._present = trace.present
+        self._columns = _columns_of(trace, self.vocabulary)
+
+    @property
+    def spans(self) -> NDArray[np.intp]:
+        """The first and the last state of each object."""
+        whole = (0, self.n_states - 1)
+        spans = [self._present.get(item, whole) for item in self.objects]
+        return np.array(spans, dtype=np.intp).reshape(-1, 2)
+
+    def _world(self, name: str) -> ValueRows:
+        return self._stacked([(name, ())])
+
+    def _about(self, name: str) -> ValueRows:
+        return self._stacked([(name, (item,)) for item in self.objects])
 
     def about_several(self, name: str, rows: Sequence[tuple[int, ...]]) -> ValueRows:
         """The rows of a name for these objects, which are given by their numbers."""
@@ -82,8 +129,8 @@ class NameTables:
     def _stacked(self, keys: Sequence[Key]) -> ValueRows:
         declaration = self.vocabulary.declarations[keys[0][0]] if keys else None
         columns = self._columns
-        default, is_known = _default(declaration)
-        kind: Any = bool if isinstance(default, bool) else type(default)
+        default, is_known = default_of(declaration)
+        kind = type(default)
         values = np.empty((len(keys), self.n_states), dtype=kind)
         upper: Array | None = None
         unknown = np.zeros((len(keys), self.n_states), dtype=bool)
@@ -108,7 +155,7 @@ def _filled(upper: Array | None, values: Array) -> Array:
     return values if upper is None else np.maximum(upper, values)
 
 
-def _default(declaration: Declaration | None) -> tuple[bool | float | int, bool]:
+def default_of(declaration: Declaration | None) -> tuple[bool | float | int, bool]:
     """A name's default as a column has it, and whether there is one; any value if not."""
     if declaration is None:
         return False, False

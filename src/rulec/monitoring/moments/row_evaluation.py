@@ -34,18 +34,39 @@ _SIDES: Mapping[ltl.Relation, tuple[int, ...]] = {
 """The sides of a limit, below, at and above it, on which a number stands in a relation to it."""
 
 
+class ReadyComparison:
+    """A comparison with its limit as thresholds, and what each pair of sides comes to.
+
+    ``every`` and ``some`` (3 x 3) say for the lowest and the highest side that a number may be on
+    whether it stands in the relation on all sides between them, and on some.
+    """
+
+    def __init__(self, comparison: ltl.Comparison) -> None:
+        self.comparison = comparison
+        at = Threshold(comparison.limit, inclusive=True)
+        above = Threshold(comparison.limit, inclusive=False)
+        self.read = NumberRead(comparison.terms, (at, above))
+        self.scale = scale(self.read)
+        stands = np.array([side in _SIDES[comparison.relation] for side in range(3)])
+        pairs = [[stands[low : high + 1] for high in range(3)] for low in range(3)]
+        self.every = np.array([[sides.all() for sides in row] for row in pairs])
+        self.some = np.array([[sides.any() for sides in row] for row in pairs])
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class RowEvaluation:
     """The evaluation of formulas on some rows.
 
     ``spans`` (objects x 2) are the first and the last state in which each object is there,
-    ``states`` the states of the trace that the columns show.
+    ``states`` the states of the trace that the columns show. ``comparisons`` are those of the
+    formula that have been met, by identity: to hash one takes longer than to evaluate it.
     """
 
     tables: NameTables
     spans: Places
     stretches: RowStretches
     states: Places
+    comparisons: dict[int, ReadyComparison]
 
     @property
     def n_states(self) -> int:
@@ -136,22 +157,19 @@ class RowEvaluation:
         return rows if self._shows_all else rows.at(states=self.states)
 
     def _comparison(self, comparison: ltl.Comparison, bound: Mapping[str, Places]) -> TruthRows:
-        at = Threshold(comparison.limit, inclusive=True)
-        above = Threshold(comparison.limit, inclusive=False)
-        read = NumberRead(comparison.terms, (at, above))
+        ready = self.comparisons.get(id(comparison))
+        if ready is None:
+            ready = self.comparisons[id(comparison)] = ReadyComparison(comparison)
         parts = [(factor, self._term(term, bound)) for factor, term in comparison.terms]
-        unknown = np.zeros((1, self.n_states), dtype=bool)
-        for _, part in parts:
+        unknown = parts[0][1].unknown
+        for _, part in parts[1:]:
             unknown = unknown | part.unknown
         lows = [(f, part.values if f > 0 else part.upper) for f, part in parts]
         highs = [(f, part.upper if f > 0 else part.values) for f, part in parts]
-        low = _digits(read, lows, unknown)
+        low = _digits(ready, lows, unknown)
         same = all(one is other for (_, one), (_, other) in zip(lows, highs, strict=True))
-        high = low if same else _digits(read, highs, unknown)
-        stands = np.array([side in _SIDES[comparison.relation] for side in range(3)])
-        every = np.array([[stands[a : b + 1].all() for b in range(3)] for a in range(3)])
-        some = np.array([[stands[a : b + 1].any() for b in range(3)] for a in range(3)])
-        return TruthRows(every[low, high] & ~unknown, some[low, high] | unknown)
+        high = low if same else _digits(ready, highs, unknown)
+        return TruthRows(ready.every[low, high] & ~unknown, ready.some[low, high] | unknown)
 
     def _term(self, term: ltl.Term, bound: Mapping[str, Places]) -> ValueRows:
         if isinstance(term, ltl.QuantityTerm):
@@ -170,18 +188,17 @@ class RowEvaluation:
 
 
 def _digits(
-    read: NumberRead, summands: list[tuple[Fraction, Array]], ignored: NDArray[np.bool_]
+    ready: ReadyComparison, summands: list[tuple[Fraction, Array]], ignored: NDArray[np.bool_]
 ) -> NDArray[np.intp]:
     """For each row and state the side of the limit that a sum is on; any if it is ignored."""
-    ready = scale(read)
-    if ready.quantity is not None:
+    if ready.scale.quantity is not None:
         ((_, numbers),) = summands
         digits = np.zeros(numbers.shape, dtype=np.intp)
-        for floor in ready.floors:
+        for floor in ready.scale.floors:
             digits += numbers >= floor
         return digits
     spread = np.broadcast_arrays(ignored, *[numbers for _, numbers in summands])
     shape = spread[0].shape
     flat = [one.ravel() for one in spread]
     parts = [(factor, one) for (factor, _), one in zip(summands, flat[1:], strict=True)]
-    return digits_of_sum(read, parts, flat[0].size, flat[0]).astype(np.intp).reshape(shape)
+    return digits_of_sum(ready.read, parts, flat[0].size, flat[0]).astype(np.intp).reshape(shape)

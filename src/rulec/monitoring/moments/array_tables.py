@@ -1,0 +1,95 @@
+"""What a trace in arrays says of names, a row for each object."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.monitoring.moments.name_tables import NameTables, ValueRows, default_of
+from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_columns import Array
+from rulec.vocabulary import Enumeration, Vocabulary
+
+Flags = NDArray[np.bool_]
+
+
+class ArrayTables(NameTables):
+    """Tables of a trace that is given as arrays; nothing there is about several objects."""
+
+    def __init__(self, arrays: TraceArrays, vocabulary: Vocabulary) -> None:
+        super().__init__(arrays.told, arrays.objects, arrays.n_states, vocabulary)
+        self._arrays = arrays
+        state = np.arange(arrays.n_states)
+        first, last = arrays.spans[:, :1], arrays.spans[:, 1:]
+        self._there: Flags = (state >= first) & (state <= last)
+
+    @property
+    def spans(self) -> NDArray[np.intp]:
+        """The first and the last state of each object."""
+        return self._arrays.spans
+
+    def about_several(self, name: str, rows: Sequence[tuple[int, ...]]) -> ValueRows:
+        """The rows of a name, which all have its default."""
+        return self._rows(name, None, np.ones((len(rows), self.n_states), dtype=bool))
+
+    def _world(self, name: str) -> ValueRows:
+        column = self._arrays.world.get(name)
+        return self._rows(name, column, np.ones((1, self.n_states), dtype=bool))
+
+    def _about(self, name: str) -> ValueRows:
+        rows = self._rows(name, self._arrays.about.get(name), self._there)
+        only = self._arrays.only.get(name)
+        if only is None or name not in self._arrays.about or only.all():
+            return rows
+        others = self._rows(name, None, self._there)
+        chosen = np.asarray(only)[:, None]
+        return ValueRows(
+            np.where(chosen, rows.values, others.values),
+            np.where(chosen, rows.upper, others.upper),
+            np.where(chosen, rows.unknown, others.unknown),
+        )
+
+    def _rows(self, name: str, column: Array | None, there: Flags) -> ValueRows:
+        """Rows of values in the states that are ``there``; what is said nowhere has its default."""
+        declaration = self.vocabulary.declarations[name]
+        default, is_known = default_of(declaration)
+        values: Array = np.full(there.shape, default, dtype=type(default))
+        unknown: Flags = np.full(there.shape, not is_known)
+        upper = values
+        if column is not None:
+            arrays = self._arrays
+            said: Flags = ~arrays.absent[name] if name in arrays.absent else np.True_  # type: ignore[assignment]
+            if isinstance(declaration, Enumeration):
+                places = [declaration.values.index(text) for text in arrays.texts[name]]
+                column = np.asarray(places)[column]
+            dark = arrays.unknown.get(name, np.False_)
+            values[there] = np.where(said, column, default)
+            unknown[there] = np.where(said, dark, not is_known)
+            if name in arrays.bounds:
+                upper = values.copy()
+                low, high = arrays.bounds[name]
+                values[there] = np.where(said, low, default)
+                upper[there] = np.where(said, high, default)
+        rows = ValueRows(values, upper, unknown)
+        return _constant(rows, there) if declaration.constant else rows
+
+
+def _constant(rows: ValueRows, there: Flags) -> ValueRows:
+    """Rows in which what some state says holds in all."""
+    told = there & ~rows.unknown
+    is_told = told.any(axis=1, keepdims=True)
+    first = told.argmax(axis=1)[:, None]
+    values = np.where(is_told, np.take_along_axis(rows.values, first, 1), rows.values)
+    if rows.upper is rows.values:
+        return ValueRows(values, values, rows.unknown & ~is_told)
+    # Of several intervals what all of them have in common.
+    low = np.where(told, rows.values, -np.inf).max(axis=1, keepdims=True)
+    high = np.where(told, rows.upper, np.inf).min(axis=1, keepdims=True)
+    low, high = np.broadcast_arrays(low, values)[0], np.broadcast_arrays(high, values)[0]
+    return ValueRows(
+        np.where(is_told, low, rows.values),
+        np.where(is_told, high, rows.upper),
+        rows.unknown & ~is_told,
+    )
