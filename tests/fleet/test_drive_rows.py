@@ -10,6 +10,7 @@ from rulec.extraction.to_trace import Place
 from rulec.fleet.drive_rows import DriveRows, driven_m
 from rulec.fleet.finding_columns import COLUMNS, arrow_schema, arrow_table
 from rulec.fleet.judged_by import judged_by, rulebook_hash
+from rulec.monitoring.moments.exposure import exposures
 from support.builders.fleet_inputs import fleet_rules, lanes, tracks
 
 
@@ -111,3 +112,18 @@ def test_choices_are_written_as_options_are(judged):
         "thresholds": "",
         "assumptions": "",
     }
+
+
+def test_rows_of_rules_have_opportunities_that_arrays_and_states_agree_on(judged, rows):
+    """Two are too fast: each had one opportunity, its drive, and took it."""
+    verdicts, _ = judged
+    for answer in verdicts.answers():
+        own = exposures(answer.drive.trace, verdicts.rules, answer.answer)
+        assert own == exposures(answer.drive.arrays, verdicts.rules, answer.answer)
+        for row in rows:
+            if row["vehicle"] == answer.drive.trace.id and row.get("rule") in own:
+                if row["kind"] != "rule":
+                    continue
+                assert row["opportunities"] == own[row["rule"]].opportunities
+                assert (row["violated"] > 0) is (row["outcome"] == "violated")
+    assert sum(row.get("violated", 0) for row in rows if row["kind"] == "rule") == 2

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from math import hypot
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -12,15 +12,15 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.to_trace import Drive
 from rulec.fleet.finding_columns import COLUMNS, Cell, Row
+from rulec.monitoring.moments.exposure import Exposure, exposures
+from rulec.monitoring.moments.road_class import road_class
 from rulec.monitoring.verdict import NotJudged, OutcomeName, Verdict
 from rulec.report.verdict_findings.found_in_drives import DriveFindings
 from rulec.report.verdict_findings.found_in_traces import trace_findings
 from rulec.report.verdict_findings.verdict_finding import COLUMNS as OF_FINDINGS
 from rulec.report.verdict_findings.verdict_finding import VerdictFinding
 from rulec.trace import Trace
-
-Opportunities = Mapping[str, tuple[int, float]]
-"""Rule -> how often its trigger was met in a drive, and for how long (s)."""
+from rulec.trace.trace_arrays import TraceArrays
 
 MOVED_M = 0.5
 """Places of recordings waver by less, also of who stands."""
@@ -65,7 +65,6 @@ class DriveRows:
         trace: Trace,
         verdict: Verdict | NotJudged,
         own: Row,
-        opportunities: Opportunities | None = None,
     ) -> Iterator[Row]:
         """The rows of a trace; ``own`` are columns that say where it is from."""
         own = {**own, "vehicle": verdict.trace or ""}
@@ -74,7 +73,7 @@ class DriveRows:
             return
         times = (0.0, round((len(trace.states) - 1) * trace.step_s, 9))
         yield self._judged(own, verdict, trace, times)
-        yield from self._rules(own, verdict, opportunities)
+        yield from self._rules(own, verdict, trace)
         found = trace_findings(str(own.get("file", "")), trace, verdict, self.rules, [])
         at_s = [
             round((len(trace.states) - 1 if one.step is None else one.step) * trace.step_s, 9)
@@ -96,10 +95,10 @@ class DriveRows:
             return
         times = (drive.time_s(0), drive.time_s(None))
         yield {
-            **self._judged(own, verdict, drive.trace, times),
+            **self._judged(own, verdict, drive.arrays, times),
             "distance_m": driven_m(drive),
         }
-        yield from self._rules(own, verdict, None)
+        yield from self._rules(own, verdict, drive.arrays)
         # Of one drive alone: it says also what is not judged in this one.
         findings = DriveFindings(verdicts, str(own["file"]))
         findings.add(result, [])
@@ -107,8 +106,13 @@ class DriveRows:
         yield from self._findings(own, verdict, at_s, iter(findings.whole().findings))
 
     def _judged(
-        self, own: Row, verdict: Verdict, trace: Trace, times: tuple[float, float]
+        self,
+        own: Row,
+        verdict: Verdict,
+        trace: Trace | TraceArrays,
+        times: tuple[float, float],
     ) -> dict[str, Cell]:
+        n_states = len(trace.states) if isinstance(trace, Trace) else trace.n_states
         return {
             **self.shared,
             **own,
@@ -116,17 +120,16 @@ class DriveRows:
             "outcome": OUTCOMES[verdict.satisfied],
             "from_s": times[0],
             "to_s": times[1],
-            "states": len(trace.states),
+            "road": road_class(trace, self.rules.vocabulary),
+            "states": n_states,
             # Each state stands for the time up to the next one, the last for a step, too.
-            "duration_s": round(len(trace.states) * trace.step_s, 9),
+            "duration_s": round(n_states * trace.step_s, 9),
         }
 
     def _not_judged(self, own: Row, why: str) -> Row:
         return {**self.shared, **own, "kind": "drive", "outcome": "not_judged", "because": why}
 
-    def _rules(
-        self, own: Row, verdict: Verdict, opportunities: Opportunities | None
-    ) -> Iterator[Row]:
+    def _rules(self, own: Row, verdict: Verdict, trace: Trace | TraceArrays) -> Iterator[Row]:
         """A row for each rule: the worst of its outcomes, and how often it was put to the test."""
         outcomes: dict[str, str] = dict.fromkeys(self._of_rules, "kept")
         outcomes |= {result.rule: "open" for result in verdict.open}
@@ -134,14 +137,14 @@ class DriveRows:
         not_judged = {rule.rule: rule for rule in verdict.not_judged}
         outcomes |= dict.fromkeys(not_judged, "not_judged")
         shared = {**self.shared, **own, "kind": "rule"}
+        exposure = exposures(trace, self.rules, verdict)
         for name, about in self._of_rules.items():
             row: dict[str, Cell] = {**shared, **about, "outcome": outcomes[name]}
             if name in not_judged:
                 untold = not_judged[name]
                 row |= {"open_on": tuple(untold.untold), "because": untold.why}
-            if opportunities is not None and name in opportunities:
-                times, seconds = opportunities[name]
-                row |= {"opportunities": times, "opportunities_s": seconds}
+            if name in exposure:
+                row |= {field.name: getattr(exposure[name], field.name) for field in _EXPOSURE}
             yield row
 
     def _findings(
@@ -178,4 +181,7 @@ def driven_m(drive: Drive) -> float | None:
     return round(driven + hypot(places[-1].x - x, places[-1].y - y), 2)
 
 
+_EXPOSURE = fields(Exposure)
+
+assert {field.name for field in _EXPOSURE} <= set(COLUMNS), "exposure has columns of its own"
 assert set(OF_FINDINGS) <= set(COLUMNS), "findings have no columns of their own"

@@ -16,13 +16,14 @@ Cell: TypeAlias = "str | float | tuple[str, ...] | None"
 COLUMNS: Mapping[str, type] = {
     "kind": str,
     **verdict_finding.COLUMNS,
-    **dict.fromkeys(("ego", "source", "country"), str),
+    **dict.fromkeys(("ego", "source", "country", "road"), str),
     "state": int,
     "at_s": float,
     "states": int,
     **dict.fromkeys(("duration_s", "distance_m"), float),
-    "opportunities": int,
-    "opportunities_s": float,
+    **dict.fromkeys(("opportunities", "perhaps_opportunities"), int),
+    **dict.fromkeys(("opportunities_s", "perhaps_opportunities_s"), float),
+    **dict.fromkeys(("violated", "perhaps_violated"), int),
     **dict.fromkeys(("rulebook_hash", "rulec", "thresholds", "assumptions"), str),
 }
 """Name -> the type of its values: those of findings, and what rates need beside them.

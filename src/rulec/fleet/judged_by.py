@@ -74,10 +74,10 @@ def _written(value: Value) -> str:
 
 
 def rulebook_hash(rules: CompiledRulebook) -> str:
-    """SHA-256 (hexadecimal) of all that decides verdicts: rules, facts and vocabulary.
+    """SHA-256 (hexadecimal) of all that decides verdicts and opportunities.
 
-    It is that of the rulebook, whether it comes from its source or from a compiled file, for
-    whatever step: neither words for people nor machines count.
+    These are rules, facts and vocabulary. It is that of the rulebook, whether it comes from its
+    source or from a compiled file, for whatever step: neither words for people nor machines count.
     """
     vocabulary = rules.vocabulary
     content = [
@@ -89,6 +89,7 @@ def rulebook_hash(rules: CompiledRulebook) -> str:
             for rule in rules.rules
         ],
         [formula_text(rule.formula) for rule in rules.rules],
+        [rule.trigger and formula_text(rule.trigger) for rule in rules.rules],
         sorted([_variables(axiom), formula_text(axiom.formula)] for axiom in rules.axioms),
         sorted(rules.priorities),
         sorted((item.name, item.parent or "") for item in vocabulary.types.values()),

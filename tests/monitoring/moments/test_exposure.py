@@ -177,8 +177,9 @@ def test_violations_lie_in_opportunities(chance):
             for name, own in found.items():
                 violated = [one for one in verdict.violations if one.rule == name]
                 doubtful = [one for one in verdict.open if one.rule == name]
-                assert len(violated) <= own.violated <= own.perhaps_violated <= own.perhaps
-                assert own.violated <= own.opportunities <= own.perhaps
+                assert len(violated) <= own.violated <= own.perhaps_violated
+                assert own.perhaps_violated <= own.perhaps_opportunities
+                assert own.violated <= own.opportunities <= own.perhaps_opportunities
                 assert (own.violated > 0) == bool(violated)
                 assert (own.perhaps_violated > 0) == bool(violated or doubtful)
-                assert own.exposed_s <= own.perhaps_exposed_s <= len(trace.states)
+                assert own.opportunities_s <= own.perhaps_opportunities_s <= len(trace.states)

@@ -35,18 +35,18 @@ Counts = NDArray[np.intp]
 class Exposure:
     """The opportunities that a trace gives to violate a rule, and those that were taken.
 
-    ``opportunities`` are those for sure, ``perhaps`` those at most. ``exposed_s`` and
-    ``perhaps_exposed_s`` (s) are the states in which there is one for some choice of objects, each
-    for one step. ``violated`` and ``perhaps_violated`` are the opportunities in which the rule is
-    breached, for sure and at most.
+    ``opportunities`` are those for sure, ``perhaps_opportunities`` those at most;
+    ``opportunities_s`` and ``perhaps_opportunities_s`` (s) are the states in which there is one for
+    some choice of objects, each for one step. ``violated`` and ``perhaps_violated`` are the
+    opportunities in which the rule is breached, for sure and at most.
     """
 
     __repr__ = short_repr
 
     opportunities: int
-    perhaps: int
-    exposed_s: float
-    perhaps_exposed_s: float
+    perhaps_opportunities: int
+    opportunities_s: float
+    perhaps_opportunities_s: float
     violated: int
     perhaps_violated: int
 

@@ -43,6 +43,13 @@ class FormulaTruth:
     possible: NDArray[np.bool_]
 
 
+def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:
+    """What a checked trace says of names."""
+    if isinstance(trace, Trace):
+        return StateTables(trace, vocabulary)
+    return ArrayTables(trace, vocabulary)
+
+
 class ReadyFormula:
     """A formula with what is known of it without a trace; bounds of operators are in steps.
 
@@ -67,11 +74,7 @@ class TraceTruth:
         self, trace: Trace | TraceArrays, vocabulary: Vocabulary, semantics: Semantics
     ) -> None:
         self._objects = trace.objects
-        self._tables: NameTables = (
-            StateTables(trace, vocabulary)
-            if isinstance(trace, Trace)
-            else ArrayTables(trace, vocabulary)
-        )
+        self._tables = tables_of(trace, vocabulary)
         self.n_states = self._tables.n_states
         self._places = {item: place for place, item in enumerate(self._tables.objects)}
         self._spans = self._tables.spans
