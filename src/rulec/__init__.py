@@ -16,13 +16,14 @@ is used.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-from rulec.version import __version__
+# Nothing is imported here, for until the command line has prepared its signals Ctrl-C would print
+# a traceback. Checkers of types take this name for true.
+TYPE_CHECKING = False
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import Any
+
     from rulec.analysis.audit.rulebook_audit import Audit as Audit
     from rulec.analysis.audit.rulebook_audit import AuditCounts as AuditCounts
     from rulec.analysis.audit.rulebook_audit import AuditFinding as AuditFinding
@@ -112,6 +113,7 @@ if TYPE_CHECKING:
     from rulec.trace.trace_columns import TraceCells as TraceCells
     from rulec.trace.trace_columns import TraceColumns as TraceColumns
     from rulec.trace.trace_columns import layout_of as layout_of
+    from rulec.version import __version__ as __version__
     from rulec.vocabulary import Vocabulary as Vocabulary
     from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN
     from rulec.vocabulary.partial_values import Interval as Interval
@@ -183,9 +185,13 @@ __all__ = ["__version__", *_MODULES]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _MODULES:
+    module = "rulec.version" if name == "__version__" else _MODULES.get(name)
+    if module is None:
         raise AttributeError(f"module 'rulec' has no attribute {name!r}")
-    return getattr(import_module(_MODULES[name]), name)
+    # Nothing is imported at the top, see there.
+    from importlib import import_module
+
+    return getattr(import_module(module), name)
 
 
 def __dir__() -> Sequence[str]:

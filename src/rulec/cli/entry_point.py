@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
-import gc
+# Python has these two when it begins; `signal` and what it imports take 2 ms.
+import _signal  # type: ignore[import-not-found]
 import os
+
+
+def _interrupted(number: int, _: object) -> None:
+    os._exit(128 + number)
+
+
+if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
+    # Wherever Ctrl-C comes while modules are imported: no traceback.
+    _signal.signal(_signal.SIGINT, _interrupted)
+
+# ruff: noqa: E402 - what is above comes first
+import gc
 import signal
 import sys
 from io import TextIOWrapper
 from types import FrameType
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from rulec.version import __version__
+
+if TYPE_CHECKING:
+    from sys import UnraisableHookArgs
 
 
 def run() -> int:
@@ -26,6 +42,9 @@ def run() -> int:
     except KeyboardInterrupt:
         return 128 + signal.SIGINT
     finally:
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            # All is done, and whatever Python does at its end is not for tracebacks either.
+            signal.signal(signal.SIGINT, _interrupted)
         for stream in (sys.stdout, sys.stderr):
             _let_go_of(stream)
 
@@ -48,6 +67,21 @@ def _prepare() -> None:
     if hasattr(sys, "set_int_max_str_digits"):
         # Exact counts are long: at most a few digits for each of the 10,000 layers of a graph.
         sys.set_int_max_str_digits(100_000)
+    sys.unraisablehook = _unraisable
+    if signal.getsignal(signal.SIGINT) is _interrupted:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _unraisable(problem: UnraisableHookArgs) -> None:
+    """Interrupt again what was interrupted where nothing can be raised, such as in a finalizer."""
+    if not issubclass(problem.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(problem)
+        return
+    # 3 ms: only if that happens.
+    from threading import Timer, get_ident
+
+    # Not at once, since this is such a place, too.
+    Timer(0.01, signal.pthread_kill, (get_ident(), signal.SIGINT)).start()
 
 
 def _said_version() -> bool:
