@@ -28,18 +28,19 @@ from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.map_signals import map_signals
+from rulec.extraction.signals.map.merge_signals import merge_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.road_signals import road_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.map.zone_signals import zone_signals
 from rulec.extraction.signals.measured_numbers import safe_distance_error
-from rulec.extraction.signals.merge_signals import merge_signals
 from rulec.extraction.signals.participant_signals import (
     gap_beside_safe_distance,
     participant_signals,
 )
 from rulec.extraction.signals.settling import settled
 from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import Wanted
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
@@ -78,7 +79,7 @@ def presences(context: DriveContext) -> Iterator[Presence]:
             yield Presence(name, row, int(part[0]), int(part[-1]))
 
 
-_SIGNALS: tuple[Callable[[DriveContext], SignalColumns], ...] = (
+_SIGNALS: tuple[Callable[[DriveContext, Wanted], SignalColumns], ...] = (
     ego_signals,
     participant_signals,
     following_signals,
@@ -197,9 +198,9 @@ ALL_SIGNALS = TraceWriter()
 
 def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) -> Drive:
     """The drive of ``ego`` as a trace called ``name``."""
-    signals = SignalColumns()
+    signals, wanted = SignalColumns(), _wanted(writer)
     for signals_of in _SIGNALS:
-        signals |= signals_of(context)
+        signals |= signals_of(context, wanted)
     signals = settled(signals, LEAST_S, context.recording.step_s)
     types = [body.object_types for body in context.tracks.participants]
     chosen = written(signals, types, writer.vocabulary, writer.names)
@@ -232,6 +233,14 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
         decided_by["safe_gap"] = DecidedBy("gap", "m", rows, gap, safe, *errors)
     places = tuple(_places(context))
     return Drive(ego, start_s, arrays, kinds, decided_by=decided_by, places=places)
+
+
+def _wanted(writer: TraceWriter) -> Wanted:
+    """The names of the signals that will be written, None for all."""
+    if writer.vocabulary is None:
+        return None
+    declared = frozenset(writer.vocabulary.declarations)
+    return declared if writer.names is None else declared & writer.names
 
 
 def _places(context: DriveContext) -> Iterator[Place]:

@@ -7,7 +7,6 @@ import pytest
 
 from rulec.extraction.signals.participant_signals import (
     LONGEST_S,
-    is_oncoming,
     participant_signals,
     safe_distance,
 )
@@ -103,8 +102,8 @@ def test_only_the_next_one_ahead_precedes():
 
 
 def test_oncoming_moves_against_ego_or_waits_beside_its_lanes():
-    assert is_oncoming(context(steady(8, 60, 4, speed=-5)))[0].all()
-    assert not is_oncoming(context(steady(8, 60, 4, speed=5)))[0].any()
+    assert about(steady(8, 60, 4, speed=-5))["oncoming"]
+    assert not about(steady(8, 60, 4, speed=5))["oncoming"]
     waiting = {"speed": -0.01, "heading": float(np.pi)}
     # On ego's own lanes one that stands the wrong way round is an obstacle
     assert not about(steady(8, 60, 4, **waiting))["oncoming"]

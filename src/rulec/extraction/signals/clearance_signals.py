@@ -6,7 +6,8 @@ import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Side
 
@@ -19,26 +20,40 @@ _UNSEEN_S = 5.0
 """For so long one whose track has ended is thought to drive on as before."""
 
 
-def clearance_signals(context: DriveContext) -> SignalColumns:
-    """The signals of what leaves ego room to go on, to overtake, and to pass."""
+def clearance_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of what leaves ego room to go on, to overtake, and to pass, those wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _for_overtaking(context: DriveContext) -> SignalColumns:
     clear, unknown = _oncoming_clear(context)
+    return SignalColumns({"oncoming_clear": clear}, unknown={"oncoming_clear": unknown})
+
+
+def _in_own_lanes(context: DriveContext) -> SignalColumns:
+    return SignalColumns({"obstructed": _obstructed(context)})
+
+
+def _for_access(context: DriveContext) -> SignalColumns:
     access, open_end = _needs_access(context)
-    world: dict[str, SignalColumn] = {
-        "oncoming_clear": clear,
-        "obstructed": _obstructed(context),
-        "needs_access": access,
-        "other_lane_available": _far_lane_is_free(context),
-        "near_lane_is_free": _near_lane_is_free(context),
-    }
+    return SignalColumns({"needs_access": access}, unknown={"needs_access": open_end})
+
+
+def _on_far_lane(context: DriveContext) -> SignalColumns:
+    return SignalColumns({"other_lane_available": _far_lane_is_free(context)})
+
+
+def _on_near_lane(context: DriveContext) -> SignalColumns:
     return SignalColumns(
-        world,
-        {"room_on_near_side": _room_on_near_side(context)},
-        {
-            "oncoming_clear": unknown,
-            "needs_access": open_end,
-            "near_lane_is_free": _perhaps_on_near_lane(context),
-        },
-        {"room_on_near_side": context.tracks.of_type("road_user")},
+        {"near_lane_is_free": _near_lane_is_free(context)},
+        unknown={"near_lane_is_free": _perhaps_on_near_lane(context)},
+    )
+
+
+def _on_near_side(context: DriveContext) -> SignalColumns:
+    return SignalColumns(
+        about={"room_on_near_side": _room_on_near_side(context)},
+        only={"room_on_near_side": context.tracks.of_type("road_user")},
     )
 
 
@@ -207,3 +222,13 @@ def _on_next_lane(context: DriveContext, side: Side) -> tuple[Flags, Flags]:
     lane, there = _next_lane(context, side)
     on_it = context.touched[:, np.arange(context.states), lane]
     return on_it & context.going_along, there
+
+
+_PASSES: Passes = {
+    ("oncoming_clear",): _for_overtaking,
+    ("obstructed",): _in_own_lanes,
+    ("needs_access",): _for_access,
+    ("other_lane_available",): _on_far_lane,
+    ("near_lane_is_free",): _on_near_lane,
+    ("room_on_near_side",): _on_near_side,
+}

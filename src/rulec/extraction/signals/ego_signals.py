@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -11,7 +12,8 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.signal_columns import SignalColumns, named_values, rounded
-from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
+from rulec.extraction.tracks.tracks import Floats
 
 _EGO_TYPES = {
     "truck": "ego_truck",
@@ -25,40 +27,68 @@ _COUNTS = ("one_lane", "two_lanes", "three_or_more_lanes")
 _PLACES = ("centred", "at_near_edge", "at_far_edge")
 
 
-def ego_signals(context: DriveContext) -> SignalColumns:
-    """The signals of ego alone."""
-    limits = context.thresholds
-    count, own = context.states, context.ego_extents
+def ego_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of ego alone, those that are wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _ego_type(context: DriveContext) -> SignalColumns:
     (participant,) = context.ego.participants
-    speed, error = own_speed(context)
+    return SignalColumns(
+        {"ego_type": np.full(context.states, _EGO_TYPES.get(participant.type, "ego_car"))},
+        # A file may know of vehicles no more than that they are some
+        unknown={"ego_type": np.full(context.states, participant.type == "vehicle")},
+    )
+
+
+def _ego_length(context: DriveContext) -> SignalColumns:
+    length = np.nanmedian(context.ego_extents.s_max - context.ego_extents.s_min)
+    return SignalColumns({"ego_length": rounded(np.full(context.states, length))})
+
+
+def _speed(context: DriveContext) -> SignalColumns:
+    speed, _ = own_speed(context)
+    return SignalColumns({"speed": rounded(speed * KMH)}, bounds={"speed": speed_bounds(context)})
+
+
+def _change_of_speed(context: DriveContext) -> SignalColumns:
+    limits = context.thresholds
     gained, wrong = context.ego.acceleration[0], context.ego.acceleration_error[0]
-    existing, slow = context.existing_lanes, limits.stops_at_once_kmh / KMH
-    straddling, unsure = _straddling(context)
-    lane = _from_kerb(context, context.steady_lane)
     return SignalColumns(
         {
-            "ego_type": np.full(count, _EGO_TYPES.get(participant.type, "ego_car")),
-            "ego_length": rounded(np.full(count, np.nanmedian(own.s_max - own.s_min))),
-            "speed": rounded(speed * KMH),
             "accelerating": gained > limits.accelerating_mps2,
             "braking_hard": gained < -limits.braking_hard_mps2,
-            "can_stop_at_once": speed <= slow,
-            "lane": named_values(lane, _LANES),
-            "lanes": named_values(np.clip(existing.sum(axis=1) - 1, 0, 2), _COUNTS),
-            "straddling": straddling,
-            "lane_position": named_values(_place_in_lane(context), _PLACES),
         },
         unknown={
             "accelerating": abs(gained - limits.accelerating_mps2) < wrong,
             "braking_hard": abs(gained + limits.braking_hard_mps2) < wrong,
-            "can_stop_at_once": abs(speed - slow) < error,
-            "straddling": unsure,
-            "lane": lane != _from_kerb(context, context.ego_lane),
-            # A file may know of vehicles no more than that they are some
-            "ego_type": np.full(count, participant.type == "vehicle"),
         },
-        bounds={"speed": speed_bounds(context)},
     )
+
+
+def _stopping(context: DriveContext) -> SignalColumns:
+    (speed, error), slow = own_speed(context), context.thresholds.stops_at_once_kmh / KMH
+    return SignalColumns(
+        {"can_stop_at_once": speed <= slow},
+        unknown={"can_stop_at_once": abs(speed - slow) < error},
+    )
+
+
+def _lane(context: DriveContext) -> SignalColumns:
+    lane = _from_kerb(context, context.steady_lane)
+    return SignalColumns(
+        {"lane": named_values(lane, _LANES)},
+        unknown={"lane": lane != _from_kerb(context, context.ego_lane)},
+    )
+
+
+def _lane_count(context: DriveContext) -> SignalColumns:
+    count = context.existing_lanes.sum(axis=1)
+    return SignalColumns({"lanes": named_values(np.clip(count - 1, 0, 2), _COUNTS)})
+
+
+def _lane_position(context: DriveContext) -> SignalColumns:
+    return SignalColumns({"lane_position": named_values(_place_in_lane(context), _PLACES)})
 
 
 def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
@@ -71,16 +101,22 @@ def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     return np.where(rank <= 0, 0, np.where(rank >= count - 1, 2, 1))
 
 
-def _straddling(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of ego in two lanes, and of states in which that cannot be told."""
-    place = context.tolerances.place_m
-    both = []
-    unmoved = np.zeros(context.states)
-    for less, shift in ((0.0, unmoved), *product((place, -place), (unmoved, context.map_offset_m))):
-        inside = context.ego_extents.moved(-shift).inside[0]
-        least = context.thresholds.touching_m + less
-        both.append(((inside > least) & context.existing_lanes).sum(axis=1) > 1)
-    return both[0], np.any(both, axis=0) & ~np.all(both, axis=0)
+def _straddling(context: DriveContext) -> SignalColumns:
+    """Whether ego is in two lanes; unknown where places, or the map, decide it."""
+    place, offset = context.tolerances.place_m, context.map_offset_m
+    shifts = [0.0 * offset, offset] if offset.any() else [0.0 * offset]
+    tried = [(0.0, shifts[0]), *product((place, -place), shifts)]
+    by = -np.stack([shift for _, shift in tried])[..., None]
+    own, least = context.ego_extents, context.thresholds.touching_m
+    bounds = {"left_of_min": own.left_of_min + by, "left_of_max": own.left_of_max + by}
+    inside = (
+        replace(own, **bounds).inside > np.array([least + less for less, _ in tried])[:, None, None]
+    )
+    both = (inside & context.existing_lanes).sum(axis=-1) > 1
+    return SignalColumns(
+        {"straddling": both[0]},
+        unknown={"straddling": both.any(axis=0) & ~both.all(axis=0)},
+    )
 
 
 def room_beside(context: DriveContext) -> tuple[Floats, Floats]:
@@ -98,3 +134,16 @@ def _place_in_lane(context: DriveContext) -> NDArray[intp]:
     edge = context.thresholds.at_edge_m
     kept = (np.minimum(near, far) < edge) & (np.abs(near - far) > edge)
     return np.where(kept, np.where(near < far, 1, 2), 0)
+
+
+_PASSES: Passes = {
+    ("ego_type",): _ego_type,
+    ("ego_length",): _ego_length,
+    ("speed",): _speed,
+    ("accelerating", "braking_hard"): _change_of_speed,
+    ("can_stop_at_once",): _stopping,
+    ("lane",): _lane,
+    ("lanes",): _lane_count,
+    ("straddling",): _straddling,
+    ("lane_position",): _lane_position,
+}

@@ -5,91 +5,111 @@ All of it counts the vehicles that go ego's way on its lanes, ego among them, as
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.queues import (
     LOOSE,
+    MEASURED,
+    READINGS,
+    STRICT,
     close_by,
     lanes_that_decide,
     longest_gaps,
+    medians,
     queues_by_lane,
+    vehicles_around,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumns, next_state
+from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 _SETS_OFF_MPS2 = 2.0
 """Vehicles gain speed about so hard when they set off."""
 
 
-def flow_signals(context: DriveContext) -> SignalColumns:
-    """The signals of traffic as a whole."""
-    limits = context.thresholds
-    speeds, counts = _around(context)
-    enough = counts >= limits.fewest
-    congested = enough & (speeds < limits.congested_kmh)
-    queues, queue_speeds = queues_by_lane(context)
-    overtakes, unsure = _overtaking(context)
-    overtaken, open_end = _overtaken(context)
-    dense, surely, not_told = _dense_lines(context, queues)
-    slow = [lanes & (queue_speeds < limits.slow_queue_kmh) for lanes in queues]
-    queue, fewer, _ = (_beside(context, lanes) for lanes in slow)
-    # Whether one farther out is the queue beside ego's lane depends on who is passed
-    more = _at_far_side(context, slow[LOOSE])
-    # Lanes that move off beside each other do not overtake
-    moot = _sets_off(context) | not_told
+def flow_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of traffic as a whole, those that are wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _slow_traffic(context: DriveContext) -> SignalColumns:
+    around, limits = vehicles_around(context), context.thresholds
+    speeds, counts = medians(around.state, around.speed, context.states)
+    enough, speed_kmh = counts >= limits.fewest, speeds * KMH
+    congested = enough & (speed_kmh < limits.congested_kmh)
     return SignalColumns(
         {
             "congested": congested,
             "CONGESTED": congested,
-            "walking_pace_flow": enough & (speeds < limits.walking_pace_kmh),
-            "dense_all_lanes": dense,
-            "far_lane_queue": queue,
-            "overtaking": overtakes,
-            # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
-            "being_overtaken": ~dense & overtaken,
-        },
-        unknown={
-            "dense_all_lanes": not_told,
-            "far_lane_queue": more & ~fewer,
-            "overtaking": unsure & ~overtakes,
-            "being_overtaken": ~surely & np.where(overtaken, moot, open_end),
-        },
+            "walking_pace_flow": enough & (speed_kmh < limits.walking_pace_kmh),
+        }
     )
 
 
-def _dense_lines(context: DriveContext, queues: Sequence[Flags]) -> tuple[Flags, Flags, Flags]:
+def _dense_all_lanes(context: DriveContext) -> SignalColumns:
+    dense, _, not_told = _dense_lines(context)
+    return SignalColumns({"dense_all_lanes": dense}, unknown={"dense_all_lanes": not_told})
+
+
+def _far_lane_queue(context: DriveContext) -> SignalColumns:
+    queues, speed_kmh = queues_by_lane(context)
+    slow = queues & (speed_kmh < context.thresholds.slow_queue_kmh)
+    queue, fewer = (_beside(context, slow[reading]) for reading in (MEASURED, STRICT))
+    # Whether one farther out is the queue beside ego's lane depends on who is passed
+    more = _at_far_side(context, slow[LOOSE])
+    return SignalColumns({"far_lane_queue": queue}, unknown={"far_lane_queue": more & ~fewer})
+
+
+def _overtaking(context: DriveContext) -> SignalColumns:
+    overtakes, unsure = _overtakes(context)
+    return SignalColumns({"overtaking": overtakes}, unknown={"overtaking": unsure & ~overtakes})
+
+
+def _being_overtaken(context: DriveContext) -> SignalColumns:
+    overtaken, open_end = _overtaken(context)
+    dense, surely, not_told = _dense_lines(context)
+    # Lanes that move off beside each other do not overtake
+    moot = _sets_off(context) | not_told
+    # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
+    return SignalColumns(
+        {"being_overtaken": ~dense & overtaken},
+        unknown={"being_overtaken": ~surely & np.where(overtaken, moot, open_end)},
+    )
+
+
+@once
+def _dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     """Flags of states with queues on all lanes, surely so, and of those where nobody knows."""
-    counts = lanes_that_decide(context)
-    decides = [context.existing_lanes & (counts | queue) for queue in queues]
-    all_queue = [
-        np.all(queue | ~deciding, axis=1) & np.any(deciding, axis=1)
-        for queue, deciding in zip(queues, decides, strict=True)
-    ]
+    queues, _ = queues_by_lane(context)
+    decides = context.existing_lanes & (lanes_that_decide(context) | queues)
+    all_queue = np.logical_and((queues | ~decides).all(axis=-1), decides.any(axis=-1))
     # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more
-    ahead = _ahead_in_lane(context)
-    cut_off = all_queue[LOOSE] & ~ahead.any(axis=0) & ("light" not in context.recording.complete)
-    gap, speed = relations.gap(context), context.ego_extents.along[0]
+    gap = _gap_ahead(context)
+    whole = "light" in context.recording.complete
+    cut_off = all_queue[LOOSE] & np.isinf(gap) & (not whole)
+    speed = context.ego_extents.along[0]
     longest = longest_gaps(context, speed, context.ego.speed_error[0])
     dense, surely, perhaps = (
-        lines & (ahead & (gap <= most)).any(axis=0)
-        for lines, most in zip(all_queue, longest, strict=True)
+        all_queue[reading] & (gap <= longest[reading]) for reading in READINGS
     )
     # Nor is there a queue where the world ends, whose traffic is all recorded
-    nobody_knows = ~np.any(decides[0], axis=1) & ("light" not in context.recording.complete)
+    nobody_knows = ~decides[MEASURED].any(axis=-1) & (not whole)
     return dense, surely, perhaps & ~surely | cut_off | nobody_knows
 
 
-def _ahead_in_lane(context: DriveContext) -> Flags:
-    """Flags of who is ahead of ego in its lane, as far as traffic reaches."""
+def _gap_ahead(context: DriveContext) -> Floats:
+    """The gap (m) to the next one ahead of ego in its lane, infinity without any, by state.
+
+    As far as traffic reaches.
+    """
     own_lane = context.extents.lane == context.ego_lane
-    ahead: Flags = close_by(context) & (relations.station(context) == relations.BEHIND) & own_lane
-    return ahead
+    ahead = close_by(context) & (relations.station(context) == relations.BEHIND) & own_lane
+    gap: Floats = np.where(ahead, relations.gap(context), np.inf).min(axis=0, initial=np.inf)
+    return gap
 
 
 def _sets_off(context: DriveContext) -> Flags:
@@ -107,13 +127,6 @@ def _sets_off(context: DriveContext) -> Flags:
     return sets_off
 
 
-def _around(context: DriveContext) -> tuple[Floats, Floats]:
-    close = close_by(context)
-    speeds = np.where(close, np.maximum(context.extents.along, 0.0), np.nan)
-    with_own = np.concatenate((np.maximum(context.ego_extents.along, 0.0), speeds))
-    return np.nanmedian(with_own, axis=0) * KMH, close.sum(axis=0) + 1
-
-
 def _at_far_side(context: DriveContext, lanes: Flags) -> Flags:
     """Whether a lane of those flagged lies at ego's far side, by state."""
     number, own = np.arange(lanes.shape[1]), context.ego_lane[:, None]
@@ -129,19 +142,22 @@ def _beside(context: DriveContext, lanes: Flags) -> Flags:
     return beside
 
 
-def _overtaking(context: DriveContext) -> tuple[Flags, Flags]:
+def _overtakes(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of ego overtaking a slower vehicle, and of it perhaps doing so.
 
     Who overtakes is at the far side, from shortly before it is beside the other until it is just
     past.
     """
     far, _ = _sides(context)
-    beside = relations.station(context) == relations.BESIDE
     slower: Flags = context.extents.along < context.ego_extents.along
     slower &= (relations.lateral(context) == far) & context.driving_along
-    surely: Flags = np.any(slower & (_ahead_and_past(context, 0.0) | beside), axis=0)
-    perhaps: Flags = np.any(slower & _ahead_and_past(context, 1.0), axis=0)
-    return surely, perhaps
+    cells = slower.nonzero()
+    beside = relations.station(context)[cells] == relations.BESIDE
+    surely, perhaps = (_ahead_and_past(context, cells, tolerances) for tolerances in (0.0, 1.0))
+    overtakes, unsure = np.zeros((2, context.states), dtype=bool)
+    overtakes[cells[1][surely | beside]] = True
+    unsure[cells[1][perhaps]] = True
+    return overtakes, unsure
 
 
 def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
@@ -154,17 +170,19 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     limits, station = context.thresholds, relations.station(context)
     _, near = _sides(context)
     faster_mps = context.extents.along - context.ego_extents.along
-    ahead, beside = station == relations.IN_FRONT_OF, station == relations.BESIDE
-    closing = ahead & (relations.gap(context) <= faster_mps * limits.passed_s)
-    comes = (closing | beside) & (faster_mps * KMH >= limits.clearly_faster_kmh)
+    comes: Flags = (faster_mps * KMH >= limits.clearly_faster_kmh) & (station != relations.BEHIND)
     comes &= (relations.lateral(context) == near) & context.going_along
-    gets_past, lost = _gets_past(context, station == relations.BEHIND)
-    next_lane = _next_lane(context)
-    reaches, lanes = context.touched, np.arange(context.touched.shape[-1])
-    reaches = (reaches & (lanes == next_lane[None, :, None])).any(axis=-1)
-    inside = reaches & (context.extents.lane == next_lane)
-    open_end = comes & (reaches & lost | reaches & ~inside & gets_past)
-    return (comes & inside & gets_past).any(axis=0), open_end.any(axis=0)
+    closing = relations.gap(context) <= faster_mps * limits.passed_s
+    rows, states = (comes & (closing | (station == relations.BESIDE))).nonzero()
+    gets_past, lost = (flags[rows, states] for flags in _gets_past(context, np.unique(rows)))
+    next_lane, lanes = _next_lane(context)[states], context.touched.shape[-1]
+    there = (next_lane >= 0) & (next_lane < lanes)
+    reaches = there & context.touched[rows, states, np.clip(next_lane, 0, lanes - 1)]
+    inside = reaches & (context.extents.lane[rows, states] == next_lane)
+    overtaken, open_end = np.zeros((2, context.states), dtype=bool)
+    overtaken[states[inside & gets_past]] = True
+    open_end[states[reaches & (lost | (~inside & gets_past))]] = True
+    return overtaken, open_end
 
 
 def _sides(context: DriveContext) -> tuple[int, int]:
@@ -173,14 +191,17 @@ def _sides(context: DriveContext) -> tuple[int, int]:
     return sides if context.side == "right" else sides[::-1]
 
 
-def _ahead_and_past(context: DriveContext, tolerances: float) -> Flags:
-    """Flags of participants that ego will be beside soon, or has just been, if it overtakes.
+def _ahead_and_past(
+    context: DriveContext, cells: tuple[NDArray[intp], ...], tolerances: float
+) -> Flags:
+    """Flags of cells in which ego will be beside another soon, or has just been, if it overtakes.
 
-    With so many tolerances of places and speeds added to what is as far as that.
+    With so many tolerances of places and speeds added to what is as far as that. The cells are rows
+    and states.
     """
     limits, known = context.thresholds, context.tolerances
-    station, gap = relations.station(context), relations.gap(context)
-    own, other = context.ego_extents.along, context.extents.along
+    station, gap = relations.station(context)[cells], relations.gap(context)[cells]
+    own, other = context.ego_extents.along[0, cells[1]], context.extents.along[cells]
     far_ahead = (own - other + 2 * tolerances * known.speed_mps) * limits.catching_up_s
     far_behind = (own + tolerances * known.speed_mps) * limits.passed_s
     reach = np.where(station == relations.BEHIND, far_ahead, far_behind)
@@ -203,16 +224,25 @@ def _next_lane(context: DriveContext) -> NDArray[intp]:
     return next_lane
 
 
-def _gets_past(context: DriveContext, past: Flags) -> tuple[Flags, Flags]:
-    """Flags of participants that are past within ``catching_up_s``, and of those lost before."""
+def _gets_past(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
+    """Flags of participants that are past within ``catching_up_s``, and of those lost before.
+
+    Of these rows, False in all others.
+    """
     horizon = round(context.thresholds.catching_up_s / context.recording.step_s)
-    states = np.arange(context.states)
-    seen = context.relevant
-    never = len(states) + horizon
-    next_past = np.minimum.accumulate(np.where(past & seen, states, never)[:, ::-1], axis=1)[
-        :, ::-1
-    ]
-    absent = np.where(seen, len(states), states)
-    next_absent = np.minimum.accumulate(absent[:, ::-1], axis=1)[:, ::-1]
-    gets_past = next_past <= states + horizon
-    return gets_past, ~gets_past & (next_absent <= states + horizon)
+    states, never = np.arange(context.states), context.states + horizon
+    seen = context.relevant[rows]
+    past = seen & (relations.station(context)[rows] == relations.BEHIND)
+    gets_past, lost = np.zeros((2, *context.relevant.shape), dtype=bool)
+    gets_past[rows] = next_state(past, never) <= states + horizon
+    lost[rows] = ~gets_past[rows] & (next_state(~seen, context.states) <= states + horizon)
+    return gets_past, lost
+
+
+_PASSES: Passes = {
+    ("congested", "CONGESTED", "walking_pace_flow"): _slow_traffic,
+    ("dense_all_lanes",): _dense_all_lanes,
+    ("far_lane_queue",): _far_lane_queue,
+    ("overtaking",): _overtaking,
+    ("being_overtaken",): _being_overtaken,
+}

@@ -15,50 +15,66 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S
-from rulec.extraction.signals.signal_columns import SignalColumns, rounded, rounded_outward
+from rulec.extraction.signals.signal_columns import (
+    SignalColumns,
+    latest,
+    rounded,
+    rounded_outward,
+)
+from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 
-def following_signals(context: DriveContext) -> SignalColumns:
+def following_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signal of times behind others, if it is wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _ahead_for(context: DriveContext) -> SignalColumns:
     """Times (s) for which ego has been behind others in one lane, with their bounds."""
     _, surely, perhaps = relations.ahead_in_lane(context)
-    since, seen = _since(context, surely)
-    states, step_s = np.arange(context.states), context.recording.step_s
-    before = np.take_along_axis(_before(context), since, axis=1)
-    least = (states - since) * step_s + np.where(seen, 0.0, before)
-    since, seen = _since(context, perhaps)
-    most = np.where(seen, (states - since + 1) * step_s, LONGEST_S)
-    least, most = (
-        np.where(surely, np.minimum(least, LONGEST_S), 0.0),
-        np.where(perhaps, most, 0.0),
-    )
-    return SignalColumns(
-        about={"ahead_for": rounded(least)},
-        bounds={"ahead_for": rounded_outward(least, np.maximum(least, most))},
-    )
+    rows, step_s = np.flatnonzero(perhaps.any(axis=1)), context.recording.step_s
+    surely, perhaps = surely[rows], perhaps[rows]
+    since, seen = _since(context, rows, perhaps)
+    states = np.arange(context.states)
+    most = np.where(seen, (states - since + 1) * step_s, LONGEST_S) * perhaps
+    since, seen = _since(context, rows, surely)
+    least = (states - since) * step_s
+    appears = (surely & ~seen).nonzero()
+    least[appears] += _before(context, rows[appears[0]], since[appears])
+    least = np.minimum(least, LONGEST_S) * surely
+    times, *bounds = np.zeros((3, *context.relevant.shape))
+    times[rows] = rounded(least)
+    bounds[0][rows], bounds[1][rows] = rounded_outward(least, np.maximum(least, most))
+    return SignalColumns(about={"ahead_for": times}, bounds={"ahead_for": (bounds[0], bounds[1])})
 
 
-def _since(context: DriveContext, follows: Flags) -> tuple[NDArray[intp], Flags]:
-    """The states in which flags last began, and whether one was seen the state before."""
-    states, rows = np.arange(context.states), np.arange(len(follows))[:, None]
-    since = np.maximum.accumulate(np.where(follows, -1, states), axis=1) + 1
-    since = np.minimum(since, context.states - 1)
-    return since, (since > 0) & context.relevant[rows, since - 1]
+def _since(
+    context: DriveContext, rows: NDArray[intp], follows: Flags
+) -> tuple[NDArray[intp], Flags]:
+    """The states in which these rows' flags last began, and was one seen the state before?"""
+    since = np.minimum(latest(~follows) + 1, context.states - 1)
+    return since, (since > 0) & context.relevant[rows[:, None], since - 1]
 
 
-def _before(context: DriveContext) -> Floats:
+def _before(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -> Floats:
     """How long (s) others were ahead at least when first seen, by where they were across."""
     limits, own, others = context.thresholds, context.ego_extents, context.extents
-    reach, right, left = limits.touching_m, context.ego_lane, context.ego_lane + 1
-    low, high = others.from_bound(left)
-    from_left = np.maximum(own.from_bound(left)[1] - low, -high) + reach
+    reach, right = limits.touching_m, context.ego_lane[states]
+    left = right + 1
+    low, high = others.left_of_min[rows, states, left], others.left_of_max[rows, states, left]
+    from_left = np.maximum(own.left_of_max[0, states, left] - low, -high) + reach
     inside = np.minimum(-low - reach, from_left)
-    low, high = others.from_bound(right)
-    from_right = np.maximum(high - own.from_bound(right)[0], low) + reach
+    low, high = others.left_of_min[rows, states, right], others.left_of_max[rows, states, right]
+    from_right = np.maximum(high - own.left_of_min[0, states, right], low) + reach
     inside = np.minimum(inside, np.minimum(high - reach, from_right))
     way = np.nan_to_num(np.maximum(inside - context.tolerances.place_m, 0.0))
-    speed = np.maximum(np.abs(others.across), np.abs(others.across - own.across))
-    speed = np.nan_to_num(speed) + np.nan_to_num(context.tracks.speed_error)
+    across = others.across[rows, states]
+    speed = np.maximum(np.abs(across), np.abs(across - own.across[0, states]))
+    speed = np.nan_to_num(speed) + np.nan_to_num(context.tracks.speed_error[rows, states])
     slows = limits.cutting_in_mps2
     time: Floats = (np.sqrt(speed**2 + 2 * slows * way) - speed) / slows
     return time
+
+
+_PASSES: Passes = {("ahead_for",): _ahead_for}

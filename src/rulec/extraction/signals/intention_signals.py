@@ -6,11 +6,22 @@ recording has its lamps; elsewhere who does what it should have signalled first 
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Mapping
 
-from rulec.extraction.drive_context import KMH, DriveContext
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.signal_columns import SignalColumns, latest, next_state
+from rulec.extraction.signals.signal_passes import (
+    Passes,
+    Wanted,
+    once_a_recording,
+    signals_by,
+)
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Lamp
 
@@ -19,52 +30,103 @@ _FLASH_S = 1.0
 """Lights that flash are on if they are lit within so long."""
 
 
-def intention_signals(context: DriveContext) -> SignalColumns:
-    """The signals of others' lamps and doors, and of what they are about to do."""
-    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
-    public = np.any([context.tracks.of_type(kind) for kind in _PUBLIC], axis=0)[:, None]
-    doors, doors_told = _lit(context, "doors")
-    hazard, hazard_told = _lit(context, "hazard_lights")
-    blue, blue_told = _lit(context, "blue_light")
-    blue = _flashing(blue, context)
+def intention_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of others' lamps and doors, and of what they are about to do, those wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
+    on_call, not_told = _on_call(context)
+    rows = np.flatnonzero((on_call | not_told).any(axis=1))
+    comes, perhaps = np.zeros((2, context.states), dtype=bool)
+    if len(rows):
+        near = context.relevant[rows] & _comes_near(context)[rows]
+        needs_way = _drives(context, rows)
+        comes = np.any(near & on_call[rows] & needs_way, axis=0)
+        perhaps = np.any(near & (not_told[rows] | (on_call[rows] & ~needs_way)), axis=0)
+    return SignalColumns(
+        {"emergency_vehicle_near": comes}, unknown={"emergency_vehicle_near": perhaps & ~comes}
+    )
+
+
+def _called(context: DriveContext) -> SignalColumns:
+    on_call, not_told = _on_call(context)
+    return SignalColumns(about={"on_call": on_call}, unknown={"on_call": not_told})
+
+
+@once
+def _on_call(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of emergency vehicles with their blue lights on, and of those that perhaps are that."""
     called = context.tracks.of_type("emergency_vehicle")[:, None]
     kinds = np.array([body.type == "unknown" for body in context.tracks.participants], dtype=bool)
-    not_told = (called & ~blue_told & ~blue) | kinds[:, None]
-    near, needs_way = context.relevant & _comes_near(context), _drives(context, stands)
-    comes: Flags = np.any(near & called & blue & needs_way, axis=0)
-    perhaps = np.any(near & (not_told | (called & blue & ~needs_way)), axis=0)
-    signals = SignalColumns(
-        {"emergency_vehicle_near": comes},
-        {
-            "boarding": public & stands & doors,
-            "on_call": called & blue,
-            "leaving_stop": np.zeros_like(stands),
-        },
-        {
-            "boarding": public & stands & ~doors_told,
-            "on_call": not_told,
-            "emergency_vehicle_near": perhaps & ~comes,
-        },
+    blue, told = _lit(context, "blue_light")
+    blue = _flashing(blue, context)
+    return called & blue, (called & ~told & ~blue) | kinds[:, None]
+
+
+def _boarding(context: DriveContext) -> SignalColumns:
+    public = np.any([context.tracks.of_type(kind) for kind in _PUBLIC], axis=0)[:, None]
+    stops = public & _stands(context)
+    doors, told = _lit(context, "doors")
+    return SignalColumns(about={"boarding": stops & doors}, unknown={"boarding": stops & ~told})
+
+
+def _warning_lights(context: DriveContext) -> SignalColumns:
+    if not any("hazard_lights" in body.shows for body in context.recording.participants):
+        return SignalColumns()
+    hazard, told = _lit(context, "hazard_lights")
+    blue, _ = _lit(context, "blue_light")
+    warns = hazard | _flashing(blue, context)
+    return SignalColumns(
+        about={"warning_lights": warns}, unknown={"warning_lights": ~told & ~warns}
     )
-    if any("hazard_lights" in body.shows for body in context.recording.participants):
-        warns = hazard | blue
-        signals |= SignalColumns(
-            about={"warning_lights": warns}, unknown={"warning_lights": ~hazard_told & ~warns}
-        )
-    signals |= _turning(context) | _leaving(context, stands)
-    return signals | _overtaking_soon(context) | _came_up(context)
+
+
+def _stands(context: DriveContext) -> Flags:
+    stands: Flags = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    return stands
+
+
+@once_a_recording
+def _lamps(context: DriveContext) -> Mapping[Lamp, tuple[Flags, Flags]]:
+    """Flags of participants of the whole recording whose lamp is lit, and of which it tells."""
+    tracks = context.surroundings.tracks
+    flags: dict[Lamp, tuple[Flags, Flags]] = {}
+    for row, body in enumerate(tracks.participants):
+        steps = np.fromiter(body.lamps, dtype=int, count=len(body.lamps)) - tracks.first
+        inside = (steps >= 0) & (steps < tracks.present.shape[1])
+        for lamp in body.shows if inside.any() else ():
+            if lamp not in flags:
+                flags[lamp] = np.zeros_like(tracks.present), np.zeros_like(tracks.present)
+            lit, told = flags[lamp]
+            told[row, steps[inside]] = True
+            shown = np.array([lamp in lamps for lamps in body.lamps.values()], dtype=bool)
+            lit[row, steps[inside]] = shown[inside]
+    return flags
+
+
+@once_a_recording
+def _row_of(context: DriveContext) -> Mapping[str, int]:
+    """The rows of participants in the tracks of the whole recording."""
+    participants = context.surroundings.tracks.participants
+    return {body.id: row for row, body in enumerate(participants)}
+
+
+@once
+def _own_part(context: DriveContext) -> tuple[NDArray[intp], ...]:
+    """The drive's rows and columns in arrays of the whole recording."""
+    row_of = _row_of(context)
+    rows = [row_of[body.id] for body in context.tracks.participants]
+    begins = context.first_step - context.surroundings.tracks.first
+    return np.ix_(np.array(rows, dtype=int), np.arange(begins, begins + context.states))
 
 
 def _lit(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
     """Flags of participants whose lamp is lit, and of those of which the recording tells."""
-    begins, states = context.first_step, context.states
-    lit, told = np.zeros((2, len(context.tracks.participants), states), dtype=bool)
-    for row, body in enumerate(context.tracks.participants):
-        if lamp in body.shows:
-            for step, lamps in body.lamps.items():
-                if begins <= step < begins + states:
-                    told[row, step - begins], lit[row, step - begins] = True, lamp in lamps
-    return lit, told
+    if lamp not in _lamps(context):
+        return np.zeros_like(context.relevant), np.zeros_like(context.relevant)
+    lit, told = _lamps(context)[lamp]
+    return lit[_own_part(context)], told[_own_part(context)]
 
 
 def _flashing(lit: Flags, context: DriveContext) -> Flags:
@@ -73,15 +135,11 @@ def _flashing(lit: Flags, context: DriveContext) -> Flags:
 
 def _within(flags: Flags, steps: int, *, around: bool = False) -> Flags:
     """Flags that hold at a state or at most ``steps`` states later, or also earlier."""
-    count = flags.shape[-1]
-    sums = np.concatenate(
-        (np.zeros((*flags.shape[:-1], 1), dtype=int), np.cumsum(flags, axis=-1)), axis=-1
-    )
-    states = np.arange(count)
-    after = np.minimum(states + steps + 1, count)
-    before = np.maximum(states - steps, 0) if around else states
-    within: Flags = sums[..., after] > sums[..., before]
-    return within
+    if not flags.any():
+        return flags
+    states = np.arange(flags.shape[-1])
+    within: Flags = next_state(flags, len(states) + steps) <= states + steps
+    return within | (latest(flags) >= np.maximum(states - steps, 0)) if around else within
 
 
 def _comes_near(context: DriveContext) -> Flags:
@@ -91,59 +149,69 @@ def _comes_near(context: DriveContext) -> Flags:
     """
     station = relations.station(context)
     against = context.extents.along * KMH < -context.thresholds.standing_kmh
-    pieces, lanes = context.road.piece(context.ego_extents.s[0]).tolist(), context.ego_lane.tolist()
-    own = [context.road.lanelet(*pair) for pair in zip(pieces, lanes, strict=True)]
-    divided = [context.surroundings.directions(lanelet)[1] is True for lanelet in own]
-    towards = against & (station != relations.IN_FRONT_OF) & ~np.array(divided)
+    directions = context.surroundings.directions
+    divided = own_lanelets(context).flags(lambda lanelet: directions(lanelet)[1] is True)
+    towards = against & (station != relations.IN_FRONT_OF) & ~divided
     comes: Flags = towards | (~against & (station != relations.BEHIND))
     return comes
 
 
-def _drives(context: DriveContext, stands: Flags) -> Flags:
+def _drives(context: DriveContext, rows: NDArray[intp]) -> Flags:
     """Flags of those who drive now, or have or will within ``preparing_s``: no more than held up.
 
-    One that stands for longer, lights on, may be where it was called to.
+    Of these rows. One that stands for longer, lights on, may be where it was called to.
     """
-    moves = ~stands & ~np.isnan(context.tracks.speed)
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
-    return _within(moves, steps, around=True)
+    return _within(_moves(context)[rows], steps, around=True)
+
+
+def _moves(context: DriveContext) -> Flags:
+    moves: Flags = context.tracks.speed * KMH >= context.thresholds.standing_kmh
+    return moves
 
 
 def _far_indicator(context: DriveContext) -> tuple[Flags, Flags]:
     return _lit(context, "left_indicator" if context.side == "right" else "right_indicator")
 
 
-def _turning(context: DriveContext) -> SignalColumns:
+def _turning_far(context: DriveContext) -> SignalColumns:
     """The signal of those who have signalled to turn to the far side, and do."""
-    passages = context.surroundings.passages
-    shift = context.first_step - passages.tracks.first
-    ahead = round(context.thresholds.preparing_s / context.recording.step_s)
-    towards = 1 if context.side == "right" else -1
-    least = np.radians(context.thresholds.turned_deg)
-    shape = len(context.tracks.participants), context.states
-    turns, open_end = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
-    rows = {body.id: row for row, body in enumerate(passages.tracks.participants)}
-    for row, body in enumerate(context.tracks.participants):
-        for passage in passages.of_row.get(rows[body.id], ()):
-            first, last = passage.first - shift - ahead, passage.last - shift
-            span = slice(max(first, 0), max(last + 1, 0))
-            angle = passages.way(passage).turned * towards
-            if not passage.sure:
-                open_end[row, span] = True
-            elif least < angle < np.pi - least:
-                turns[row, span] = True
-        if passages.junctions and not body.standing:
-            end = int(np.flatnonzero(passages.tracks.present[rows[body.id]])[-1]) - shift
-            open_end[row, max(end - ahead, 0) :] |= _may_turn(context, rows[body.id])
+    turns, open_end = (flags[_own_part(context)] for flags in _turns(context))
     lit, told = _far_indicator(context)
-    turns &= context.tracks.of_type("vehicle")[:, None]
     if "arrivals" not in context.recording.complete:
         # Who signals and leaves the map may turn beyond it
+        ahead = round(context.thresholds.preparing_s / context.recording.step_s)
         open_end |= lit & _ends_within(context, ahead)
     return SignalColumns(
         about={"turning_far": turns & lit},
         unknown={"turning_far": np.where(told, lit & open_end & ~turns, turns | open_end)},
     )
+
+
+@once_a_recording
+def _turns(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of vehicles that turn to the far side soon, and of participants that perhaps do.
+
+    Of all participants of the recording, in all its steps.
+    """
+    passages = context.surroundings.passages
+    ahead = round(context.thresholds.preparing_s / context.recording.step_s)
+    towards = 1 if context.side == "right" else -1
+    least = np.radians(context.thresholds.turned_deg)
+    turns, open_end = np.zeros((2, *passages.tracks.present.shape), dtype=bool)
+    for row, own in passages.of_row.items():
+        for passage in own:
+            span = slice(max(passage.first - ahead, 0), passage.last + 1)
+            angle = passages.way(passage).turned * towards
+            if not passage.sure:
+                open_end[row, span] = True
+            elif least < angle < np.pi - least:
+                turns[row, span] = True
+    for row, body in enumerate(passages.tracks.participants):
+        if passages.junctions and not body.standing:
+            end = int(np.flatnonzero(passages.tracks.present[row])[-1])
+            open_end[row, max(end - ahead, 0) :] |= _may_turn(context, row)
+    return turns & passages.tracks.of_type("vehicle")[:, None], open_end
 
 
 def _may_turn(context: DriveContext, row: int) -> bool:
@@ -160,41 +228,48 @@ def _may_turn(context: DriveContext, row: int) -> bool:
     return not inside and passages.crosses_junction((x, y), ahead)
 
 
-def _leaving(context: DriveContext, stands: Flags) -> SignalColumns:
+def _leaving_stop(context: DriveContext) -> SignalColumns:
     """The signal of buses that stand at a stop, signal to leave it, and do so soon."""
-    buses = context.tracks.of_type("bus")[:, None]
+    leaves, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
+    buses = np.flatnonzero(context.tracks.of_type("bus"))
+    if len(buses):
+        leaves[buses], unknown[buses] = _buses_leave(context, buses)
+    return SignalColumns(about={"leaving_stop": leaves}, unknown={"leaving_stop": unknown})
+
+
+def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Flags]:
+    """Flags of buses, a row each, that leave a stop, and of those of which nobody knows it."""
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
-    leaves = buses & stands & _within(~stands & ~np.isnan(context.tracks.speed), steps)
-    lit, told = _far_indicator(context)
-    doors, doors_told = _lit(context, "doors")
+    stands = _stands(context)[buses]
+    leaves = stands & _within(_moves(context)[buses], steps)
+    lit, told = (flags[buses] for flags in _far_indicator(context))
+    doors, doors_told = (flags[buses] for flags in _lit(context, "doors"))
     at_stop = _within(doors[:, ::-1], steps)[:, ::-1]
     known = told & doors_told
     # What it does after it is lost from sight nobody knows
-    lost = buses & stands & lit & at_stop & _ends_within(context, steps)
-    return SignalColumns(
-        about={"leaving_stop": leaves & lit & at_stop},
-        unknown={"leaving_stop": (leaves & ~known) | (lost & ~leaves)},
-    )
+    lost = stands & lit & at_stop & _ends_within(context, steps)[buses]
+    return leaves & lit & at_stop, (leaves & ~known) | (lost & ~leaves)
 
 
 def _ends_within(context: DriveContext, steps: int) -> Flags:
     """Flags of states in which a participant's track goes on for fewer states than so many."""
-    states = np.arange(context.states)
     present = ~np.isnan(context.tracks.speed)
-    last = np.where(present, states, -1).max(axis=1, initial=-1)
-    ends: Flags = states + steps > last[:, None]
+    last = np.where(present.any(axis=1), context.states - 1 - present[:, ::-1].argmax(axis=1), -1)
+    ends: Flags = np.arange(context.states) + steps > last[:, None]
     return ends
 
 
-def _overtaking_soon(context: DriveContext) -> SignalColumns:
+def _about_to_overtake(context: DriveContext) -> SignalColumns:
     """The signal of those who have signalled to pull out to the far side, and do so soon."""
-    far = 1 if context.side == "right" else -1
-    lane = context.extents.lane
+    far, lane = (1 if context.side == "right" else -1), context.extents.lane
     steps = round(context.thresholds.signalling_s / context.recording.step_s)
-    inside = context.touched.any(axis=-1)
-    pulls_out = np.diff(lane, axis=1, append=lane[:, -1:]) * far > 0
-    pulls_out &= inside & np.roll(inside, -1, axis=1)
-    soon = context.going_along & _within(pulls_out, steps)
+    pulls_out = np.zeros_like(context.relevant)
+    pulls_out[:, :-1] = (lane[:, 1:] > lane[:, :-1]) if far > 0 else (lane[:, 1:] < lane[:, :-1])
+    rows = np.flatnonzero(pulls_out.any(axis=1))
+    inside = context.on_lanes[rows]
+    pulls_out[rows] &= inside & np.roll(inside, -1, axis=1)
+    soon = np.zeros_like(pulls_out)
+    soon[rows] = context.going_along[rows] & _within(pulls_out[rows], steps)
     lit, told = _far_indicator(context)
     ends = _ends_within(context, steps)
     return SignalColumns(
@@ -209,26 +284,41 @@ def _came_up(context: DriveContext) -> SignalColumns:
     Of one that is beside it there when it is first seen nobody knows how it got there.
     """
     riders = context.tracks.of_type("light_rider")
-    station = relations.station(context)
-    waits = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
-    at_junction = np.zeros(context.states, dtype=bool)
-    front = context.ego_extents.s_max[0]
-    for start, end in context.road.junctions:
-        at_junction |= (front >= start - context.thresholds.approach_m) & (front < end)
-    came, unsure = np.zeros((2, *station.shape), dtype=bool)
-    there = ~np.isnan(context.extents.s_min)
-    for row in np.flatnonzero(riders).tolist():
-        for state in range(context.states):
-            if not there[row, state] or station[row, state] != relations.BESIDE:
-                continue
-            seen = state > 0 and there[row, state - 1]
-            before = seen and station[row, state - 1] == relations.IN_FRONT_OF
-            arrives = before and waits[state] and at_junction[state]
-            came[row, state] = arrives or (seen and came[row, state - 1])
-            appears = not seen and at_junction[state]
-            unsure[row, state] = appears or (seen and unsure[row, state - 1])
+    came, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
+    if riders.any():
+        came[riders], unsure[riders] = _came_beside(context, np.flatnonzero(riders))
     return SignalColumns(
         about={"came_up_beside": came},
         unknown={"came_up_beside": unsure},
         only={"came_up_beside": riders},
     )
+
+
+def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
+    """Flags of participants beside ego, of these rows, who came up there, or perhaps did."""
+    waits = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+    at_junction = np.zeros(context.states, dtype=bool)
+    front = context.ego_extents.s_max[0]
+    for start, end in context.road.junctions:
+        at_junction |= (front >= start - context.thresholds.approach_m) & (front < end)
+    station, there = relations.station(context)[rows], ~np.isnan(context.extents.s_min[rows])
+    beside = there & (station == relations.BESIDE)
+    behind_ego = there & (station == relations.IN_FRONT_OF)
+    arrives, appears = np.zeros((2, *beside.shape), dtype=bool)
+    arrives[:, 1:] = beside[:, 1:] & behind_ego[:, :-1] & (waits & at_junction)[1:]
+    appears[:, 0] = beside[:, 0] & at_junction[0]
+    appears[:, 1:] = beside[:, 1:] & ~there[:, :-1] & at_junction[1:]
+    left = latest(~beside)
+    return latest(arrives) > left, latest(appears) > left
+
+
+_PASSES: Passes = {
+    ("emergency_vehicle_near",): _emergency_vehicle_near,
+    ("boarding",): _boarding,
+    ("on_call",): _called,
+    ("leaving_stop",): _leaving_stop,
+    ("warning_lights",): _warning_lights,
+    ("turning_far",): _turning_far,
+    ("about_to_overtake",): _about_to_overtake,
+    ("came_up_beside",): _came_up,
+}

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise, product
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.signal_columns import SignalColumns, named_values
+from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark
 
@@ -25,20 +30,31 @@ _SINGLE = (
 """One line between two lanes is the mark of both, or of the one whose bound it is."""
 
 _Marks = tuple[LaneMark | None, LaneMark | None]
-_Body = tuple[Floats, Floats]
-"""How far (m) left of each line a body begins and ends."""
 
 
-def lane_change_signals(context: DriveContext) -> SignalColumns:
-    """The signals of ego's lane changes."""
-    lane = context.steady_lane
-    changes = np.append(False, lane[1:] != lane[:-1])
-    clear = ~changes | ~_disturbs(context)
-    changing = SignalColumns(
-        {"lane_change": changes, "lane_is_clear": clear},
-        unknown={"lane_change": _within_tolerance(context, changes)},
+def lane_change_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of ego's lane changes, those that are wanted."""
+    return signals_by(_CHANGE_PASSES, context, wanted)
+
+
+def _lane_change(context: DriveContext) -> SignalColumns:
+    changes = _changes(context)
+    return SignalColumns(
+        {"lane_change": changes}, unknown={"lane_change": _within_tolerance(context, changes)}
     )
-    return changing | _indicator(context)
+
+
+def _lane_is_clear(context: DriveContext) -> SignalColumns:
+    clear = np.ones(context.states, dtype=bool)
+    changes = np.flatnonzero(_changes(context))
+    clear[changes] = ~_disturbs(context, changes)
+    return SignalColumns({"lane_is_clear": clear})
+
+
+def _changes(context: DriveContext) -> Flags:
+    """Flags of states in which ego has changed lanes since the one before."""
+    lane = context.steady_lane
+    return np.append(False, lane[1:] != lane[:-1])
 
 
 def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
@@ -74,63 +90,104 @@ def _indicator(context: DriveContext) -> SignalColumns:
     )
 
 
-def _disturbs(context: DriveContext) -> Flags:
-    """Flags of states in which a vehicle in ego's lane must brake for ego.
+def _disturbs(context: DriveContext, states: NDArray[intp]) -> Flags:
+    """Flags of those of these states in which a vehicle in ego's lane must brake for ego.
 
     One beside ego has to, and one behind it that would have to brake harder than
     ``disturbing_mps2`` after its reaction time not to run into it.
     """
     limits = context.thresholds
-    station = relations.station(context)
-    lanes = np.arange(context.touched.shape[-1])
-    same = context.touched & (lanes == context.ego_lane[None, :, None])
-    faster = np.maximum(context.extents.along - context.ego_extents.along, 0.0)
-    braking_distance = relations.gap(context) - faster * limits.reaction_s
+    station, gap = relations.station(context)[:, states], relations.gap(context)[:, states]
+    same = context.touched[:, states, context.ego_lane[states]] & context.going_along[:, states]
+    along, own = context.extents.along[:, states], context.ego_extents.along[:, states]
+    faster = np.maximum(along - own, 0.0)
+    braking_distance = gap - faster * limits.reaction_s
     brakes = faster**2 > 2 * limits.disturbing_mps2 * np.maximum(braking_distance, 0.0)
     behind = (station == relations.IN_FRONT_OF) & brakes
-    beside = station == relations.BESIDE
-    disturbs: Flags = (context.going_along & same.any(axis=-1) & (behind | beside)).any(axis=0)
+    disturbs: Flags = (same & (behind | (station == relations.BESIDE))).any(axis=0)
     return disturbs
 
 
-def lane_mark_signals(context: DriveContext) -> SignalColumns:
-    """The signals of marks; none at all if the map has none."""
-    known = context.recording.lanelets.values()
-    if not any(lanelet.left_mark or lanelet.right_mark for lanelet in known):
-        return SignalColumns()
-    pieces = context.road.piece(context.ego_extents.s[0]).tolist()
-    names = ("marked_lanes", "on_solid_line", "broken_on_own_side", "single_line")
-    columns = np.zeros((len(names), context.states), dtype=bool)
-    unknown, not_told = np.zeros((2, context.states), dtype=bool)
-    place, offsets = context.tolerances.place_m, context.map_offset_m
-    near = _near_a_line(context, place + np.abs(offsets))
-    bodies = _bodies(context)
-    for state, piece in enumerate(pieces):
-        lanelets = zip(context.road.rows[piece], context.existing_lanes[state], strict=True)
-        row = [lanelet if exists else None for lanelet, exists in lanelets]
-        between = [_between(*pair) for pair in pairwise(row) if all(pair)]
-        unknown[state] = any(not any(marks) for marks in between)
-        columns[0, state] = bool(between) and all(set(marks) != {"none"} for marks in between)
-        body, parallel = bodies[state]
-        crossed = _marks_under_ego(context, state, row, body)
-        found = columns[1:, state] = _solid_lines(crossed)
-        not_told[state] = not found[0] and any(not any(marks) for marks in crossed)
-        others = list(product((place, -place), {0.0, float(offsets[state])}))
-        tried = [(body, *other) for other in others] if near[state] else []
-        # Where places are known so badly, a body's direction is that of its slow or slipping track
-        if place >= context.thresholds.touching_m and (near[state] or found[0]):
-            tried += [(parallel, *other) for other in [(0.0, 0.0), *others]]
-        not_told[state] |= any(
-            _solid_lines(_marks_under_ego(context, state, row, *each)) != found for each in tried
+def lane_mark_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of marks, those that are wanted; none at all if the map has none."""
+    return signals_by(_MARK_PASSES, context, wanted) if map_contents(context).marks else _NONE
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MarkedRows:
+    """The lanelets beside each other at ego, None where no lane exists; ``number`` by state."""
+
+    rows: tuple[tuple[Lanelet | None, ...], ...]
+    number: NDArray[intp]
+
+
+@once
+def _marked_rows(context: DriveContext) -> MarkedRows:
+    there = context.existing_lanes
+    pieces = context.road.piece(context.ego_extents.s[0])
+    keys, number = np.unique(np.column_stack((pieces, there)), axis=0, return_inverse=True)
+    rows = tuple(
+        tuple(
+            lanelet if exists else None
+            for lanelet, exists in zip(context.road.rows[piece], lanes, strict=True)
         )
+        for piece, *lanes in keys.tolist()
+    )
+    return MarkedRows(rows, number.reshape(-1))
+
+
+def _marked_lanes(context: DriveContext) -> SignalColumns:
+    """Whether all lines between ego's lanes are marked."""
+    marked = _marked_rows(context)
+    between = [[_between(*pair) for pair in pairwise(row) if all(pair)] for row in marked.rows]
+    told = np.array([all(any(marks) for marks in row) for row in between])
+    all_marked = np.array(
+        [bool(row) and all(set(marks) != {"none"} for marks in row) for row in between]
+    )
     return SignalColumns(
-        dict(zip(names, columns, strict=True)),
-        unknown={"marked_lanes": unknown, **dict.fromkeys(names[1:], not_told)},
+        {"marked_lanes": all_marked[marked.number]},
+        unknown={"marked_lanes": ~told[marked.number]},
+    )
+
+
+def _lines_under_ego(context: DriveContext) -> SignalColumns:
+    """Whether ego is on a solid line, breaks one on its own side, and is that a single one.
+
+    Unknown where places, or the map, decide it, or marks are not told.
+    """
+    place, offsets = context.tolerances.place_m, context.map_offset_m
+    judged, unmoved = _JudgedLines(context, {}), np.zeros(context.states)
+    low, high = context.ego_extents.left_of_min[0], context.ego_extents.left_of_max[0]
+    found = judged.on(np.arange(context.states), low, high, 0.0, unmoved)
+    not_told = ~found[:, 0] & found[:, -1]
+    near = _near_a_line(context, place + np.abs(offsets))
+    shifts = [unmoved, offsets] if offsets.any() else [unmoved]
+    others = list(product((place, -place), shifts))
+    tried = [(low, high, np.flatnonzero(near), *other) for other in others]
+    # Where places are known so badly, a body's direction is that of its slow or slipping track
+    if place >= context.thresholds.touching_m:
+        states = np.flatnonzero(near | found[:, 0])
+        half = np.zeros((context.states, 1))
+        half[states, 0] = _widths(context, states) / 2
+        middle = context.ego_extents.left_of[0]
+        tried += [
+            (middle - half, middle + half, states, *other) for other in [(0.0, unmoved), *others]
+        ]
+    for begins, ends, states, more, shift in tried:
+        other = judged.on(states, begins, ends, more, shift)
+        not_told[states] |= (other[:, :-1] != found[states, :-1]).any(axis=1)
+    names = ("on_solid_line", "broken_on_own_side", "single_line")
+    return SignalColumns(
+        dict(zip(names, found.T, strict=False)), unknown=dict.fromkeys(names, not_told)
     )
 
 
 def _between(right: Lanelet | None, left: Lanelet | None) -> _Marks:
     return right.left_mark if right else None, left.right_mark if left else None
+
+
+def _turned(marks: _Marks) -> _Marks:
+    return marks[1], marks[0]
 
 
 def _solid_lines(crossed: list[_Marks]) -> tuple[bool, bool, bool]:
@@ -148,36 +205,72 @@ def _near_a_line(context: DriveContext, margin_m: Floats) -> Flags:
     return near
 
 
-def _bodies(context: DriveContext) -> list[tuple[_Body, _Body]]:
-    """Ego's body in each state, as it stands and parallel to the road."""
-    own, bodies = context.ego_extents, []
-    low, middle, high = (values[0] for values in (own.left_of_min, own.left_of, own.left_of_max))
-    headings = context.ego.heading[0]
-    for _, state, outline in context.ego.outlines(repeated=True):
-        way = headings[state]
-        width = float(np.ptp(outline @ (-np.sin(way), np.cos(way))))
-        parallel = middle[state] - width / 2, middle[state] + width / 2
-        bodies.append(((low[state], high[state]), parallel))
-    return bodies
+def _widths(context: DriveContext, states: NDArray[intp]) -> Floats:
+    """The widths (m) of ego's body in these states."""
+    (ego,), headings = context.ego.participants, context.ego.heading[0]
+    widths = [
+        np.ptp(ego.outlines[context.first_step + state] @ (-np.sin(way), np.cos(way)))
+        for state, way in zip(states.tolist(), headings[states].tolist(), strict=True)
+    ]
+    return np.array(widths, dtype=float)
 
 
-def _marks_under_ego(
-    context: DriveContext,
-    state: int,
-    row: list[Lanelet | None],
-    body: _Body,
-    more: float = 0,
-    shift: float = 0,
-) -> list[_Marks]:
-    """The marks of the lines that ego's body lies across, those at ego's side first.
+@dataclass(frozen=True, eq=False, slots=True)
+class _JudgedLines:
+    """What marks of lines mean that a body lies across; ``known``: of which it is known already.
 
-    Line ``k`` lies right of lane ``k``. By so much (m) ``more``, and with ego so far right.
+    Line ``k`` lies right of lane ``k``.
     """
-    reach = context.thresholds.touching_m + more
-    across = np.minimum(shift - body[0], body[1] - shift).tolist()
-    crossed = []
-    for line, (right, left) in enumerate(pairwise([None, *row, None])):
-        if across[line] > reach:
-            marks = _between(right, left)
-            crossed.append(marks[::-1] if context.steady_lane[state] >= line else marks)
-    return crossed
+
+    context: DriveContext
+    known: dict[tuple[int, int, tuple[bool, ...]], tuple[bool, bool, bool, bool]]
+
+    def on(
+        self, states: NDArray[intp], low: Floats, high: Floats, more_m: float, right_m: Floats
+    ) -> Flags:
+        """Flags in some states (a row each) of what ``_solid_lines`` says, and of marks not told.
+
+        ``low`` and ``high`` say how far (m) left of each line, by state, the body begins and ends.
+        By so much more it has to lie across one, and in each state it is so much farther right.
+        """
+        low, high, right = low[states], high[states], right_m[states, None]
+        crossed = np.minimum(right - low, high - right) > self._touching_m + more_m
+        found = np.zeros((len(states), 4), dtype=bool)
+        number, lane = _marked_rows(self.context).number, self.context.steady_lane
+        for at in np.flatnonzero(crossed.any(axis=1)).tolist():
+            state = int(states[at])
+            key = int(number[state]), int(lane[state]), tuple(crossed[at].tolist())
+            if key not in self.known:
+                self.known[key] = self._judged(*key)
+            found[at] = self.known[key]
+        return found
+
+    @property
+    def _touching_m(self) -> float:
+        return self.context.thresholds.touching_m
+
+    def _judged(
+        self, number: int, lane: int, crossed: tuple[bool, ...]
+    ) -> tuple[bool, bool, bool, bool]:
+        row = _marked_rows(self.context).rows[number]
+        lines = zip(pairwise([None, *row, None]), crossed, strict=True)
+        marks = [
+            # Those at ego's side first
+            _turned(_between(*pair)) if lane >= line else _between(*pair)
+            for line, (pair, is_crossed) in enumerate(lines)
+            if is_crossed
+        ]
+        return *_solid_lines(marks), any(not any(pair) for pair in marks)
+
+
+_NONE = SignalColumns()
+
+_CHANGE_PASSES: Passes = {
+    ("lane_change",): _lane_change,
+    ("lane_is_clear",): _lane_is_clear,
+    ("indicator",): _indicator,
+}
+_MARK_PASSES: Passes = {
+    ("marked_lanes",): _marked_lanes,
+    ("on_solid_line", "broken_on_own_side", "single_line"): _lines_under_ego,
+}

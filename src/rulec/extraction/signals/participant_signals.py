@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import (
     LONGEST_S,
@@ -14,63 +16,96 @@ from rulec.extraction.signals.measured_numbers import (
     safe_distance,
     safe_distance_error,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns, latest, named_values, rounded
+from rulec.extraction.signals.signal_columns import (
+    SignalColumns,
+    latest,
+    named_values,
+    next_state,
+    rounded,
+)
+from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.partition.cells.regions import LATERALS, STATIONS
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
 
-def participant_signals(context: DriveContext) -> SignalColumns:
-    """The signals of objects."""
-    station, lateral = relations.station(context), relations.lateral(context)
-    others, gap = relations.possible_laterals(context), relations.gap(context)
-    bodies = context.tracks.participants
-    speeds = context.zero_if_standing(context.extents.along * KMH)
-    follows, _, may_follow = relations.ahead_in_lane(context)
-    oncoming = is_oncoming(context) | _waits_oncoming(context)
-    short = safe_distance(context) - gap
-    wrong = np.hypot(safe_distance_error(context), context.tolerances.place_m)
-    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
-    # One that stands, and that ego drives by, does not drive ahead
-    room = np.where(stands, relations.way_across(context) - context.thresholds.touching_m, -np.inf)
-    may_pass_by = may_follow & (np.abs(room) < context.tolerances.place_m)
-    may_follow &= room <= 0
+def participant_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of objects, those that are wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _position(context: DriveContext) -> SignalColumns:
+    return SignalColumns(about={"position": relations.position(context)})
+
+
+def _station(context: DriveContext) -> SignalColumns:
+    return SignalColumns(about={"station": named_values(relations.station(context), STATIONS)})
+
+
+def _lateral(context: DriveContext) -> SignalColumns:
+    lateral, others = relations.lateral(context), relations.possible_laterals(context)
     return SignalColumns(
-        about={
-            "position": relations.position(context),
-            "station": named_values(station, STATIONS),
-            "lateral": named_values(lateral, LATERALS),
-            "gap": rounded(gap),
-            "time_headway": rounded(_headway(context, gap)),
-            "lateral_gap": rounded(relations.lateral_gap(context)),
-            "speed_difference": rounded(context.ego_extents.along * KMH - speeds),
-            "safe_gap": ~may_follow | (short <= 0),
-            "precedes": _precedes(context, follows & ~oncoming, gap),
-            "oncoming": oncoming,
-            "goes_across": _goes_across(context),
-            "stopped": stands,
-            "parked": _constant(context, [body.standing for body in bodies]),
-            "two_wheeled": _constant(context, [body.type in _TWO_WHEELED for body in bodies]),
-            "in_the_road": context.tracks.on_lane,
-        },
-        only={"in_the_road": context.tracks.of_type("vulnerable_user")},
-        unknown={
-            "lateral": np.any([lateral != codes for codes in others], axis=0),
-            "safe_gap": may_follow & (np.abs(short) < wrong)
-            | (may_pass_by | may_follow & _parts_soon(context)) & (short > -wrong),
-        },
-        bounds=bounds_to_others(context),
+        about={"lateral": named_values(lateral, LATERALS)},
+        unknown={"lateral": np.logical_or.reduce([lateral != codes for codes in others])},
     )
 
 
-def _parts_soon(context: DriveContext) -> Flags:
-    """Flags of those whose lane is not ego's at some state within ``parting_s``."""
+def _gap(context: DriveContext) -> SignalColumns:
+    return _measured(context, "gap", relations.gap(context))
+
+
+def _time_headway(context: DriveContext) -> SignalColumns:
+    # The speed that the word `speed` says
+    (speed, _), drives = own_speed(context), moves(context)
+    seconds = relations.gap(context) / np.where(drives, speed, 1.0)
+    headway = np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
+    return _measured(context, "time_headway", headway)
+
+
+def _lateral_gap(context: DriveContext) -> SignalColumns:
+    return _measured(context, "lateral_gap", relations.lateral_gap(context))
+
+
+def _speed_difference(context: DriveContext) -> SignalColumns:
+    speeds = context.zero_if_standing(context.extents.along * KMH)
+    difference = context.ego_extents.along * KMH - speeds
+    return _measured(context, "speed_difference", difference)
+
+
+def _measured(context: DriveContext, name: str, values: Floats) -> SignalColumns:
+    bounds = bounds_to_others(context)[name]
+    return SignalColumns(about={name: rounded(values)}, bounds={name: bounds})
+
+
+def _safe_gap(context: DriveContext) -> SignalColumns:
+    """Whether ego keeps its distance from who is, or may be, ahead in its lane."""
+    _, _, may_follow = relations.ahead_in_lane(context)
+    place, cells = context.tolerances.place_m, may_follow.nonzero()
+    short = safe_distance(context)[cells] - relations.gap(context)[cells]
+    wrong = np.hypot(safe_distance_error(context)[cells], place)
+    stands = context.tracks.speed[cells] * KMH < context.thresholds.standing_kmh
+    # One that stands, and that ego drives by, does not drive ahead
+    aside = relations.way_across(context)[cells] - context.thresholds.touching_m
+    room = np.where(stands, aside, -np.inf)
+    may_pass_by, follows = np.abs(room) < place, room <= 0
+    moot = may_pass_by | (follows & _parts_soon(context, cells[0])[cells])
+    safe, unknown = np.ones(may_follow.shape, dtype=bool), np.zeros(may_follow.shape, dtype=bool)
+    safe[cells] = ~follows | (short <= 0)
+    unknown[cells] = (follows & (np.abs(short) < wrong)) | (moot & (short > -wrong))
+    return SignalColumns(about={"safe_gap": safe}, unknown={"safe_gap": unknown})
+
+
+def _parts_soon(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Flags of those whose lane is not ego's at some state within ``parting_s``.
+
+    Of these rows, False in all others.
+    """
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
+    parts, rows = np.zeros(context.relevant.shape, dtype=bool), np.unique(rows)
+    apart = (context.extents.lane[rows] != context.ego_extents.lane) & context.relevant[rows]
     states = np.arange(context.states)
-    apart = (context.extents.lane != context.ego_extents.lane) & context.relevant
-    when = np.where(apart, states, context.states + horizon)[:, ::-1]
-    parts: Flags = np.minimum.accumulate(when, axis=1)[:, ::-1] <= states + horizon
+    parts[rows] = next_state(apart, context.states + horizon) <= states + horizon
     return parts
 
 
@@ -80,66 +115,114 @@ def gap_beside_safe_distance(context: DriveContext) -> tuple[Floats, Floats]:
     return np.where(follows, relations.gap(context), np.nan), safe_distance(context)
 
 
-def _headway(context: DriveContext, gap: Floats) -> Floats:
-    # The speed that the word `speed` says
-    (speed, _), drives = own_speed(context), moves(context)
-    seconds = gap / np.where(drives, speed, 1.0)
-    return np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
+def _precedes(context: DriveContext) -> SignalColumns:
+    """Who is next ahead of ego in its lane."""
+    follows, _, _ = relations.ahead_in_lane(context)
+    counts = follows & ~_comes_towards(context) & context.relevant
+    ahead = np.where(counts, relations.gap(context), np.inf)
+    nearest = ahead.min(axis=0, initial=np.inf)
+    return SignalColumns(about={"precedes": (ahead == nearest) & np.isfinite(ahead)})
 
 
-def is_oncoming(context: DriveContext) -> Flags:
-    """Flags of participants that move against ego's direction."""
-    moves = np.abs(context.extents.along) * KMH >= context.thresholds.standing_kmh
-    against: Flags = moves & (context.extents.along < 0)
-    return against & _faces_ego(context)
+def _oncoming(context: DriveContext) -> SignalColumns:
+    return SignalColumns(about={"oncoming": _comes_towards(context)})
 
 
-def _goes_across(context: DriveContext) -> Flags:
-    """Flags of participants that move across the road, more than along it.
+@once
+def _comes_towards(context: DriveContext) -> Flags:
+    """Flags of participants that move against ego's direction, or wait on lanes of that way."""
+    along = context.extents.along
+    moves_against: Flags = (along < 0) & (np.abs(along) * KMH >= context.thresholds.standing_kmh)
+    comes: Flags = moves_against | _waits_elsewhere(context)
+    comes[comes] = np.cos(context.extents.turned[comes]) < -0.5
+    return comes
+
+
+def _waits_elsewhere(context: DriveContext) -> Flags:
+    """Flags of vehicles that stand on lanes that are not of ego's way, in a queue for example.
+
+    Ego does not overtake those that face it, no more than ones that move, nor follow one that waits
+    in a junction for its turn. What only stands there, the wrong way round, is an obstacle in ego's
+    lanes.
+    """
+    stands = np.abs(context.extents.along) * KMH < context.thresholds.standing_kmh
+    vehicles = context.tracks.of_type("vehicle")[:, None]
+    moves_elsewhere = context.elsewhere & ~stands.all(axis=1, keepdims=True)
+    waits: Flags = stands & vehicles & (moves_elsewhere | ~context.on_lanes)
+    return waits
+
+
+def _goes_across(context: DriveContext) -> SignalColumns:
+    """Whether participants move across the road, more than along it.
 
     Who walks or rides across goes on doing so, though it stops or somebody runs into it, until it
     leaves the road or moves along it.
     """
-    least, step_s = context.thresholds.standing_kmh / KMH, context.recording.step_s
+    least = context.thresholds.standing_kmh / KMH
     along, across = np.abs(context.extents.along), np.abs(context.extents.across)
-    moves: Flags = (across >= least) & (across > along)
-    # Step by step: in means over a second a blow that moves a body at once lasts as long
-    s = np.abs(np.diff(context.extents.s, axis=1, prepend=np.nan))
-    d = np.abs(np.diff(context.extents.d_min + context.extents.d_max, axis=1, prepend=np.nan)) / 2
+    goes: Flags = (across >= least) & (across > along)
+    users = np.flatnonzero(context.tracks.of_type("vulnerable_user"))
+    off = _mostly_along(context, users) | ~context.tracks.on_lane[users]
+    goes[users] |= latest(goes[users]) > latest(off)
+    return SignalColumns(about={"goes_across": goes})
+
+
+def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Flags of participants of these rows that have moved along the road, by most steps.
+
+    Step by step: in means over a second a blow that moves a body at once lasts as long.
+    """
+    least, step_s = context.thresholds.standing_kmh / KMH, context.recording.step_s
+    others = context.extents
+    s = np.abs(np.diff(others.s[rows], axis=1, prepend=np.nan))
+    d = np.abs(np.diff(others.d_min[rows] + others.d_max[rows], axis=1, prepend=np.nan)) / 2
     turns = (s >= least * step_s) & (s > d)
     steps = max(round(context.thresholds.smoothing_s / step_s), 1)
     sums = np.pad(np.cumsum(turns, axis=1), ((0, 0), (steps, 0)))
-    mostly = 2 * (sums[:, steps:] - sums[:, :-steps]) > steps
-    vulnerable = np.array(context.tracks.of_type("vulnerable_user"), dtype=bool)[:, None]
-    goes_on = latest(moves) > latest(mostly | ~context.tracks.on_lane)
-    goes: Flags = moves | (goes_on & vulnerable)
-    return goes
+    recent: NDArray[intp] = sums[:, steps:] - sums[:, :-steps]
+    return 2 * recent > steps
 
 
-def _waits_oncoming(context: DriveContext) -> Flags:
-    """Flags of vehicles that stand on lanes against ego's way, in a queue for example.
-
-    Ego does not overtake them, no more than ones that move, nor follow one that waits in a junction
-    for its turn. What only stands there, the wrong way round, is an obstacle in ego's lanes.
-    """
-    stands = np.abs(context.extents.along) * KMH < context.thresholds.standing_kmh
-    vehicles = np.array(context.tracks.of_type("vehicle"), dtype=bool)[:, None]
-    moves_elsewhere = context.elsewhere & ~stands.all(axis=1, keepdims=True)
-    waits: Flags = stands & vehicles & (moves_elsewhere | ~context.touched.any(axis=-1))
-    return waits & _faces_ego(context)
+def _stopped(context: DriveContext) -> SignalColumns:
+    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    return SignalColumns(about={"stopped": stands})
 
 
-def _faces_ego(context: DriveContext) -> Flags:
-    return np.cos(context.extents.turned) < -0.5
+def _parked(context: DriveContext) -> SignalColumns:
+    parked = [body.standing for body in context.tracks.participants]
+    return SignalColumns(about={"parked": _constant(context, parked)})
 
 
-def _precedes(context: DriveContext, follows: Flags, gap: Floats) -> Flags:
-    """Flags of participants that are next ahead of ego in its lane."""
-    ahead = np.where(follows & context.relevant, gap, np.inf)
-    nearest = ahead.min(axis=0, initial=np.inf)
-    precedes: Flags = (ahead == nearest) & np.isfinite(ahead)
-    return precedes
+def _two_wheeled(context: DriveContext) -> SignalColumns:
+    two_wheeled = [body.type in _TWO_WHEELED for body in context.tracks.participants]
+    return SignalColumns(about={"two_wheeled": _constant(context, two_wheeled)})
 
 
 def _constant(context: DriveContext, flags: list[bool]) -> Flags:
     return np.repeat(np.array(flags, dtype=bool)[:, None], context.states, axis=1)
+
+
+def _in_the_road(context: DriveContext) -> SignalColumns:
+    return SignalColumns(
+        about={"in_the_road": context.tracks.on_lane},
+        only={"in_the_road": context.tracks.of_type("vulnerable_user")},
+    )
+
+
+_PASSES: Passes = {
+    ("position",): _position,
+    ("station",): _station,
+    ("lateral",): _lateral,
+    ("gap",): _gap,
+    ("time_headway",): _time_headway,
+    ("lateral_gap",): _lateral_gap,
+    ("speed_difference",): _speed_difference,
+    ("safe_gap",): _safe_gap,
+    ("precedes",): _precedes,
+    ("oncoming",): _oncoming,
+    ("goes_across",): _goes_across,
+    ("stopped",): _stopped,
+    ("parked",): _parked,
+    ("two_wheeled",): _two_wheeled,
+    ("in_the_road",): _in_the_road,
+}

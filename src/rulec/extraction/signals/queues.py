@@ -6,9 +6,13 @@ queue at ego's speed have room. A lane's vehicles are those whose middle is in i
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import dataclass, fields
 
-from rulec.extraction.drive_context import KMH, DriveContext
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.tracks.tracks import Flags, Floats
 
@@ -25,6 +29,8 @@ _UNEVEN_M = 20.0
 
 _MOST = 0.5
 """More than this part of a queue's gaps are short."""
+
+_INT16_MAX = np.iinfo(np.int16).max
 
 READINGS = range(3)
 MEASURED, STRICT, LOOSE = READINGS
@@ -89,37 +95,90 @@ def _reach(context: DriveContext) -> Floats:
     return np.maximum(limits.flow_reach_m, far)
 
 
+@once
 def close_by(context: DriveContext) -> Flags:
     """Flags of vehicles that go ego's way and are part of the traffic around it."""
     return context.going_along & (relations.gap(context) <= _reach(context))
 
 
-def queues_by_lane(context: DriveContext) -> tuple[tuple[Flags, ...], Floats]:
-    """Flags and median speeds (km/h) of queues, by state and lane.
+@dataclass(frozen=True, eq=False, slots=True)
+class VehiclesAround:
+    """Ego and the vehicles around it that go its way, an entry for each in each state.
 
-    In a queue more than half of the gaps are short. The flags are by what counts as short.
+    ``lane`` is that of the middle, ``speed`` (m/s) that along the road, 0 of who drives back.
     """
-    limits = context.thresholds
-    lanes = context.existing_lanes.shape[1]
-    queues = np.zeros((len(READINGS), context.states, lanes), dtype=bool)
-    middle = np.full((context.states, lanes), np.nan)
-    s_min, s_max, along, own_lane = (
-        np.concatenate((getattr(context.ego_extents, name), getattr(context.extents, name)))
+
+    state: NDArray[intp]
+    lane: NDArray[intp]
+    s_min: Floats
+    s_max: Floats
+    speed: Floats
+    speed_error: Floats
+
+    def part(self, chosen: NDArray[intp]) -> VehiclesAround:
+        """Some of the entries, in this order."""
+        return VehiclesAround(*(getattr(self, field.name)[chosen] for field in fields(self)))
+
+
+@once
+def vehicles_around(context: DriveContext) -> VehiclesAround:
+    """The traffic around ego, ego first."""
+    rows, states = np.nonzero(close_by(context))
+    own, others = context.ego_extents, context.extents
+    s_min, s_max, along, lane = (
+        np.concatenate((getattr(own, name)[0], getattr(others, name)[rows, states]))
         for name in ("s_min", "s_max", "along", "lane")
     )
-    speed = np.maximum(along, 0.0)
-    error = np.concatenate((context.ego.speed_error, context.tracks.speed_error))
-    longest = longest_gaps(context, speed, error)
-    counted = np.concatenate((np.ones((1, context.states), dtype=bool), close_by(context)))
-    for lane in range(lanes):
-        inside = counted & (own_lane == lane)
-        enough = inside.sum(axis=0) >= limits.fewest
-        for state in np.flatnonzero(enough):
-            rows = np.flatnonzero(inside[:, state])
-            rows = rows[np.argsort(s_min[rows, state])]
-            behind = rows[:-1]
-            gaps = s_min[rows[1:], state] - s_max[behind, state]
-            short = gaps <= longest[:, behind, state]
-            queues[:, state, lane] = short.mean(axis=1) > _MOST
-            middle[state, lane] = np.median(speed[rows, state]) * KMH
-    return tuple(queues), middle
+    error = np.concatenate((context.ego.speed_error[0], context.tracks.speed_error[rows, states]))
+    state = np.concatenate((np.arange(context.states), states))
+    return VehiclesAround(
+        state=state,
+        lane=lane,
+        s_min=s_min,
+        s_max=s_max,
+        speed=np.maximum(along, 0.0),
+        speed_error=error,
+    )
+
+
+def sorted_in(groups: NDArray[intp], values: Floats) -> NDArray[intp]:
+    """The order by groups, and by values in each of them."""
+    order = np.argsort(values)
+    # Small whole numbers are sorted in linear time
+    numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
+    return order[np.argsort(numbers[order], kind="stable")]
+
+
+def medians(groups: NDArray[intp], values: Floats, count: int) -> tuple[Floats, NDArray[intp]]:
+    """The median and the size of each of so many groups, NaN of an empty one."""
+    sizes = np.bincount(groups, minlength=count)
+    ordered = np.append(values[sorted_in(groups, values)], np.nan)
+    begins = np.cumsum(sizes) - sizes
+    low, high = begins + np.maximum(sizes - 1, 0) // 2, begins + sizes // 2
+    return np.where(sizes > 0, (ordered[low] + ordered[high]) / 2, np.nan), sizes
+
+
+@once
+def queues_by_lane(context: DriveContext) -> tuple[Flags, Floats]:
+    """Flags and median speeds (km/h) of queues, by state and lane.
+
+    In a queue more than half of the gaps are short. The flags are by what counts as short, a first
+    axis.
+    """
+    lanes = context.existing_lanes.shape[1]
+    shape, around = (context.states, lanes), vehicles_around(context)
+    place = around.state * lanes + around.lane
+    enough = np.bincount(place, minlength=context.states * lanes) >= context.thresholds.fewest
+    several = np.flatnonzero(enough[place])
+    around, place = around.part(several), place[several]
+    middle, _ = medians(place, around.speed, context.states * lanes)
+    order = sorted_in(place, around.s_min)
+    around, place = around.part(order), place[order]
+    next_to = np.flatnonzero(place[1:] == place[:-1])
+    behind, place = around.part(next_to), place[next_to]
+    longest = longest_gaps(context, behind.speed, behind.speed_error)
+    short = around.s_min[next_to + 1] - behind.s_max <= longest
+    gaps = np.bincount(place, minlength=context.states * lanes)
+    n_short = [np.bincount(place[flags], minlength=context.states * lanes) for flags in short]
+    queues = np.stack(n_short) > _MOST * gaps
+    return queues.reshape(len(READINGS), *shape), middle.reshape(shape) * KMH

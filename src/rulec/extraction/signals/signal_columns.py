@@ -48,6 +48,12 @@ def latest(flags: Flags) -> NDArray[intp]:
     return np.maximum.accumulate(states, axis=-1)
 
 
+def next_state(flags: Flags, otherwise: int) -> NDArray[intp]:
+    """The first state from each on in which a flag holds, ``otherwise`` if there is none."""
+    states = np.where(flags, np.arange(flags.shape[-1]), otherwise)
+    return np.minimum.accumulate(states[..., ::-1], axis=-1)[..., ::-1]
+
+
 def rounded(values: SignalColumn) -> SignalColumn:
     """Round numbers to a hundredth, no better being known, without negative zeros."""
     return np.round(values, 2) + 0.0

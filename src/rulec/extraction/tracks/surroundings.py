@@ -28,10 +28,14 @@ Directions = tuple["bool | None", "bool | None"]
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """The junctions, passages and carriageways of a recording."""
+    """The junctions, passages and carriageways of a recording.
+
+    ``computed`` holds what signals have found of it, and of roads in it.
+    """
 
     recording: Recording
     tracks: Tracks
+    computed: dict[object, object] = field(default_factory=dict)
     _directions: dict[str, Directions] = field(default_factory=dict)
     _rings: dict[Side, frozenset[str]] = field(default_factory=dict)
 

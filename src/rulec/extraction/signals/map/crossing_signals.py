@@ -11,40 +11,78 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.signal_columns import SignalColumns, latest, named_values
+from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
+from rulec.extraction.tracks.road_extents import RoadExtents, any_lane
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
 
-def crossing_signals(context: DriveContext) -> SignalColumns:
-    """The signals of pedestrians, and of vehicles that stop for them."""
-    uses = _crossing_uses(context, next_crossing(context), context.tracks.on_crosswalk)
-    aside = _crossing_uses(context, _side_road(context), context.tracks.on_lane)
-    walkers = context.tracks.of_type("pedestrian")[:, None]
-    used = ((uses > 0) & context.relevant & walkers).any(axis=0)
-    too_late, unsure = _too_late(context, uses)
-    own = np.where(_past_ego(context) | too_late, 0, uses)
-    stopped = _stopped(context) & used
+def crossing_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of pedestrians, and of vehicles that stop for them, those that are wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _crossing_use(context: DriveContext) -> SignalColumns:
+    rows = _pedestrians(context)
+    own, unsure = np.zeros(context.relevant.shape, dtype=int), np.zeros_like(context.relevant)
+    if len(rows):
+        used = _used_ahead(context)
+        too_late, may_be = _too_late(context, used)
+        own[rows] = np.where(_past_ego(context) | too_late, 0, used)
+        unsure[rows] = may_be & (own[rows] > 0)
     return SignalColumns(
-        about={
-            "crossing_use": named_values(own, _USES),
-            "stopped_for_pedestrian": stopped,
-            "crosses_side_road": aside > 0,
-        },
-        only={
-            "crossing_use": context.tracks.of_type("pedestrian"),
-            "stopped_for_pedestrian": context.tracks.of_type("vehicle"),
-            "crosses_side_road": context.tracks.of_type("pedestrian"),
-        },
-        unknown={
-            "crossing_use": unsure & (own > 0),
-            "stopped_for_pedestrian": _behind_another(context, stopped),
-        },
+        about={"crossing_use": named_values(own, _USES)},
+        only={"crossing_use": context.tracks.of_type("pedestrian")},
+        unknown={"crossing_use": unsure},
     )
+
+
+def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
+    stopped = np.zeros_like(context.relevant)
+    if len(_pedestrians(context)):
+        rows = _pedestrians(context)
+        waited_for = ((_used_ahead(context) > 0) & context.relevant[rows]).any(axis=0)
+        stopped = _stopped(context) & waited_for
+    return SignalColumns(
+        about={"stopped_for_pedestrian": stopped},
+        only={"stopped_for_pedestrian": context.tracks.of_type("vehicle")},
+        unknown={"stopped_for_pedestrian": _behind_another(context, stopped)},
+    )
+
+
+def _crosses_side_road(context: DriveContext) -> SignalColumns:
+    rows, crosses = _pedestrians(context), np.zeros_like(context.relevant)
+    start, end = _side_road(context)
+    if len(rows) and np.isfinite(start).any():
+        crosses[rows] = _crossing_uses(context, (start, end), context.tracks.on_lane[rows]) > 0
+    return SignalColumns(
+        about={"crosses_side_road": crosses},
+        only={"crosses_side_road": context.tracks.of_type("pedestrian")},
+    )
+
+
+@once
+def _pedestrians(context: DriveContext) -> NDArray[intp]:
+    """The rows of pedestrians."""
+    return np.flatnonzero(context.tracks.of_type("pedestrian"))
+
+
+@once
+def _walking(context: DriveContext) -> RoadExtents:
+    """The extents of pedestrians, a row each."""
+    return context.extents.part(_pedestrians(context), slice(None))
+
+
+@once
+def _used_ahead(context: DriveContext) -> NDArray[intp]:
+    """How pedestrians use ego's present or next crossing: indices into ``_USES``, a row each."""
+    on_it = context.tracks.on_crosswalk[_pedestrians(context)]
+    return _crossing_uses(context, next_crossing(context), on_it)
 
 
 def _side_road(context: DriveContext) -> tuple[Floats, Floats]:
@@ -62,20 +100,20 @@ def _side_road(context: DriveContext) -> tuple[Floats, Floats]:
 def _crossing_uses(
     context: DriveContext, stretch: tuple[Floats, Floats], on_it: Flags
 ) -> NDArray[intp]:
-    """Indices into ``_USES`` for all participants; they are meaningful for pedestrians only.
+    """Indices into ``_USES`` for pedestrians, a row each.
 
     ``stretch`` has begin and end of the crossing by state, ``on_it`` flags of who is where one
     crosses; where no crossing is drawn that is any place in the road.
     """
     start, end = stretch
-    others, limits = context.extents, context.thresholds
+    others, limits, rows = _walking(context), context.thresholds, _pedestrians(context)
     # Room for who does not walk exactly between the marks
     beside = (others.s_max > start - limits.kerb_m) & (others.s_min < end + limits.kerb_m)
     to_road = np.maximum(-others.left_of_max[..., 0], others.left_of_min[..., -1]).clip(0.0)
-    walks = context.tracks.speed * KMH >= limits.standing_kmh
-    towards = _towards(context)
-    crossing = beside & on_it & context.tracks.on_lane
-    on = crossing & (context.touched.any(axis=-1) | ~walks | (towards > 0))
+    walks = context.tracks.speed[rows] * KMH >= limits.standing_kmh
+    towards = _towards(others)
+    crossing = beside & on_it & context.tracks.on_lane[rows]
+    on = crossing & (context.on_lanes[rows] | ~walks | (towards > 0))
     waits = beside & (to_road <= limits.kerb_m) & ~walks
     # Who walks along the pavement and drifts a little towards the road does not come to cross
     approaches = walks & (towards > np.abs(others.along))
@@ -92,34 +130,34 @@ def _too_late(context: DriveContext, uses: NDArray[intp]) -> tuple[Flags, Flags]
     then; who is on the crossing then has been about to cross for ``about_to_s``. Where somebody
     walks shows late in a mean, by half its time.
     """
-    limits, used = context.thresholds, uses > 0
+    limits, used, rows = context.thresholds, uses > 0, _pedestrians(context)
     speed, front = np.maximum(context.ego_extents.along[0], 0.0), context.ego_extents.s_max[0]
     start, _ = next_crossing(context)
     longest = round(limits.away_s / context.recording.step_s)
     off = np.arange(context.states) - latest(used) > longest
-    seen_before = latest(off & context.relevant) >= 0
+    seen_before = latest(off & context.relevant[rows]) >= 0
     on_it = (uses == len(_USES) - 1) & ~seen_before
     earlier = np.where(on_it, limits.about_to_s, 0.0) + limits.smoothing_s / 2
     stop = speed**2 / (2 * limits.braking_mps2) - speed * earlier
-    waits = front + stop <= np.maximum(start, context.extents.s_min)
+    waits = front + stop <= np.maximum(start, _walking(context).s_min)
     begins = latest(off | np.append(False, start[1:] != start[:-1]))
     late = used & (latest(used & waits) < np.maximum(begins, 0))
     return late & seen_before, late & ~seen_before
 
 
-def _towards(context: DriveContext) -> Floats:
+def _towards(others: RoadExtents) -> Floats:
     """The speed towards the middle of the road, across it (m/s)."""
-    left, left_of = context.extents.across, context.extents.left_of
+    left, left_of = others.across, others.left_of
     return np.where(left_of[..., 0] + left_of[..., -1] < 0, left, -left)
 
 
 def _past_ego(context: DriveContext) -> Flags:
-    """Flags of participants that have left ego's lane, and ego's body, and walk away from them.
+    """Flags of pedestrians that have left ego's lane, and ego's body, and walk away from them.
 
     Who turns along the road then has left them behind too, until they walk back, for ``away_s``. Of
     ego's body counts the middle if it turns away from them: what reaches farther is its rear.
     """
-    own, others, bound = context.ego_extents, context.extents, context.ego_lane
+    own, others, bound = context.ego_extents, _walking(context), context.ego_lane
     low = np.where(own.across > 0, own.middle_from(bound), own.from_bound(bound)[0])
     high = np.where(own.across < 0, own.middle_from(bound + 1), own.from_bound(bound + 1)[1])
     on_left = others.from_bound(bound + 1)[0] > np.maximum(high, 0.0)
@@ -143,7 +181,7 @@ def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
     waits = np.zeros_like(stopped)
     for row in np.flatnonzero(stopped.any(axis=1)):
         ahead = vehicles & (others.s_min >= others.s_max[row]) & (others.s_min < start)
-        same = (context.touched & context.touched[row]).any(axis=-1)
+        same = any_lane(context.touched & context.touched[row])
         waits[row] = stopped[row] & (ahead & same).any(axis=0)
     return waits
 
@@ -153,7 +191,12 @@ def _stopped(context: DriveContext) -> Flags:
     start, _ = next_crossing(context)
     stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
     way = start - context.extents.s_max
-    stopped: Flags = (
-        stands & context.touched.any(axis=-1) & (way >= 0) & (way <= 2 * context.thresholds.zone_m)
-    )
+    stopped: Flags = stands & context.on_lanes & (way >= 0) & (way <= 2 * context.thresholds.zone_m)
     return stopped
+
+
+_PASSES: Passes = {
+    ("crossing_use",): _crossing_use,
+    ("stopped_for_pedestrian",): _stopped_for_pedestrian,
+    ("crosses_side_road",): _crosses_side_road,
+}

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.priority_signals import own_passages
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Light, ObservedLight
 
@@ -24,54 +26,81 @@ _COLOURS = {
 }
 
 
-def junction_signals(context: DriveContext) -> SignalColumns:
-    """The signals of junctions on ego's road, their lights and signs."""
-    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+def junction_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of junctions on ego's road, their lights and signs, those that are wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _junction_zone(context: DriveContext) -> SignalColumns:
     zone = np.zeros(context.states, dtype=bool)
+    for start, end in context.road.junctions:
+        zone |= _at_junction(context, start, end)
+    return SignalColumns({"junction_zone": zone})
+
+
+def _at_junction(context: DriveContext, start: float, end: float) -> Flags:
+    """Flags of states in which ego is at a junction, from where to where on its road."""
+    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    at_junction: Flags = (front >= start - context.thresholds.zone_m) & (rear < end)
+    return at_junction
+
+
+def _enters_junction(context: DriveContext) -> SignalColumns:
     enters = np.zeros(context.states, dtype=bool)
+    for start, _ in context.road.junctions:
+        enters |= _passes(context.ego_extents.s_max[0], start)
+    return SignalColumns({"enters_junction": enters})
+
+
+def _turns(context: DriveContext) -> SignalColumns:
     turn = np.full(context.states, "straight_on", dtype="<U11")
     for start, end in context.road.junctions:
-        at_junction = (front >= start - context.thresholds.zone_m) & (rear < end)
-        zone |= at_junction
-        enters |= _passes(front, start)
-        turn[at_junction] = turn_at(context, start, end)
-    world: dict[str, SignalColumn] = {
-        "junction_zone": zone,
-        "enters_junction": enters,
-        "turn": turn,
-        "preparing_to_leave": _within_preparation(turn != "straight_on", context)
-        | _within_preparation(_on_exit(context), context),
-    }
-    unknown: dict[str, Flags] = {"turn": _way_not_known(context)}
-    prepares = _within_preparation(unknown["turn"], context) | _may_turn_later(context)
-    unknown["preparing_to_leave"] = prepares & ~world["preparing_to_leave"]
-    lanelets = context.recording.lanelets.values()
-    complete = context.recording.complete
-    if "STOP" in complete or any(STOP_SIGNS & lanelet.signs for lanelet in lanelets):
-        world["crosses_stop_line"] = _crosses_stop_line(context, front)
+        turn[_at_junction(context, start, end)] = turn_at(context, start, end)
+    unknown = _way_not_known(context)
+    prepares = _within_preparation(turn != "straight_on", context)
+    prepares |= _within_preparation(_on_exit(context), context)
+    perhaps = _within_preparation(unknown, context) | _may_turn_later(context)
+    return SignalColumns(
+        {"turn": turn, "preparing_to_leave": prepares},
+        unknown={"turn": unknown, "preparing_to_leave": perhaps & ~prepares},
+    )
+
+
+def _stop_signs(context: DriveContext) -> SignalColumns:
+    if not ("STOP" in context.recording.complete or STOP_SIGNS & map_contents(context).signs):
+        return SignalColumns()
+    return SignalColumns({"crosses_stop_line": _crosses_stop_line(context)})
+
+
+def _traffic_lights(context: DriveContext) -> SignalColumns:
     # Lights stand where ways cross, and nowhere else: without such a place there is none
     nowhere = not context.surroundings.passages.junctions and not context.road.crossings
-    if nowhere or "light" in complete or any(lanelet.lights for lanelet in lanelets):
-        world["light"], world["crosses_light_line"], changed = _lights(context, front)
-        unseen = front + context.thresholds.light_reach_m > context.road.borders[-1]
-        unknown["light"] = (world["light"] == "") | (unseen & nowhere & ("light" not in complete))
-        unknown["crosses_light_line"] = changed
-    return SignalColumns(world, unknown=unknown)
+    complete = "light" in context.recording.complete
+    if not (nowhere or complete or map_contents(context).lights):
+        return SignalColumns()
+    front = context.ego_extents.s_max[0]
+    light, crosses, changed = _lights(context, front)
+    unseen = front + context.thresholds.light_reach_m > context.road.borders[-1]
+    return SignalColumns(
+        {"light": light, "crosses_light_line": crosses},
+        unknown={
+            "light": (light == "") | (unseen & nowhere & (not complete)),
+            "crosses_light_line": changed,
+        },
+    )
 
 
 def _on_exit(context: DriveContext) -> Flags:
     """Flags of states in which ego is on a lane that leaves the road."""
-    pieces, lanes = context.road.piece(context.ego_extents.s[0]).tolist(), context.ego_lane.tolist()
-    own = [context.road.lanelet(*pair) for pair in zip(pieces, lanes, strict=True)]
-    return np.array(["exitRamp" in lanelet.types for lanelet in own], dtype=bool)
+    return own_lanelets(context).flags(lambda lanelet: "exitRamp" in lanelet.types)
 
 
 def _way_not_known(context: DriveContext) -> Flags:
     """Flags of states at a junction of whose ways the drive does not tell which ego takes."""
-    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    rear = context.ego_extents.s_min[0]
     unknown = np.zeros(context.states, dtype=bool)
     for start, end in context.road.junctions:
-        at_junction = (front >= start - context.thresholds.zone_m) & (rear < end)
+        at_junction = _at_junction(context, start, end)
         ends = at_junction.any() and not (rear >= end).any()
         if ends and _ways_part(context, start) and not _on_known_way(context, start, end):
             unknown |= at_junction
@@ -136,16 +165,15 @@ def _passes(front: Floats, line: float) -> Flags:
     return np.append(False, beyond[1:] & ~beyond[:-1])
 
 
-def _crosses_stop_line(context: DriveContext, front: Floats) -> Flags:
+def _crosses_stop_line(context: DriveContext) -> Flags:
     """Flags of ego crossing the line of a lanelet with a stop sign."""
-    crosses = np.zeros(context.states, dtype=bool)
-    lanes = context.ego_lane.tolist()
+    crosses, front = np.zeros(context.states, dtype=bool), context.ego_extents.s_max[0]
     for piece in range(len(context.road.rows)):
         if any(row and STOP_SIGNS & row.signs for row in context.road.rows[piece]):
-            for state in range(1, context.states):
-                if STOP_SIGNS & context.road.lanelet(piece, lanes[state]).signs:
-                    _, line = stop_line(context, piece, lanes[state])
-                    crosses[state] |= front[state - 1] <= line < front[state]
+            for lane in np.unique(context.ego_lane).tolist():
+                if STOP_SIGNS & context.road.lanelet(piece, lane).signs:
+                    _, line = stop_line(context, piece, lane)
+                    crosses |= _passes(front, line) & (context.ego_lane == lane)
     return crosses
 
 
@@ -170,11 +198,11 @@ def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags, 
     """
     colours = np.full(context.states, "no_light", dtype="<U11")
     crosses, changed = np.zeros((2, context.states), dtype=bool)
-    lanes = context.ego_lane.tolist()
+    lanes = np.unique(context.ego_lane).tolist()
     for piece in range(len(context.road.rows) - 1, -1, -1):
         if not any(row is not None and row.lights for row in context.road.rows[piece]):
             continue
-        for lane in sorted(set(lanes)):
+        for lane in lanes:
             lights = _own_lights(context, piece, lane)
             if not lights:
                 continue
@@ -239,3 +267,12 @@ def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, floa
     if edge is None:
         return end, end + touching
     return end, max(min(begins + edge, end + _LINE_REACH_M), end + touching)
+
+
+_PASSES: Passes = {
+    ("junction_zone",): _junction_zone,
+    ("enters_junction",): _enters_junction,
+    ("turn", "preparing_to_leave"): _turns,
+    ("crosses_stop_line",): _stop_signs,
+    ("light", "crosses_light_line"): _traffic_lights,
+}

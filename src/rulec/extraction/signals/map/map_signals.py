@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import stop_line
 from rulec.extraction.signals.signal_columns import (
-    SignalColumn,
     SignalColumns,
     rounded,
     rounded_outward,
 )
+from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet
 
@@ -27,29 +30,58 @@ _SIGNS = {
 }
 """Sign -> signal, and whether it is for the line at the lanelet's end."""
 
+_SURFACES = {
+    "busLane": "bus_lane",
+    "shoulder": "hard_shoulder",
+    "level_crossing": "level_crossing",
+}
+"""Type of a lanelet -> surface; a later one counts."""
 
-def map_signals(context: DriveContext) -> SignalColumns:
-    """The signals of ego's road, as far as the map knows them."""
-    lanelets = _lanelets_at(context, context.ego_extents.s[0])
-    to_crossing = distance_to_crossing(context)
-    on = to_crossing <= 0
-    world = {
-        "surface": _surface(context, on),
-        "distance_to_crossing": rounded(to_crossing),
-        "crossing_zone": to_crossing <= context.thresholds.zone_m,
-    }
-    unknown: dict[str, Flags] = {}
-    if any(lanelet.limit_mps is not None for lanelet in context.recording.lanelets.values()):
-        world["limit"] = rounded(np.minimum(context.limit_mps * KMH, NO_LIMIT_KMH))
-    for sign, (name, at_line) in _SIGNS.items():
-        drawn = any(sign in lanelet.signs for lanelet in context.recording.lanelets.values())
-        if drawn or sign in context.recording.complete:
-            here = np.array([sign in lanelet.signs for lanelet in lanelets])
-            world[name] = _holds_to_line(context, sign) if at_line else here
-    place = context.tolerances.place_m
+
+def map_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of ego's road, as far as the map knows them, those that are wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _distance_to_crossing(context: DriveContext) -> SignalColumns:
+    distance, place = distance_to_crossing(context), context.tolerances.place_m
     nearer, farther = (_to_crossing(context, way * place) for way in (-1, 1))
-    bounds = {"distance_to_crossing": rounded_outward(nearer, farther)}
-    return SignalColumns(world, unknown=unknown, bounds=bounds)
+    return SignalColumns(
+        {"distance_to_crossing": rounded(distance)},
+        bounds={"distance_to_crossing": rounded_outward(nearer, farther)},
+    )
+
+
+def _crossing_zone(context: DriveContext) -> SignalColumns:
+    near = distance_to_crossing(context) <= context.thresholds.zone_m
+    return SignalColumns({"crossing_zone": near})
+
+
+def _limit(context: DriveContext) -> SignalColumns:
+    if not map_contents(context).limits:
+        return SignalColumns()
+    return SignalColumns({"limit": rounded(np.minimum(context.limit_mps * KMH, NO_LIMIT_KMH))})
+
+
+def _signs(context: DriveContext) -> SignalColumns:
+    known = map_contents(context).signs | context.recording.complete
+    return SignalColumns(
+        {
+            name: _holds_to_line(context, sign)
+            if at_line
+            else own_lanelets(context).flags(_has_sign(sign))
+            for sign, (name, at_line) in _SIGNS.items()
+            if sign in known
+        }
+    )
+
+
+def _has_sign(sign: str) -> Callable[[Lanelet], bool]:
+    return lambda lanelet: sign in lanelet.signs
+
+
+def _is_of(kind: str) -> Callable[[Lanelet], bool]:
+    return lambda lanelet: kind in lanelet.types
 
 
 def _holds_to_line(context: DriveContext, sign: str) -> Flags:
@@ -70,13 +102,6 @@ def _holds_to_line(context: DriveContext, sign: str) -> Flags:
     return holds
 
 
-def _lanelets_at(context: DriveContext, s: Floats) -> list[Lanelet]:
-    """The lanelet of ego's lane at places, one for each state."""
-    pieces = context.road.piece(s).tolist()
-    lanes = context.ego_lane.tolist()
-    return [context.road.lanelet(piece, lane) for piece, lane in zip(pieces, lanes, strict=True)]
-
-
 def distance_to_crossing(context: DriveContext) -> Floats:
     """The distance (m) from ego's front to the next pedestrian crossing, 0 on it."""
     return _to_crossing(context, 0.0)
@@ -88,6 +113,7 @@ def _to_crossing(context: DriveContext, more_m: float) -> Floats:
     return distance
 
 
+@once
 def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
     """Begin and end of ego's present or next pedestrian crossing by state, or infinity."""
     start, end = np.full((2, context.states), np.inf)
@@ -97,14 +123,21 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
     return start, end
 
 
-def _surface(context: DriveContext, on_crossing: Flags) -> SignalColumn:
-    middle = context.ego_extents.s[0]
+def _surface(context: DriveContext) -> SignalColumns:
+    own, middle = own_lanelets(context), context.ego_extents.s[0]
     surfaces = np.full(context.states, "carriageway", dtype="<U14")
     for start, end in context.road.junctions:
         surfaces[(middle > start) & (middle < end)] = "junction"
-    own = _lanelets_at(context, middle)
-    surfaces[["busLane" in lanelet.types for lanelet in own]] = "bus_lane"
-    surfaces[["shoulder" in lanelet.types for lanelet in own]] = "hard_shoulder"
-    surfaces[["level_crossing" in lanelet.types for lanelet in own]] = "level_crossing"
-    surfaces[on_crossing] = "crossing"
-    return surfaces
+    for kind, surface in _SURFACES.items():
+        surfaces[own.flags(_is_of(kind))] = surface
+    surfaces[distance_to_crossing(context) <= 0] = "crossing"
+    return SignalColumns({"surface": surfaces})
+
+
+_PASSES: Passes = {
+    ("surface",): _surface,
+    ("distance_to_crossing",): _distance_to_crossing,
+    ("crossing_zone",): _crossing_zone,
+    ("limit",): _limit,
+    tuple(name for name, _ in _SIGNS.values()): _signs,
+}

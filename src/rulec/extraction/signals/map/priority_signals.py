@@ -12,11 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.conflicts import SLOWEST_MPS, first_column, in_conflict
 from rulec.extraction.signals.map.oncoming_priority import gives_way_to, turns_far
 from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import Junction, approaches, before_joining
 from rulec.extraction.tracks.tracks import Flags
@@ -26,6 +28,8 @@ _ONCOMING = "in_way_of_oncoming"
 _SIDES = ("conflict_from_left", "conflict_from_right", _ONCOMING)
 _RING, _RAIL = "conflict_on_roundabout", "conflict_with_rail"
 _CONFLICTS = (*_SIDES, _RING, _RAIL)
+_PRIORITY = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
+_ROADS = ("unregulated_junction", "own_road_ends", "other_road_ends", "on_priority_road")
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +49,16 @@ class Encounter:
     together: bool
 
 
-def priority_signals(context: DriveContext) -> SignalColumns:
-    """The signals of right of way at junctions."""
+def priority_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of right of way at junctions, those that are wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _conflicts(context: DriveContext) -> SignalColumns:
     passages = own_passages(context)
     conflicts = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
     unknown = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
     together, other_inside = np.zeros((2, context.states), dtype=bool)
-    roads, not_told = _roads(context, passages)
     for passage in passages:
         for met in _encounters(context, passage):
             span = slice(met.first, met.last + 1)
@@ -68,14 +75,15 @@ def priority_signals(context: DriveContext) -> SignalColumns:
             for name in _CONFLICTS:
                 unknown[name][_approach(context, passage)] = True
     unknown[_RING] |= without_junction(context)
-    world: dict[str, SignalColumn] = {**roads, **conflicts}
+    world: dict[str, SignalColumn] = {**conflicts}
     world |= {"arrived_together": together, "other_in_junction": other_inside}
     either: Flags = np.any([unknown[name] & ~conflicts[name] for name in _SIDES], axis=0)
-    not_told |= {name: unknown[name] & ~conflicts[name] for name in _CONFLICTS}
+    not_told = {name: unknown[name] & ~conflicts[name] for name in _CONFLICTS}
     not_told |= {"arrived_together": either, "other_in_junction": either}
     return SignalColumns(world, unknown=not_told)
 
 
+@once
 def own_passages(context: DriveContext) -> tuple[Passage, ...]:
     """Ego's passages of junctions during the drive."""
     (ego,) = context.ego.participants
@@ -102,35 +110,30 @@ def _approach(context: DriveContext, passage: Passage) -> slice:
     return slice(max(first, 0, *entered), passage.last - shift + 1)
 
 
-def _roads(
-    context: DriveContext, passages: tuple[Passage, ...]
-) -> tuple[dict[str, SignalColumn], dict[str, Flags]]:
+def _roads(context: DriveContext) -> SignalColumns:
     """What the map says of the junction that ego nears or is in."""
-    names = ("unregulated_junction", "own_road_ends", "other_road_ends", "on_priority_road")
-    columns = {name: np.zeros(context.states, dtype=bool) for name in names}
+    columns = {name: np.zeros(context.states, dtype=bool) for name in _ROADS}
     unknown = {"unregulated_junction": np.zeros(context.states, dtype=bool)}
-    for passage in passages:
+    for passage in own_passages(context):
         junction, span = (
             context.surroundings.passages.junctions[passage.junction],
             _approach(context, passage),
         )
-        unregulated, own, others = names[:3]
+        unregulated, own, others, priority = _ROADS
         columns[unregulated][span] = junction.regulated is False
         unknown[unregulated][span] = junction.regulated is None
         columns[own][span], columns[others][span] = _ending_roads(junction, passage)
         entries = approaches(context.recording, context.surroundings.passages.way(passage))
         signs = {sign for entry in entries for sign in entry.signs}
-        columns["on_priority_road"][span] = bool(signs & {"PRIORITY", "RIGHT_OF_WAY"})
+        columns[priority][span] = bool(signs & _PRIORITY)
     if not _tells_priority(context):
         del columns["on_priority_road"]
-    return dict(columns), unknown
+    return SignalColumns(columns, unknown=unknown)
 
 
 def _tells_priority(context: DriveContext) -> bool:
-    lanelets = context.recording.lanelets.values()
-    return "PRIORITY" in context.recording.complete or any(
-        {"PRIORITY", "RIGHT_OF_WAY"} & lanelet.signs for lanelet in lanelets
-    )
+    signs = map_contents(context).signs
+    return "PRIORITY" in context.recording.complete or bool(_PRIORITY & signs)
 
 
 def _ending_roads(junction: Junction, passage: Passage) -> tuple[bool, bool]:
@@ -253,3 +256,9 @@ def _leaves_at_latest(context: DriveContext, own: Passage) -> float:
     left = float(end - line.project(place))
     speed = max(float(tracks.speed[own.row, column]), SLOWEST_MPS)
     return column + left / speed / context.recording.step_s
+
+
+_PASSES: Passes = {
+    _ROADS: _roads,
+    (*_CONFLICTS, "arrived_together", "other_in_junction"): _conflicts,
+}

@@ -6,17 +6,21 @@ What a map leaves out is unknown unless its format would have it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TypeVar
 
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_passes import (
+    Passes,
+    Wanted,
+    once_a_recording,
+    signals_by,
+)
 from rulec.extraction.tracks.surroundings import Directions
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Lanelet
-
-_Value = TypeVar("_Value")
 
 _OUTSIDE = frozenset({"country", "rural", "highway", "interstate"})
 _SETTINGS = _OUTSIDE | {"urban"}
@@ -33,46 +37,71 @@ _LANE_KINDS = {
 }
 
 
-def road_signals(context: DriveContext) -> SignalColumns:
-    """The signals of ego's road, its surroundings and its weather."""
+def road_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of ego's road, its surroundings and its weather, those that are wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _built_up(context: DriveContext) -> SignalColumns:
+    if not _SETTINGS & map_contents(context).types:
+        return SignalColumns()
+    town, unknown = _told(own_lanelets(context).values(_town(context)))
+    return SignalColumns({"built_up": town}, unknown={"built_up": unknown})
+
+
+def _road_class(context: DriveContext) -> SignalColumns:
+    town = _town(context)
+    classes = own_lanelets(context).values(lambda at: _class(at, town(at)))
+    return _where_told("road_class", classes) if any(classes) else SignalColumns()
+
+
+def _where_told(name: str, values: list[str]) -> SignalColumns:
+    column = np.array(values)
+    return SignalColumns({name: column}, unknown={name: column == ""})
+
+
+def _ways(context: DriveContext) -> SignalColumns:
+    both = own_lanelets(context).values(_directions(context))
     world: dict[str, SignalColumn] = {}
     unknown: dict[str, Flags] = {}
-    pieces = context.road.piece(context.ego_extents.s[0])
-    lanes = context.ego_lane.tolist()
-    own = [context.road.lanelet(*pair) for pair in zip(pieces.tolist(), lanes, strict=True)]
-    is_town = _by_lanelet(own, _town(context))
-    if any(_SETTINGS & lanelet.types for lanelet in context.recording.lanelets.values()):
-        world["built_up"], unknown["built_up"] = _told(is_town)
-    classes = [_class(lanelet, town) for lanelet, town in zip(own, is_town, strict=True)]
-    if any(classes):
-        world["road_class"] = np.array(classes)
-        unknown["road_class"] = world["road_class"] == ""
-    both = _by_lanelet(own, _directions(context))
-    for number, name in enumerate(("one_way", "divided")):
-        told = [pair[number] for pair in both]
+    for name, told in zip(("one_way", "divided"), zip(*both, strict=True), strict=True):
         if any(value is not None for value in told):
             world[name], unknown[name] = _told(told)
-    lanelets = context.recording.lanelets.values()
-    if any(_LANE_KINDS.keys() & lanelet.types for lanelet in lanelets):
-        kinds = [next((_LANE_KINDS[x] for x in _LANE_KINDS if x in at.types), "") for at in own]
-        world["lane_kind"] = np.array(kinds)
-        unknown["lane_kind"] = world["lane_kind"] == ""
-    if any("tunnel" in lanelet.types for lanelet in lanelets):
-        world["tunnel"] = np.array(["tunnel" in lanelet.types for lanelet in own])
-    if "officer" in context.recording.complete:
-        for name in ("told_to_stop", "told_to_go"):
-            world[name] = np.zeros(context.states, dtype=bool)
-    weather = context.recording.weather
-    for name, value in (("wet", weather.wet), ("icy", weather.icy)):
-        if value is not None:
-            world[name] = np.full(context.states, value)
-    if weather.visibility_m is not None:
-        world["visibility"] = np.full(context.states, weather.visibility_m)
     return SignalColumns(world, unknown=unknown)
 
 
 def _told(values: Sequence[bool | None]) -> tuple[Flags, Flags]:
     return np.array([bool(x) for x in values]), np.array([x is None for x in values])
+
+
+def _lane_kind(context: DriveContext) -> SignalColumns:
+    if not _LANE_KINDS.keys() & map_contents(context).types:
+        return SignalColumns()
+    kinds = own_lanelets(context).values(
+        lambda at: next((_LANE_KINDS[x] for x in _LANE_KINDS if x in at.types), "")
+    )
+    return _where_told("lane_kind", kinds)
+
+
+def _tunnel(context: DriveContext) -> SignalColumns:
+    if "tunnel" not in map_contents(context).types:
+        return SignalColumns()
+    return SignalColumns({"tunnel": own_lanelets(context).flags(lambda at: "tunnel" in at.types)})
+
+
+def _officers(context: DriveContext) -> SignalColumns:
+    if "officer" not in context.recording.complete:
+        return SignalColumns()
+    nobody = np.zeros(context.states, dtype=bool)
+    return SignalColumns({"told_to_stop": nobody, "told_to_go": nobody})
+
+
+def _weather(context: DriveContext) -> SignalColumns:
+    weather = context.recording.weather
+    told = {"wet": weather.wet, "icy": weather.icy, "visibility": weather.visibility_m}
+    return SignalColumns(
+        {name: np.full(context.states, value) for name, value in told.items() if value is not None}
+    )
 
 
 def _class(lanelet: Lanelet, town: bool | None) -> str:
@@ -91,27 +120,13 @@ def _directions(context: DriveContext) -> Callable[[Lanelet], Directions]:
     return lambda lanelet: (True, False) if lanelet.id in ring else of_road(lanelet)
 
 
-def _by_lanelet(own: Sequence[Lanelet], value: Callable[[Lanelet], _Value]) -> list[_Value]:
-    known: dict[str, _Value] = {}
-    for lanelet in own:
-        if lanelet.id not in known:
-            known[lanelet.id] = value(lanelet)
-    return [known[lanelet.id] for lanelet in own]
-
-
 def _town(context: DriveContext) -> Callable[[Lanelet], bool | None]:
     """A function that says of a lanelet whether it is in a built-up area, None if unknown.
 
     ``urban`` is what many maps call every road: it counts on a map that has junctions or
     crossings, and on which no limit of an urban lanelet contradicts it.
     """
-    lanelets = context.recording.lanelets.values()
-    settled = bool(context.surroundings.passages.junctions) or any(
-        "crosswalk" in x.types for x in lanelets
-    )
-    fast = any(
-        "urban" in x.types and round((x.limit_mps or 0.0) * KMH, 2) > _URBAN_KMH for x in lanelets
-    )
+    settled, fast = _settled(context), _has_fast_town(context)
 
     def town(lanelet: Lanelet) -> bool | None:
         types = lanelet.types
@@ -123,3 +138,30 @@ def _town(context: DriveContext) -> Callable[[Lanelet], bool | None]:
         return False if types & _OUTSIDE and "urban" not in types else None
 
     return town
+
+
+@once_a_recording
+def _settled(context: DriveContext) -> bool:
+    """True if the map has junctions or crossings."""
+    junctions = context.surroundings.passages.junctions
+    return bool(junctions) or "crosswalk" in map_contents(context).types
+
+
+@once_a_recording
+def _has_fast_town(context: DriveContext) -> bool:
+    """True if the limit of some lanelet that is called urban is not one of a built-up area."""
+    return any(
+        "urban" in x.types and round((x.limit_mps or 0.0) * KMH, 2) > _URBAN_KMH
+        for x in context.recording.lanelets.values()
+    )
+
+
+_PASSES: Passes = {
+    ("built_up",): _built_up,
+    ("road_class",): _road_class,
+    ("one_way", "divided"): _ways,
+    ("lane_kind",): _lane_kind,
+    ("tunnel",): _tunnel,
+    ("told_to_stop", "told_to_go"): _officers,
+    ("wet", "icy", "visibility"): _weather,
+}

@@ -2,28 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_passes import Passes, Wanted, once_a_road, signals_by
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.extraction.tracks.tracks import Flags
 
 _SIGNS = frozenset({"YIELD", "ROUNDABOUT"})
 
 
-def roundabout_signals(context: DriveContext) -> SignalColumns:
-    """The signals of roundabouts on ego's road, which are rings of lanelets."""
+def roundabout_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of roundabouts on ego's road, which are rings of lanelets, if they are wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _rings(context: DriveContext) -> SignalColumns:
     road = context.road
     front, middle = context.ego_extents.s_max[0], context.ego_extents.s[0]
     inside, enters = np.zeros((2, context.states), dtype=bool)
     signed, unknown = np.zeros((2, context.states), dtype=bool)
-    lanelets = context.recording.lanelets.values()
-    told = "YIELD" in context.recording.complete or any(_SIGNS & x.signs for x in lanelets)
-    for begins, end, _ in _roundabouts(context):
+    told = "YIELD" in context.recording.complete or bool(_SIGNS & map_contents(context).signs)
+    for begins, end, _ in roundabouts(context):
         inside |= (middle > begins) & (middle < end)
         enters |= np.append(False, (front[1:] > begins) & (front[:-1] <= begins))
         nears = (front > begins - context.thresholds.approach_m) & (middle < end)
@@ -48,19 +52,25 @@ def without_junction(context: DriveContext) -> Flags:
     """Flags of states in which ego enters a ring where the map has no junction."""
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     enters = np.zeros(context.states, dtype=bool)
-    for begins, _, at_junction in _roundabouts(context):
+    for begins, _, at_junction in roundabouts(context):
         nears = (front > begins - context.thresholds.approach_m) & (rear <= begins)
         enters |= nears & (not at_junction)
     return enters
 
 
-def _roundabouts(context: DriveContext) -> Iterator[tuple[float, float, bool]]:
+@once_a_road
+def roundabouts(context: DriveContext) -> tuple[tuple[float, float, bool], ...]:
     """From where to where ego's road is on a ring, and whether it gets there by a junction.
 
     The junction before the ring is where one drives into it.
     """
     ring, road = context.surroundings.ring(context.side), context.road
     on = [any(x is not None and x.id in ring for x in row) for row in road.rows]
+    found = []
     for start, end in runs_along(road.borders, on):
         before = [low for low, high in road.junctions if low < start <= high + 1.0]
-        yield (before[0], end, True) if before else (start, end, False)
+        found.append((before[0], end, True) if before else (start, end, False))
+    return tuple(found)
+
+
+_PASSES: Passes = {("roundabout", "enters_roundabout", "roundabout_signed"): _rings}

@@ -9,14 +9,21 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_signals import room_beside
 from rulec.extraction.signals.map.map_signals import next_crossing
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import (
+    Passes,
+    Wanted,
+    once_a_recording,
+    once_a_road,
+    signals_by,
+)
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import is_there
+from rulec.recordings.recording import Recording, is_there
 from rulec.scenario.recorded.lane_coordinates import crossings_along
 
 _LIGHTS_AT_CROSSING_M = 30.0
@@ -29,36 +36,51 @@ _ROOM_M = 1.0
 Stretches = Sequence[tuple[float, float]]
 
 
-def zone_signals(context: DriveContext) -> SignalColumns:
-    """The signals of crossings and of the room behind what ego enters."""
-    rails = _rail_stretches(context)
-    world: dict[str, SignalColumn] = {}
-    unknown: dict[str, Flags] = {}
+def zone_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of crossings and of the room behind what ego enters, those that are wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _level_crossings(context: DriveContext) -> SignalColumns:
+    if not _tells_rails(context):
+        return SignalColumns()
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    if "rail" in context.recording.complete or rails:
-        zone, enters = np.zeros((2, context.states), dtype=bool)
-        for start, end in rails:
-            zone |= (front >= start - context.thresholds.zone_m) & (rear < end)
-            enters |= np.append(False, (front[1:] > start) & (front[:-1] <= start))
-        # Those of a net have gates that close while a train comes
-        world |= {"level_crossing_zone": zone, "enters_level_crossing": enters, "guarded": zone}
-        world["tracks_at_kerb"] = _tracks_at_kerb(context)
-    world["crossing_kind"], unknown["crossing_kind"] = _crossing_kinds(context)
-    places = [*context.road.junctions, *context.road.crossings, *rails]
-    world["exit_clear"], unknown["exit_clear"] = _exit_clear(context, places)
+    zone, enters = np.zeros((2, context.states), dtype=bool)
+    for start, end in _rail_stretches(context):
+        zone |= (front >= start - context.thresholds.zone_m) & (rear < end)
+        enters |= np.append(False, (front[1:] > start) & (front[:-1] <= start))
+    # Those of a net have gates that close while a train comes
+    return SignalColumns(
+        {"level_crossing_zone": zone, "enters_level_crossing": enters, "guarded": zone}
+    )
+
+
+def _tracks_at_kerb(context: DriveContext) -> SignalColumns:
+    if not _tells_rails(context):
+        return SignalColumns()
+    pieces = context.road.piece(context.ego_extents.s[0])
+    return SignalColumns({"tracks_at_kerb": _pieces_by_rails(context)[pieces]})
+
+
+def _tells_rails(context: DriveContext) -> bool:
+    return "rail" in context.recording.complete or bool(_rail_stretches(context))
+
+
+def _way_cleared(context: DriveContext) -> SignalColumns:
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
-    world["way_cleared"] = stands | _at_edge(context)
-    return SignalColumns(world, unknown=unknown)
+    return SignalColumns({"way_cleared": stands | _at_edge(context)})
 
 
+@once_a_road
 def _rail_stretches(context: DriveContext) -> Stretches:
     rows = context.road.rows
     flags = [any("level_crossing" in x.types for x in row if x is not None) for row in rows]
     return list(runs_along(context.road.borders, flags))
 
 
-def _tracks_at_kerb(context: DriveContext) -> Flags:
-    """Flags of states in which the lane beside ego's road at the kerb is for rail vehicles."""
+@once_a_road
+def _pieces_by_rails(context: DriveContext) -> Flags:
+    """Flags of the pieces of the road beside which the lane at the kerb is for rail vehicles."""
     lanelets = context.recording.lanelets
     near = "right_of" if context.side == "right" else "left_of"
     flags = []
@@ -67,44 +89,54 @@ def _tracks_at_kerb(context: DriveContext) -> Flags:
         outer = there[0] if context.side == "right" else there[-1]
         beside = lanelets.get(getattr(outer, near) or "")
         flags.append(beside is not None and "rail" in beside.types)
-    return np.array(flags)[context.road.piece(context.ego_extents.s[0])]
+    return np.array(flags)
 
 
-def _crossing_kinds(context: DriveContext) -> tuple[SignalColumn, Flags]:
+def _crossing_kind(context: DriveContext) -> SignalColumns:
     """The kind of the crossing ahead: ``directed_crossing`` by a light of its own or ego's.
 
     It is unknown where there may be a light that nobody saw.
     """
+    (start, _), directed = next_crossing(context), np.zeros(context.states, dtype=bool)
+    unknown = np.zeros(context.states, dtype=bool)
+    for place, (lit, unsure) in _crossings_lit(context).items():
+        directed |= (start == place) & lit
+        unknown |= (start == place) & unsure
+    kinds = np.where(directed, "directed_crossing", "zebra")
+    return SignalColumns({"crossing_kind": kinds}, unknown={"crossing_kind": unknown})
+
+
+@once_a_road
+def _crossings_lit(context: DriveContext) -> dict[float, tuple[bool, bool]]:
+    """Where each crossing of the road begins, whether a light directs it, and perhaps does."""
     road = context.road
+    own = [
+        start
+        for start, _ in crossings_along(
+            _crossings_with_lights(context), road.line, road.lanes, 0.0, road.line.length
+        )
+    ]
+    # A net says itself which crossings have lights
+    told = "light" in context.recording.complete
+    lit, perhaps = (() if told else _directed_stretches(context, there) for there in (True, False))
+    found = {}
+    for start, _ in road.crossings:
+        directed = any(abs(start - other) < 1.0 for other in own)
+        directed |= any(low <= start <= high for low, high in lit)
+        unsure = not directed and any(low <= start <= high for low, high in perhaps)
+        found[start] = directed, unsure
+    return found
+
+
+@once_a_recording
+def _crossings_with_lights(context: DriveContext) -> Recording:
+    """The recording with those pedestrian crossings only that have lights of their own."""
     walkers = {
         name: lanelet
         for name, lanelet in context.recording.lanelets.items()
         if "crosswalk" in lanelet.types and (lanelet.lights or "directed" in lanelet.types)
     }
-    only = replace(context.recording, lanelets=walkers)
-    directed = [
-        start for start, _ in crossings_along(only, road.line, road.lanes, 0.0, road.line.length)
-    ]
-    # A net says itself which crossings have lights
-    told = "light" in context.recording.complete
-    lit, perhaps = (() if told else _directed_stretches(context, there) for there in (True, False))
-    kinds = {
-        start: "directed_crossing"
-        if any(abs(start - other) < 1.0 for other in directed)
-        or any(low <= start <= high for low, high in lit)
-        else "zebra"
-        for start, _ in road.crossings
-    }
-    unsure = {
-        start: kind == "zebra" and any(low <= start <= high for low, high in perhaps)
-        for start, kind in kinds.items()
-    }
-    start, _ = next_crossing(context)
-    at = start.tolist()
-    return (
-        np.array([kinds.get(place, "zebra") for place in at]),
-        np.array([unsure.get(place, False) for place in at], dtype=bool),
-    )
+    return replace(context.recording, lanelets=walkers)
 
 
 def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
@@ -137,7 +169,7 @@ def _at_edge(context: DriveContext) -> Flags:
     return (np.minimum(right, left) < edge) & (np.abs(right - left) > edge)
 
 
-def _exit_clear(context: DriveContext, places: Stretches) -> tuple[Flags, Flags]:
+def _exit_clear(context: DriveContext) -> SignalColumns:
     """Is there room for ego behind what it enters, and where is that unknown?
 
     There is none if the one ahead leaves too little behind the place where it is at that time, and
@@ -145,30 +177,40 @@ def _exit_clear(context: DriveContext, places: Stretches) -> tuple[Flags, Flags]
     ego is through it is unknown. What ego enters is the last place that it has got to, and before
     any the next one.
     """
+    places = [*context.road.junctions, *context.road.crossings, *_rail_stretches(context)]
     clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
-    own, size = context.ego_extents, context.ego_extents.s_max[0] - context.ego_extents.s_min[0]
-    front, rear = own.s_max[0], own.s_min[0]
+    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
-    lanes = np.arange(context.touched.shape[-1])
-    same = (context.touched & (lanes == context.ego_lane[None, :, None])).any(axis=-1)
-    follows = same & context.going_along & (relations.station(context) == relations.BEHIND)
     entered = _entered(front, rear, places, context.thresholds.approach_m)
     for number, (start, end) in enumerate(places):
-        if not (nears := entered == number).any():
+        nears, passed = entered == number, (rear >= end).any()
+        stuck = (front > _shared(context, start, end)) & (rear < end) & stands
+        if not nears.any() or (passed and not stuck.any()):
             continue
-        room = np.where(
-            follows & (context.extents.s_max > end), context.extents.s_min - end, np.inf
-        )
-        inside = follows & (context.extents.s_max <= end) & (context.extents.s_max > start)
-        taken = np.where(inside, context.extents.s_max - context.extents.s_min + _ROOM_M, 0.0)
-        free = room.min(axis=0, initial=np.inf) - taken.sum(axis=0)
-        short = free < size + _ROOM_M
-        held = (front > _shared(context, start, end)) & (rear < end) & stands & short
-        held_later = np.maximum.accumulate(held[::-1])[::-1]
+        short = _free_beyond(context, start, end) < front - rear + _ROOM_M
+        held_later = np.maximum.accumulate((stuck & short)[::-1])[::-1]
         clear &= ~(nears & short & held_later)
-        if not (rear >= end).any():
+        if not passed:
             unknown |= nears & short & ~held_later
-    return clear, unknown & clear
+    return SignalColumns({"exit_clear": clear}, unknown={"exit_clear": unknown & clear})
+
+
+def _free_beyond(context: DriveContext, start: float, end: float) -> Floats:
+    """How much room (m) those ahead in ego's lane leave behind a place, by state."""
+    ahead, others = _ahead_on_lane(context), context.extents
+    room = np.where(ahead & (others.s_max > end), others.s_min - end, np.inf)
+    inside = ahead & (others.s_max <= end) & (others.s_max > start)
+    taken = np.where(inside, others.s_max - others.s_min + _ROOM_M, 0.0)
+    free: Floats = room.min(axis=0, initial=np.inf) - taken.sum(axis=0)
+    return free
+
+
+@once
+def _ahead_on_lane(context: DriveContext) -> Flags:
+    """Flags of who goes ego's way ahead of it, and reaches into its lane."""
+    on_lane = context.touched[:, np.arange(context.states), context.ego_lane]
+    ahead: Flags = on_lane & context.going_along & (relations.station(context) == relations.BEHIND)
+    return ahead
 
 
 def _shared(context: DriveContext, start: float, end: float) -> float:
@@ -198,3 +240,12 @@ def _entered(front: Floats, rear: Floats, places: Stretches, reach: float) -> ND
         on = (front > start) & (rear < end) & (start > latest)
         entered, latest = np.where(on, number, entered), np.where(on, start, latest)
     return entered
+
+
+_PASSES: Passes = {
+    ("level_crossing_zone", "enters_level_crossing", "guarded"): _level_crossings,
+    ("tracks_at_kerb",): _tracks_at_kerb,
+    ("crossing_kind",): _crossing_kind,
+    ("exit_clear",): _exit_clear,
+    ("way_cleared",): _way_cleared,
+}

@@ -10,10 +10,14 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import Passes, Wanted, once_a_road, signals_by
+from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Lanelet
 
 _TAPERED = 0.6
@@ -23,19 +27,21 @@ _RAMPS = frozenset({"accessRamp", "exitRamp"})
 """Who joins from an acceleration lane gives way, and who leaves a road does not go on beside it."""
 
 
-def merge_signals(context: DriveContext) -> SignalColumns:
-    """The signals of ego's place at narrowings, and of who is beside it there."""
+def merge_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
+    """The signals of ego's place at narrowings, and of who is beside it there, if wanted."""
+    return signals_by(_PASSES, context, wanted)
+
+
+def _narrowings(context: DriveContext) -> SignalColumns:
     reach = context.thresholds.approach_m
     front, lane = context.ego_extents.s_max[0], context.ego_lane
     narrowing, merged, perhaps = np.zeros((3, context.states), dtype=bool)
     abreast, perhaps_abreast = np.zeros((2, *context.relevant.shape), dtype=bool)
-    level = relations.station(context) == relations.BESIDE
-    for place, right, sure in _merges(context):
+    for place, right, sure in merges(context):
         on_one = (lane == right) | (lane == right + 1)
         before = on_one & (front > place - reach) & (front <= place)
         other = np.where(lane == right, right + 1, right)
-        there = np.take_along_axis(context.touched, other[None, :, None], axis=2)[..., 0]
-        beside = before & level & there & context.going_along
+        beside = before & _beside_in(context, other) if before.any() else False
         if sure:
             narrowing |= before
             merged |= on_one & (front > place) & (front <= place + reach)
@@ -54,11 +60,23 @@ def merge_signals(context: DriveContext) -> SignalColumns:
     )
 
 
-def _merges(context: DriveContext) -> Iterator[tuple[float, int, bool]]:
+def _beside_in(context: DriveContext, lane: NDArray[intp]) -> Flags:
+    """Flags of those who go ego's way beside it in a lane, by state."""
+    inside = context.touched[:, np.arange(context.states), lane]
+    beside: Flags = inside & (relations.station(context) == relations.BESIDE) & context.going_along
+    return beside
+
+
+@once_a_road
+def merges(context: DriveContext) -> tuple[tuple[float, int, bool], ...]:
     """Places along the road at which a lane and the next one to the left become one.
 
     The last value is False where one of them may go on beyond the map.
     """
+    return tuple(_merges(context))
+
+
+def _merges(context: DriveContext) -> Iterator[tuple[float, int, bool]]:
     rows, borders = context.road.rows, context.road.borders
     whole = "lanes" in context.recording.complete
     for piece, (row, after) in enumerate(pairwise(rows)):
@@ -78,3 +96,6 @@ def _merges(context: DriveContext) -> Iterator[tuple[float, int, bool]]:
 def _tapers(lanelet: Lanelet) -> bool:
     widths = np.hypot(*(lanelet.left[[0, -1]] - lanelet.right[[0, -1]]).T)
     return bool(widths[1] < _TAPERED * widths[0])
+
+
+_PASSES: Passes = {("narrowing", "merged", "abreast_at_narrowing"): _narrowings}

@@ -1,0 +1,77 @@
+"""Ego's lanelets state by state, and what there is on the lanelets of the whole map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.signals.signal_passes import once_a_recording
+from rulec.extraction.tracks.tracks import Flags
+from rulec.recordings.recording import Lanelet
+
+_Value = TypeVar("_Value")
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class OwnLanelets:
+    """The lanelets of ego's lane at its middle.
+
+    ``places`` are the pieces and lanes, each once, ``lanelets`` theirs; ``number`` says by state
+    which of them it is.
+    """
+
+    places: tuple[tuple[int, int], ...]
+    lanelets: tuple[Lanelet, ...]
+    number: NDArray[intp]
+
+    def values(self, value: Callable[[Lanelet], _Value]) -> list[_Value]:
+        """What a function says of the lanelet, by state."""
+        of_each = [value(lanelet) for lanelet in self.lanelets]
+        return [of_each[number] for number in self.number.tolist()]
+
+    def flags(self, holds: Callable[[Lanelet], bool]) -> Flags:
+        """Flags of the states in which something holds of the lanelet."""
+        of_each = np.array([holds(lanelet) for lanelet in self.lanelets], dtype=bool)
+        flags: Flags = of_each[self.number]
+        return flags
+
+
+@once
+def own_lanelets(context: DriveContext) -> OwnLanelets:
+    """The lanelets of ego's lane."""
+    pieces, lanes = context.road.piece(context.ego_extents.s[0]), context.ego_lane
+    width = context.existing_lanes.shape[1]
+    codes, number = np.unique(pieces * width + lanes, return_inverse=True)
+    places = tuple(divmod(code, width) for code in codes.tolist())
+    lanelets = tuple(context.road.lanelet(*place) for place in places)
+    return OwnLanelets(places, lanelets, number)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MapContents:
+    """What some lanelet of a map has: types, signs, limits, lights, marks."""
+
+    types: frozenset[str]
+    signs: frozenset[str]
+    limits: bool
+    lights: bool
+    marks: bool
+
+
+@once_a_recording
+def map_contents(context: DriveContext) -> MapContents:
+    """What some lanelet of the recording's map has."""
+    lanelets = context.recording.lanelets.values()
+    return MapContents(
+        types=frozenset().union(*(lanelet.types for lanelet in lanelets)),
+        signs=frozenset().union(*(lanelet.signs for lanelet in lanelets)),
+        limits=any(lanelet.limit_mps is not None for lanelet in lanelets),
+        lights=any(lanelet.lights for lanelet in lanelets),
+        marks=any(lanelet.left_mark or lanelet.right_mark for lanelet in lanelets),
+    )

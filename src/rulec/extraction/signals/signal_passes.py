@@ -1,0 +1,72 @@
+"""Signal passes: which signals a function gives, and only those of them that are wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
+from functools import wraps
+from typing import Any, TypeAlias, TypeVar, cast
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.signal_columns import SignalColumns
+
+Wanted: TypeAlias = frozenset[str] | None
+"""The names of the signals that somebody reads; None for all."""
+
+Passes: TypeAlias = Mapping[tuple[str, ...], Callable[[DriveContext], SignalColumns]]
+"""Names -> the function that gives signals of these names, and no others."""
+
+_Value = TypeVar("_Value")
+
+
+def signals_by(passes: Passes, context: DriveContext, wanted: Wanted) -> SignalColumns:
+    """The wanted signals of a drive, by those passes that give any of them."""
+    signals = SignalColumns()
+    for names, signals_of in passes.items():
+        if wanted is None or not wanted.isdisjoint(names):
+            signals |= signals_of(context)
+    return signals if wanted is None else _only(signals, wanted)
+
+
+def _only(signals: SignalColumns, wanted: frozenset[str]) -> SignalColumns:
+    """The signals of these names."""
+    columns: dict[str, Any] = {
+        field.name: {
+            name: column for name, column in getattr(signals, field.name).items() if name in wanted
+        }
+        for field in fields(signals)
+    }
+    return replace(signals, **columns)
+
+
+def once_a_recording(
+    function: Callable[[DriveContext], _Value],
+) -> Callable[[DriveContext], _Value]:
+    """Let a function of no more than the recording and its thresholds compute once for it.
+
+    The recording's surroundings keep what it finds; they are made for one side of traffic and one
+    choice of thresholds. It is shared: nobody changes it.
+    """
+
+    @wraps(function)
+    def found(context: DriveContext) -> _Value:
+        return _kept(function, function, context)
+
+    return found
+
+
+def once_a_road(function: Callable[[DriveContext], _Value]) -> Callable[[DriveContext], _Value]:
+    """The same of a function of no more than the road, too."""
+
+    @wraps(function)
+    def found(context: DriveContext) -> _Value:
+        return _kept((function, context.road), function, context)
+
+    return found
+
+
+def _kept(key: object, function: Callable[[DriveContext], _Value], context: DriveContext) -> _Value:
+    known = context.surroundings.computed
+    if key not in known:
+        known[key] = function(context)
+    return cast("_Value", known[key])

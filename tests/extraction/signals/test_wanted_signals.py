@@ -1,0 +1,102 @@
+"""Only wanted signals are computed, and each is the same as among all."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.clearance_signals import clearance_signals
+from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals.flow_signals import flow_signals
+from rulec.extraction.signals.following_signals import following_signals
+from rulec.extraction.signals.intention_signals import intention_signals
+from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
+from rulec.extraction.signals.map.crossing_signals import crossing_signals
+from rulec.extraction.signals.map.junction_signals import junction_signals
+from rulec.extraction.signals.map.map_signals import map_signals
+from rulec.extraction.signals.map.merge_signals import merge_signals
+from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map.road_signals import road_signals
+from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
+from rulec.extraction.signals.map.zone_signals import zone_signals
+from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import signals_by
+from rulec.extraction.tellable_words import TELLABLE_WORDS
+from rulec.recordings.recording import Weather
+from support.builders.drive_contexts import context_of, steady
+from support.builders.recordings import recording
+from support.generators.random_recordings import lanes
+
+GROUPS = (
+    *(ego_signals, participant_signals, following_signals, map_signals, road_signals),
+    *(junction_signals, priority_signals, crossing_signals, roundabout_signals, zone_signals),
+    *(intention_signals, merge_signals, clearance_signals, flow_signals),
+    *(lane_change_signals, lane_mark_signals),
+)
+LAMPS = frozenset({"left_indicator", "right_indicator", "hazard_lights"})
+COMPLETE = (
+    *("light", "rail", "officer", "YIELD", "STOP", "PRIORITY", "GREEN_ARROW"),
+    *("NO_TURN_ON_RED", "NO_OVERTAKING_START"),
+)
+
+
+def everything():
+    """A drive of which everything is told that a recording can tell."""
+    types = frozenset({"urban", "mainCarriageWay", "tunnel", "highway"})
+    road = lanes(2, types=types, limit_mps=30.0, left_mark="solid", right_mark="broken")
+    ego, car, walker, rider = (
+        steady(7, 0, 0),
+        steady(8, 20, 0, speed=5),
+        steady(9, 15, -3, speed=0, kind="pedestrian"),
+        steady(10, -3, 1.5, kind="bicycle"),
+    )
+    ego, car = (
+        replace(one, shows=LAMPS, lamps={k: frozenset({"left_indicator"}) for k in range(4)})
+        for one in (ego, car)
+    )
+    weather = Weather(wet=True, icy=False, visibility_m=80.0)
+    found = recording(road, [ego, car, walker, rider])
+    return replace(found, complete=frozenset(COMPLETE), weather=weather)
+
+
+def names(signals):
+    return {*signals.world, *signals.about}
+
+
+def test_together_they_give_all_words_that_some_format_can_tell():
+    context = context_of(everything())
+    given = [names(signals_of(context)) for signals_of in GROUPS]
+    assert set().union(*given) == set().union(*TELLABLE_WORDS.values())
+    assert sum(map(len, given)) == len(set().union(*given))
+
+
+@pytest.mark.parametrize("signals_of", GROUPS, ids=lambda signals_of: signals_of.__name__)
+def test_a_wanted_signal_is_the_same_without_the_others(signals_of):
+    found = everything()
+    together = signals_of(context_of(found))
+    for name in names(together):
+        alone = signals_of(context_of(found), frozenset({name}))
+        assert names(alone) == {name}
+        for part in ("world", "about", "unknown", "only", "bounds"):
+            columns, among_all = getattr(alone, part), getattr(together, part)
+            assert columns.keys() == among_all.keys() & {name}
+            for own in columns:
+                np.testing.assert_array_equal(columns[own], among_all[own])
+
+
+def test_what_nobody_wants_is_not_computed():
+    context, asked = context_of(everything()), []
+
+    def gives(name):
+        def signals_of(context):
+            asked.append(name)
+            return SignalColumns({name: np.zeros(context.states), "by_the_way": np.ones(1)})
+
+        return signals_of
+
+    passes = {("wet", "icy"): gives("wet"), ("speed",): gives("speed")}
+    assert names(signals_by(passes, context, frozenset({"speed", "lane"}))) == {"speed"}
+    assert asked == ["speed"]
+    assert names(signals_by(passes, context, frozenset({"icy"}))) == set()
+    assert asked == ["speed", "wet"]
