@@ -28,7 +28,7 @@ def judged(tmp_path_factory):
 @pytest.fixture(scope="module")
 def rows(judged):
     verdicts, rules = judged
-    by = judged_by(rules, verdicts.request).columns()
+    by = judged_by(rules, verdicts.request)
     return list(DriveRows(rules, by).of_recording(verdicts, "r.parquet"))
 
 

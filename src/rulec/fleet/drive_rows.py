@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, fields
 from math import hypot
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.to_trace import Drive
 from rulec.fleet.finding_columns import COLUMNS, Cell, Row
+from rulec.fleet.judged_by import JudgedBy
 from rulec.monitoring.moments.exposure import Exposure, exposures
 from rulec.monitoring.moments.road_class import road_class
 from rulec.monitoring.verdict import NotJudged, OutcomeName, Verdict
@@ -31,10 +31,11 @@ OUTCOMES: Mapping[bool | None, OutcomeName] = {True: "kept", False: "violated", 
 
 @dataclass(frozen=True, slots=True)
 class DriveRows:
-    """Makes rows of verdicts by a rulebook; ``shared`` are columns that all of them have."""
+    """Makes rows of verdicts by ``rules``, which say what they were judged ``by``."""
 
     rules: CompiledRulebook
-    shared: Row
+    by: JudgedBy
+    shared: Row = field(init=False)
     _of_rules: Mapping[str, Row] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -43,6 +44,7 @@ class DriveRows:
             for rule in self.rules.rules
         }
         object.__setattr__(self, "_of_rules", of_rules)
+        object.__setattr__(self, "shared", self.by.columns())
 
     def of_recording(self, verdicts: RecordingVerdicts, file: str) -> Iterator[Row]:
         """The rows of all drives of a recording, and of vehicles that have none."""
@@ -56,34 +58,31 @@ class DriveRows:
         for answer in verdicts.answers():
             if isinstance(answer, NoDrive):
                 named = {"vehicle": answer.ego, "ego": answer.ego}
-                yield self._not_judged({**own, **named}, answer.why)
+                yield self.of_nothing({**own, **named}, answer.why)
             else:
                 yield from self._of_drive(answer, verdicts, own)
 
     def of_trace(
         self,
         trace: Trace,
-        verdict: Verdict | NotJudged,
+        verdict: Verdict,
         own: Row,
+        used: CompiledRulebook,
     ) -> Iterator[Row]:
-        """The rows of a trace; ``own`` are columns that say where it is from."""
-        own = {**own, "vehicle": verdict.trace or ""}
-        if isinstance(verdict, NotJudged):
-            yield self._not_judged(own, verdict.error.diagnostics[0].message)
-            return
+        """The rows of a trace; ``own`` are columns that name it, ``used`` fits its step."""
         times = (0.0, round((len(trace.states) - 1) * trace.step_s, 9))
         yield self._judged(own, verdict, trace, times)
         yield from self._rules(own, verdict, trace)
-        found = trace_findings(str(own.get("file", "")), trace, verdict, self.rules, [])
+        found = trace_findings(str(own.get("file", "")), trace, verdict, used, [])
         at_s = [
             round((len(trace.states) - 1 if one.step is None else one.step) * trace.step_s, 9)
             for one in verdict.violations
         ]
         yield from self._findings(own, verdict, at_s, found)
 
-    def of_nothing(self, own: Row, error: RulecError) -> Row:
-        """The row of what could not be read: a file, a recording or a trace."""
-        return self._not_judged(own, error.diagnostics[0].message)
+    def of_nothing(self, own: Row, why: str) -> Row:
+        """The row of what could not be judged: a file, a recording, a vehicle or a trace."""
+        return {**self.shared, **own, "kind": "drive", "outcome": "not_judged", "because": why}
 
     def _of_drive(
         self, result: DriveVerdict, verdicts: RecordingVerdicts, own: Row
@@ -91,7 +90,7 @@ class DriveRows:
         drive, verdict = result.drive, result.answer
         own = {**own, "vehicle": drive.trace.id, "ego": drive.ego}
         if isinstance(verdict, NotJudged):
-            yield self._not_judged(own, verdict.error.diagnostics[0].message)
+            yield self.of_nothing(own, verdict.error.diagnostics[0].message)
             return
         times = (drive.time_s(0), drive.time_s(None))
         yield {
@@ -125,9 +124,6 @@ class DriveRows:
             # Each state stands for the time up to the next one, the last for a step, too.
             "duration_s": round(n_states * trace.step_s, 9),
         }
-
-    def _not_judged(self, own: Row, why: str) -> Row:
-        return {**self.shared, **own, "kind": "drive", "outcome": "not_judged", "because": why}
 
     def _rules(self, own: Row, verdict: Verdict, trace: Trace | TraceArrays) -> Iterator[Row]:
         """A row for each rule: the worst of its outcomes, and how often it was put to the test."""

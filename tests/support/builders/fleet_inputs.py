@@ -3,6 +3,8 @@
 from functools import cache
 from pathlib import Path
 
+import pyarrow
+
 import rulec
 
 STEP_S = 0.1
@@ -70,3 +72,28 @@ def lanes(folder: Path):
     path = folder / "fleet.lanes.csv"
     path.write_text(LANES, encoding="utf-8")
     return path
+
+
+def trace_table(numbers):
+    """A table of traces of these drives, called t000 and so on, in the words of the rules.
+
+    Of every three the first is too fast from its third state on, the second too near in the last
+    one, and of the third it is open whether it lets go.
+    """
+    rows = []
+    for number in numbers:
+        states = 6 + number % 4
+        for step in range(states):
+            fast = 80.0 if number % 3 == 0 and step >= 2 else 40.0
+            near = number % 3 == 1 and step == states - 1
+            about = {"trace": f"t{number:03d}", "step": step, "step_s": STEP_S, "ends": "cut"}
+            rows.append({**about, "speed": fast})
+            values = {
+                "object": "v",
+                "type": "vehicle",
+                "lateral": "same_lane",
+                "safe_gap": not near,
+            }
+            rows.append({**about, **values, "station": "behind"})
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    return pyarrow.table({name: [row.get(name) for row in rows] for name in names})

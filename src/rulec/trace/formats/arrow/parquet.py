@@ -48,7 +48,7 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
         source = parquet.ParquetFile(stream)
         schema = source.schema_arrow
         check_columns(schema.names, SourceLocation(file))
-        _check_types(schema, pyarrow, file)
+        check_types(schema, pyarrow, file)
     except RulecError as error:
         yield [error]
         return
@@ -105,7 +105,8 @@ def _unreadable(what: str, reason: Exception, file: str) -> RulecError:
     )
 
 
-def _check_types(schema: Any, pyarrow: Any, file: str) -> None:
+def check_types(schema: Any, pyarrow: Any, file: str) -> None:
+    """Check (R0509) that columns are of types that values have."""
     types = pyarrow.types
     for name, kind in zip(schema.names, schema.types, strict=True):
         value = kind.value_type if types.is_dictionary(kind) else kind

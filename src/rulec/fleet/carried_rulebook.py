@@ -1,0 +1,52 @@
+"""Compiled rulebooks as they go to workers: bytes of a file, read once in each process."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TypeAlias
+
+from rulec.automata.bundle.bundle_file import from_json
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.files import opened
+from rulec.fleet.fleet_messages import not_compiled
+
+CompiledRules: TypeAlias = str | Path | bytes | CompiledRulebook
+"""The path of a compiled file, its content, or what has been compiled or read."""
+
+_MOST_KEPT = 4
+
+
+@dataclass(frozen=True, slots=True)
+class CarriedRulebook:
+    """A rulebook for other processes; ``name`` is what its file is called in messages."""
+
+    content: bytes | CompiledRulebook
+    name: str
+
+    def read(self) -> CompiledRulebook:
+        """The rulebook; of one file always the same one in a process. Raises RulecError R0404."""
+        if isinstance(self.content, CompiledRulebook):
+            return self.content
+        return _read(self.content, self.name)
+
+
+@lru_cache(maxsize=_MOST_KEPT)
+def _read(content: bytes, name: str) -> CompiledRulebook:
+    return from_json(content, name)
+
+
+def carried(rules: CompiledRules) -> CarriedRulebook:
+    """A rulebook for other processes. Raises RulecError R0404, R0701, R0711 for a source."""
+    if isinstance(rules, CompiledRulebook):
+        return CarriedRulebook(rules, rules.name)
+    if isinstance(rules, bytes):
+        result = CarriedRulebook(rules, "compiled rulebook")
+    else:
+        if Path(rules).suffix != ".json":
+            raise not_compiled(str(rules))
+        with opened(Path(rules)) as stream:
+            result = CarriedRulebook(stream.read(), str(rules))
+    result.read()
+    return result

@@ -1,0 +1,81 @@
+"""A callable that judges tables of drives, made to be sent to workers of any engine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from rulec.extraction.selection import RequestedDrives
+from rulec.fleet.carried_rulebook import CompiledRules, carried
+from rulec.fleet.drive_rows import DriveRows
+from rulec.fleet.finding_columns import arrow_table
+from rulec.fleet.judged_by import judged_by
+from rulec.fleet.table_kind import SeenKeys, kind_of
+from rulec.fleet.table_recordings import TrackTableJudge
+from rulec.fleet.table_traces import TraceTableJudge
+from rulec.monitoring.assumptions import Assumptions
+from rulec.recordings.road_map import RoadMap
+from rulec.trace.formats.arrow.parquet import arrow
+from rulec.trace.trace_model import Ending
+
+
+class FleetJudge:
+    """Judges all drives of an Arrow table, and gives the table of what was found.
+
+    ``rules`` is a compiled rulebook: the path of its file, its content, or what
+    ``rulec.compile_rulebook`` returns. ``road_map`` is the map of tracks, ``wanted`` says by which
+    thresholds and on which assumptions drives are judged, ``ends`` how traces end. A drive that
+    lacks rows is refused (R0709); where tables are ``grouped`` by drives, it is reported instead.
+    """
+
+    def __init__(
+        self,
+        rules: CompiledRules,
+        road_map: RoadMap | str | Path | None = None,
+        *,
+        wanted: RequestedDrives | None = None,
+        ends: Ending | None = None,
+        grouped: bool = False,
+    ) -> None:
+        # What goes to workers is the file's content: they need not have the file.
+        self._rules = carried(rules)
+        self._roads = str(road_map) if isinstance(road_map, Path) else road_map
+        self._wanted = wanted or RequestedDrives()
+        self._ends = ends
+        self._grouped = grouped
+        self._seen = SeenKeys()
+
+    def __call__(self, table: Any) -> Any:
+        """The findings (``rulec.fleet.arrow_schema``) of a table of tracks or traces.
+
+        Nothing else comes of it: the same table gives the same findings, wherever and however often
+        it is judged. Raises RulecError R0706 without pyarrow, R0709 for a drive that is cut, R0710
+        for a table of something else.
+        """
+        table = _as_table(table)
+        if not table.num_rows:
+            return arrow_table([])
+        rules = self._rules.read()
+        to_rows = DriveRows(rules, judged_by(rules, self._wanted, self._ends or ""))
+        seen = None if self._grouped else self._seen
+        if kind_of(table.column_names) == "tracks":
+            tracks = TrackTableJudge(to_rows, self._wanted, self._roads, seen)
+            return arrow_table(tracks.rows(table))
+        assumed = Assumptions(self._ends, self._wanted.assumed, self._wanted.defaults)
+        return arrow_table(TraceTableJudge(to_rows, assumed, seen).rows(table))
+
+    def __repr__(self) -> str:
+        return f"FleetJudge({self._rules.name!r})"
+
+
+def _as_table(table: Any) -> Any:
+    """A record batch, too, as a table. Raises TypeError."""
+    pyarrow, _ = arrow("the table of drives")
+    if isinstance(table, pyarrow.RecordBatch):
+        return pyarrow.Table.from_batches([table])
+    if not isinstance(table, pyarrow.Table):
+        raise TypeError(
+            f"a pyarrow.Table is judged, not a {type(table).__name__}; with Ray's map_batches and "
+            "map_groups give batch_format='pyarrow'"
+        )
+    return table

@@ -1,0 +1,72 @@
+"""Messages about the drives of fleets and where their findings are written."""
+
+from __future__ import annotations
+
+from rulec.diagnostics import RulecError, named
+from rulec.diagnostics.code import Code
+from rulec.recordings.recording_messages import NET_MISSING
+
+CUT_DRIVE = Code(
+    "R0709",
+    title="a drive is cut",
+    why="A drive is judged as a whole: half of one has other violations than the whole. Engines "
+    "cut tables wherever it suits them, so rows of one drive may be in two batches. Group them "
+    "first, by the columns that say which recording or trace a row is of: with Ray "
+    "`dataset.groupby('recording').map_groups(judge)`, with Spark "
+    "`frame.groupBy('recording').applyInArrow(judge, schema)`. `rulec fleet` does that itself.",
+    kind="circumstance",
+)
+
+NO_DRIVES_TABLE = Code(
+    "R0710",
+    title="a table has neither tracks nor traces",
+    why="A table of tracks has the columns `track`, `t`, `x` and `y`, and `recording` if it has "
+    "more than one; a table of traces has `trace`, `step`, `object` and `type`, and a column for "
+    "each name. docs/fleet.md has both.",
+    kind="circumstance",
+)
+
+
+def cut_drive(what: str, why: str, keys: list[str]) -> RulecError:
+    return CUT_DRIVE.error(
+        None,
+        f"{what} is cut: {why}",
+        help=f"group the rows by {named(keys)} first, so that each drive is in one table",
+    )
+
+
+def no_drives(columns: list[str]) -> RulecError:
+    most = 8
+    more = f" and {len(columns) - most:,} more" if len(columns) > most else ""
+    return NO_DRIVES_TABLE.error(
+        None,
+        f"the table has neither tracks nor traces; its columns are {named(columns[:most])}{more}",
+        expected="expected `track`, `t`, `x`, `y` or `trace`, `step`",
+        help="rename its columns as docs/fleet.md says",
+    )
+
+
+NOT_COMPILED = Code(
+    "R0711",
+    title="a rulebook is not compiled",
+    why="Workers of other engines get a compiled rulebook, so that they need neither Spot nor a "
+    "parser, and all judge by the same. `rulec compile NAME --step S -o FOLDER` writes one.",
+    kind="circumstance",
+)
+
+
+def not_compiled(reference: str) -> RulecError:
+    return NOT_COMPILED.error(
+        None,
+        f"`{reference}` is no compiled rulebook",
+        help="give the file that `rulec compile` writes (.json), or what "
+        "`rulec.compile_rulebook` returns",
+    )
+
+
+def no_map(name: str, why: str) -> RulecError:
+    return NET_MISSING.error(
+        None,
+        f"recording `{name}`: {why}",
+        help="give a map with `road_map` (--map), or its path in a column `map`",
+    )

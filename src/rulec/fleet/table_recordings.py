@@ -1,0 +1,98 @@
+"""Recordings in tables of tracks, judged, as rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path, PurePath
+from typing import Any
+
+from rulec.diagnostics import RulecError
+from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.selection import RequestedDrives
+from rulec.fleet.drive_rows import DriveRows
+from rulec.fleet.finding_columns import Row
+from rulec.fleet.fleet_messages import cut_drive, no_map
+from rulec.fleet.table_kind import FILE, MAP, RECORDING, ROWS, SeenKeys, keys_of, lacking
+from rulec.recordings.encodings.table_files import table_of
+from rulec.recordings.map_files import read_map
+from rulec.recordings.recording import Recording
+from rulec.recordings.road_map import RoadMap
+from rulec.recordings.tracks.roads_of_tracks import track_recording
+from rulec.recordings.tracks.track_table import track_rows_of
+
+Roads = RoadMap | str | None
+"""A map that has been read, or the path of one."""
+
+_MOST_MAPS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class TrackTableJudge:
+    """Judges recordings in tables of tracks on ``roads``, or on the map that a table names.
+
+    ``seen`` are those that have been; None if tables are grouped by recordings.
+    """
+
+    to_rows: DriveRows
+    wanted: RequestedDrives
+    roads: Roads
+    seen: SeenKeys | None
+
+    def rows(self, table: Any) -> Iterator[Row]:
+        """The rows of all drives, recording by recording.
+
+        Raises RulecError R0709 for one that is cut, if tables are not grouped by them.
+        """
+        # Arrow, 0.1 s: where there is a table of it, it is loaded.
+        from rulec.trace.formats.arrow.table_groups import extent, groups
+
+        keys = keys_of(table.column_names, "tracks")
+        for key, rows in groups(table, keys, []):
+            own = dict(zip(keys, key, strict=True))
+            own.setdefault(RECORDING, PurePath(own.get(FILE, "")).name or "tracks")
+            lacks = lacking(rows, len(rows))
+            if self.seen is not None:
+                if not lacks and self.seen.is_other(key, extent(rows)):
+                    lacks = "other rows of it came before"
+                if lacks:
+                    raise cut_drive(f"recording `{own[RECORDING]}`", lacks, keys)
+            if lacks:
+                yield self.to_rows.of_nothing(own, lacks)
+            else:
+                yield from self._of_recording(rows, own)
+
+    def _of_recording(self, rows: Any, own: Mapping[str, str]) -> Iterator[Row]:
+        name, file = own[RECORDING], own.get(FILE, "")
+        try:
+            recording = recording_of(rows, name, self.roads)
+            verdicts = RecordingVerdicts(recording, self.to_rows.rules, self.wanted, file or name)
+            yield from self.to_rows.of_recording(verdicts, file)
+        except RulecError as error:
+            yield self.to_rows.of_nothing(own, error.diagnostics[0].message)
+
+
+def recording_of(table: Any, name: str, roads: Roads) -> Recording:
+    """The recording of the tracks in an Arrow table.
+
+    Raises RulecError R0610, R0614 without a map, else as ``read_map``.
+    """
+    maps = table.column(MAP).unique().to_pylist() if MAP in table.column_names else []
+    if len(maps) > 1:
+        raise no_map(name, f"its rows name {len(maps)} maps")
+    known = [column for column in table.column_names if column not in (MAP, ROWS)]
+    columns = {column: table.column(column).to_numpy() for column in known}
+    rows, remark = track_rows_of(table_of(columns, f"tracks of `{name}`"))
+    chosen = maps[0] if maps and maps[0] else roads
+    if chosen is None:
+        raise no_map(name, "it has tracks, but no roads")
+    if isinstance(chosen, str):
+        chosen = _map(chosen, rows.times.step_s)
+    return track_recording(name, [rows], chosen, form="tracks as a table", remarks=[remark])
+
+
+@lru_cache(maxsize=_MOST_MAPS)
+def _map(path: str, step_s: float) -> RoadMap:
+    """A map, read once in a process; its lights count in steps."""
+    return read_map(Path(path), step_s)

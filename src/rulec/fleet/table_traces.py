@@ -1,0 +1,90 @@
+"""Traces in tables, judged, as rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rulec.diagnostics import RulecError
+from rulec.fleet.drive_rows import DriveRows
+from rulec.fleet.finding_columns import Row
+from rulec.fleet.fleet_messages import cut_drive
+from rulec.fleet.table_kind import FILE, MAP, ROWS, SeenKeys, keys_of, lacking
+from rulec.monitoring.assumptions import Assumptions
+from rulec.monitoring.batch.batch_verify import rulebook_for, verify_items
+from rulec.monitoring.verdict import NotJudged
+from rulec.trace.formats.table_reader import OBJECT, OTHER, STEP, TRACE
+from rulec.trace.trace_model import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class TraceTableJudge:
+    """Judges traces in tables; ``seen`` as for recordings."""
+
+    to_rows: DriveRows
+    assumed: Assumptions
+    seen: SeenKeys | None
+
+    def rows(self, table: Any) -> Iterator[Row]:
+        """The rows of all traces, by their names.
+
+        Raises RulecError R0709 for one that is cut, if tables are not grouped by them.
+        """
+        # Arrow, 0.1 s: where there is a table of it, it is loaded.
+        from rulec.trace.formats.arrow.table_groups import groups
+
+        own = [name for name in keys_of(table.column_names, "traces") if name != TRACE]
+        order = [TRACE, STEP, *(x for x in (OBJECT, OTHER) if x in table.column_names)]
+        for key, rows in groups(table, own, order):
+            yield from self._of_source(rows, dict(zip(own, key, strict=True)))
+
+    def _of_source(self, rows: Any, own: Mapping[str, str]) -> Iterator[Row]:
+        """The rows of traces that are from one file and recording."""
+        # As above.
+        from rulec.trace.formats.arrow.table_groups import trace_outlines, without_rows
+
+        outlines = trace_outlines(rows)
+        cut = []
+        for number, one in enumerate(outlines):
+            lacks = one.lacks or lacking(rows.slice(one.first, one.rows), one.rows)
+            if self.seen is not None:
+                content = (one.rows, one.states)
+                if not lacks and self.seen.is_other((*own.values(), one.name), content):
+                    lacks = "other rows of it came before"
+                if lacks:
+                    raise cut_drive(f"trace `{one.name}`", lacks, [*own, TRACE])
+            if lacks:
+                yield self.to_rows.of_nothing({**own, "vehicle": one.name}, lacks)
+                cut.append(number)
+        rest = without_rows(rows, [outlines[number] for number in cut])
+        whole = [one for number, one in enumerate(outlines) if number not in {*cut}]
+        others = [name for name in (MAP, ROWS) if name in rest.column_names]
+        yield from self._judged(rest.drop_columns(others), whole, own)
+
+    def _judged(self, rows: Any, outlines: list[Any], own: Mapping[str, str]) -> Iterator[Row]:
+        # As above.
+        from rulec.trace.formats.arrow.table_groups import traces_of_table
+
+        to_rows, waiting = self.to_rows, iter(outlines)
+        try:
+            chunks = traces_of_table(rows, own.get(FILE, "") or "the table") if outlines else ()
+        except RulecError as error:
+            for one in waiting:
+                yield to_rows.of_nothing({**own, "vehicle": one.name}, _why(error))
+            return
+        for chunk in chunks:
+            traces, answers = verify_items(self.assumed.of(chunk), to_rows.rules)
+            for place, answer in enumerate(answers):
+                named = {**own, "vehicle": next(waiting).name}
+                if isinstance(answer, NotJudged):
+                    yield to_rows.of_nothing(named, _why(answer.error))
+                    continue
+                trace = traces[place]
+                assert isinstance(trace, Trace), "it has been judged"
+                used = rulebook_for(traces, place, to_rows.rules)
+                yield from to_rows.of_trace(trace, answer, named, used)
+
+
+def _why(error: RulecError) -> str:
+    return error.diagnostics[0].message

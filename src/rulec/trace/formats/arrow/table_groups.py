@@ -1,0 +1,140 @@
+"""Arrow tables taken apart by keys, and tables of traces read without a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import pyarrow
+from numpy.typing import NDArray
+from pyarrow import compute, types
+
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.trace.formats.arrow.arrow_blocks import cut
+from rulec.trace.formats.arrow.parquet import check_types
+from rulec.trace.formats.table_reader import STEP, TRACE, Table, check_columns
+from rulec.trace.trace_model import Trace
+
+Key = tuple[str, ...]
+"""The texts of a row's key columns."""
+
+
+def groups(table: Any, keys: Sequence[str], order: Sequence[str]) -> Iterator[tuple[Key, Any]]:
+    """The rows of each key, without the key columns, sorted by ``order``; keys are sorted.
+
+    Of equal rows the first stays first; a missing text comes before all others.
+    """
+    table = table.combine_chunks()
+    plain = {name: _plain(table.column(name)) for name in dict.fromkeys((*keys, *order))}
+    plain |= {name: _as_text(plain[name]) for name in keys}
+    plain = {name: _without_nulls(column) for name, column in plain.items()}
+    names = [*keys, *order]
+    rest = table.drop_columns([name for name in keys if name in table.column_names])
+    if not len(table):
+        return
+    if names:
+        sorting = pyarrow.table(list(plain.values()), names=list(plain))
+        ways = [(name, "ascending") for name in names]
+        places = compute.sort_indices(sorting, sort_keys=ways)
+        rest = rest.take(places)
+        plain = {name: plain[name].take(places) for name in keys}
+    starts = _starts([plain[name] for name in keys], len(table))
+    for start, stop in zip(starts, [*starts[1:], len(table)], strict=True):
+        key = tuple(plain[name][start].as_py() for name in keys)
+        yield key, rest.slice(start, stop - start)
+
+
+def _plain(column: Any) -> Any:
+    """A column without a dictionary, which not every version sorts by."""
+    return column.cast(column.type.value_type) if types.is_dictionary(column.type) else column
+
+
+def _as_text(column: Any) -> Any:
+    return column if types.is_string(column.type) else column.cast(pyarrow.string())
+
+
+def _without_nulls(column: Any) -> Any:
+    is_text = types.is_string(column.type) or types.is_large_string(column.type)
+    return compute.fill_null(column, "") if is_text else column
+
+
+def _starts(columns: Sequence[Any], rows: int) -> list[int]:
+    """The first row of each key of sorted columns."""
+    changes: NDArray[np.bool_] = np.zeros(rows, dtype=bool)
+    changes[0] = True
+    for column in columns:
+        changes[1:] |= compute.not_equal(column.slice(1), column.slice(0, rows - 1)).to_numpy()
+    return [int(place) for place in np.flatnonzero(changes)]
+
+
+def traces_of_table(table: Any, label: str) -> Iterator[Sequence[Trace | RulecError]]:
+    """The traces of a table whose rows stand as in a file, in chunks (docs/traces.md).
+
+    ``label`` is what the table is called in messages. In place of a bad trace there is the
+    RulecError (R0509) that says why. Raises RulecError R0509 if something is wrong with columns.
+    """
+    file = SourceLocation(label)
+    check_columns(table.schema.names, file)
+    check_types(table.schema, pyarrow, label)
+    own = Table(tuple(table.schema.names), lambda value: value, lambda _: file)
+    return cut(table.combine_chunks().to_batches(), own, 1, file)
+
+
+class TraceOutline(NamedTuple):
+    """A trace of a sorted table: its name, its rows from the first on, and its states.
+
+    ``lacks`` says which step is missing, empty if none is.
+    """
+
+    name: str
+    first: int
+    rows: int
+    states: int
+    lacks: str
+
+
+def trace_outlines(table: Any) -> list[TraceOutline]:
+    """The traces of a table that is sorted by them and by their steps.
+
+    Where steps are no whole numbers, nothing is known to lack: whoever reads them says so.
+    """
+    names = compute.fill_null(_as_text(_plain(table.column(TRACE))), "")
+    starts = _starts([names], len(table)) if len(table) else []
+    try:
+        steps = compute.fill_null(_plain(table.column(STEP)).cast(pyarrow.int64()), -1).to_numpy()
+    except (pyarrow.ArrowException, OverflowError):
+        steps = None
+    found = []
+    for start, stop in zip(starts, [*starts[1:], len(table)], strict=True):
+        lacks, states = "", 0
+        if steps is not None:
+            own = steps[start:stop]
+            states = int(own[-1]) + 1
+            if own[0] > 0:
+                lacks = f"it begins with step {own[0]}"
+            elif (gaps := np.diff(own) > 1).any():
+                lacks = f"step {own[np.argmax(gaps)] + 1} is missing"
+        found.append(TraceOutline(names[start].as_py(), start, stop - start, states, lacks))
+    return found
+
+
+def without_rows(table: Any, outlines: Sequence[TraceOutline]) -> Any:
+    """The table without some of its traces."""
+    if not outlines:
+        return table
+    kept: NDArray[np.bool_] = np.ones(len(table), dtype=bool)
+    for one in outlines:
+        kept[one.first : one.first + one.rows] = False
+    return table.filter(pyarrow.array(kept))
+
+
+def extent(table: Any) -> tuple[object, ...]:
+    """The number of rows, and the least and greatest value of each column, in whatever order."""
+    found: list[object] = [len(table)]
+    for name in sorted(table.column_names):
+        column = _plain(table.column(name))
+        if not types.is_nested(column.type):
+            least, greatest = compute.min_max(column).values()
+            found.append((name, least.as_py(), greatest.as_py()))
+    return tuple(found)
