@@ -162,7 +162,7 @@ def test_numbers_are_written_exactly():
         (b"[" * 100_000, "not a compiled rulebook"),
         (b'{"format": "something else", "version": 1}', "not a compiled rulebook"),
         (b'{"format": "rulec compiled rulebook", "version": 1}', "of version 1"),
-        (b'{"format": "rulec compiled rulebook", "version": 5}', "of version 5"),
+        (b'{"format": "rulec compiled rulebook", "version": 6}', "of version 6"),
         (b'{"format": "rulec compiled rulebook", "version": 4}', "damaged"),
         (b'{"format": "rulec compiled rulebook", "version": 3}', "damaged"),
     ],

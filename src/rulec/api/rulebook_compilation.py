@@ -66,20 +66,25 @@ def compile_rulebook(
     reference: Rules,
     search_path: Sequence[str | Path] = (),
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
-    step_s: Fraction | float | None = None,
+    step_s: Fraction | float | Sequence[Fraction | float] | None = None,
     at: str = "",
     *,
     any_step: bool = False,
 ) -> CompiledRulebook:
-    """Compile rules for one step, or for that of their examples.
+    """Compile rules for one step, for several, or for that of their examples.
 
-    ``step_s`` (above 0, a float meaning the decimal that is written) is that step; without it rules
+    ``step_s`` (above 0, a float meaning the decimal that is written) is that step; of several each
+    trace is judged by its own. Without it rules
     with bounds in seconds are compiled for the step of their own examples, which with ``any_step``
     they need not have. R0407 for a bound that is no multiple of the step, R0507 if the rules have
     been compiled for another one.
     """
     from rulec.automata.thresholds import exact_step
 
+    if isinstance(step_s, Sequence):
+        if len(step_s) != 1:
+            return _for_steps(reference, search_path, warn, list(map(exact_step, step_s)), at)
+        (step_s,) = step_s
     step = None if step_s is None else exact_step(step_s)
     if isinstance(reference, str | Path):
         if Path(reference).suffix != ".json":
@@ -99,3 +104,18 @@ def compile_rulebook(
     from rulec.automata.step_compilation import StepCompiler, build_automata
 
     return build_automata(lower(reference, step, any_step=any_step), StepCompiler(reference))
+
+
+def _for_steps(
+    reference: Rules,
+    search_path: Sequence[str | Path],
+    warn: Callable[[Sequence[Diagnostic]], object],
+    steps: Sequence[Fraction],
+    at: str,
+) -> CompiledRulebook:
+    from rulec.automata.bundle.stored_steps import for_steps
+
+    if not steps:
+        raise ValueError("there has to be a step, or None")
+    compiled = compile_rulebook(reference, search_path, warn, at=at, any_step=True)
+    return for_steps([compiled.at_step(step) for step in steps], steps)

@@ -64,12 +64,15 @@ class RulebookVerbs(SessionSettings):
         return load_vocabulary(name, self._folders())
 
     def compile_rulebook(
-        self, reference: Rules, *, step_s: Fraction | float | None = None
+        self,
+        reference: Rules,
+        *,
+        step_s: Fraction | float | Sequence[Fraction | float] | None = None,
     ) -> CompiledRulebook:
         """Compile a rulebook: name, path of source or compiled file, or Rulebook.
 
         Without ``step_s`` it fits itself to the step of the traces that it meets; with it, it is
-        for this step (s) alone, a float meaning the decimal that is written.
+        for this step (s) alone, or for several, a float meaning the decimal that is written.
 
         Raises:
             RulecError: mistakes in the source; R0401 to R0403 if there is no automaton, R0407 for a

@@ -7,7 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
@@ -19,6 +21,16 @@ from rulec.value_display import Rows, short_repr
 
 MOST_STATES = 1 << 13
 """Drives are verified together once they have this many states; more take more memory."""
+
+
+def _rounded(rulebook: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
+    try:
+        return rulebook.rounded_to(step_s)
+    except RulecError as error:
+        if any(problem.code != OTHER_STEP.code for problem in error.diagnostics):
+            raise
+        # Of each drive it is said that it cannot be judged.
+        return (rulebook,)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +54,7 @@ class RecordingVerdicts(Rows):
         self, recording: Recording, rulebook: CompiledRulebook, request: RequestedDrives, file: str
     ) -> None:
         self.request = request
-        self._roundings = rulebook.rounded_to(recording.step_s)
+        self._roundings = _rounded(rulebook, recording.step_s)
         self.rules = self._roundings[0]
         formulas = [rule.formula for rule in self.rules.rules]
         formulas += [axiom.formula for axiom in self.rules.axioms]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
@@ -30,7 +31,8 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     """
     check_trace(trace)
     if trace.ends == "cut":
-        roundings = rulebook.rounded_to(trace.step_s)
+        with _told_at(trace.place):
+            roundings = rulebook.rounded_to(trace.step_s)
         if len(roundings) > 1:
             return agreed([verify(trace, rounded) for rounded in roundings])
     rulebook = rulebook_for_trace(trace, rulebook)
@@ -87,8 +89,14 @@ def rulebook_for_step(
     step_s: float, rulebook: CompiledRulebook, place: SourceLocation | None = None
 ) -> CompiledRulebook:
     """Rulebook compiled for a trace's step (s); errors name its place."""
-    try:
+    with _told_at(place):
         return rulebook.fitted_to(step_s)
+
+
+@contextmanager
+def _told_at(place: SourceLocation | None) -> Iterator[None]:
+    try:
+        yield
     except RulecError as error:
         # It is this trace that the rulebook cannot judge; where the rule is written is beside it.
         raise RulecError([_at(place, diagnostic) for diagnostic in error.diagnostics]) from None

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Container, Set
+from dataclasses import replace
 from itertools import chain
 from math import prod
 
+from msgspec import UNSET
 from msgspec.structs import astuple
 
 from rulec.automata import mealy_monitor as monitors
@@ -18,6 +20,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     alike,
 )
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes
+from rulec.automata.bundle.stored_steps import for_steps
 from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
@@ -40,13 +43,11 @@ def rulebook_of(read: schema.BundleFile, *, own: bool = False) -> CompiledRulebo
         {item.name: kind_of[type(item)](*astuple(item)) for item in read.vocabulary.declarations},
     )
     _check_vocabulary(vocabulary)
-    names = [rule.name for rule in read.rules]
-    for name in (read.name, *names):
+    for name in (read.name, *[rule.name for rule in read.rules]):
         # They become names of files.
         plain = name and not name.startswith(".") and not set(name) & set("/\\\0")
         _require(bool(plain), f"`{name}` is not a name")
-    _require(len(set(names)) == len(names), "two rules have the same name")
-    return CompiledRulebook(
+    rulebook = CompiledRulebook(
         **alike(Rulebook, read),
         rulec=read.rulec,
         spot=read.spot,
@@ -55,13 +56,47 @@ def rulebook_of(read: schema.BundleFile, *, own: bool = False) -> CompiledRulebo
         sources=tuple(SourceFile(source.name, source.sha256) for source in read.sources),
         priorities=_priorities(read),
         axioms=tuple(_axiom(fact, vocabulary) for fact in read.facts),
-        prefixes=_prefixes(read, own=own),
     )
+    prefixes = _prefixes(read, own=own)
+    if read.version == schema.WITH_STEPS:
+        return _with_steps(rulebook, read)
+    _require(read.steps is UNSET, "it has several steps, which its version has not")
+    _check_names(rulebook)
+    return replace(rulebook, prefixes=prefixes)
+
+
+def _check_names(rulebook: CompiledRulebook) -> None:
+    names = {rule.name for rule in rulebook.rules}
+    _require(len(names) == len(rulebook.rules), "two rules have the same name")
+
+
+def _with_steps(rulebook: CompiledRulebook, read: schema.BundleFile) -> CompiledRulebook:
+    """The rulebook for a file's steps; each of its rules is for one of them, or for all."""
+    steps = [number_from_data(step) for step in read.steps or ()]
+    _require(len(set(steps)) == len(steps) > 0, "its steps are none, or one is there twice")
+    pairs = list(zip(rulebook.rules, read.rules, strict=True))
+    known = all(rule.step_s in (None, *steps) for rule in rulebook.rules)
+    _require(known, "a rule is for a step that is none of the file's")
+    books = []
+    for step in steps:
+        own = [(rule, entry) for rule, entry in pairs if rule.step_s in (None, step)]
+        prefixes = StoredPrefixes({entry.name: entry.cut for _, entry in own})
+        books.append(replace(rulebook, rules=tuple([rule for rule, _ in own]), prefixes=prefixes))
+        _check_names(books[-1])
+        same = list(map(_timeless, books[0].rules)) == list(map(_timeless, books[-1].rules))
+        _require(same, "its steps have different rules")
+    return for_steps(books, steps)
+
+
+def _timeless(rule: CompiledRule) -> CompiledRule:
+    """A rule without what depends on the step."""
+    nothing = monitors.MealyMonitor((), (), (), (), rejecting_sink=None, accepting_sink=None)
+    return replace(rule, machine=nothing, hoa="", step_s=None)
 
 
 def _prefixes(read: schema.BundleFile, *, own: bool) -> StoredPrefixes | None:
     """The machines for cut traces, checked; None in a file that has none."""
-    if read.version != schema.WITH_CUT:
+    if read.version == schema.VERSION:
         none = all(rule.cut is None for rule in read.rules)
         _require(none, "it has machines for traces that are cut, which its version has not")
         return None

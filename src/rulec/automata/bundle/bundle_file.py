@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec import structs
 
 from rulec.automata.bundle import bundle_schema as schema
 from rulec.automata.bundle.bundle_check import rulebook_of
@@ -23,13 +24,14 @@ from rulec.automata.bundle.compiled_rulebook import (
     alike,
 )
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
+from rulec.automata.bundle.stored_steps import StoredSteps
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.files import make_folder, opened, written_whole
 from rulec.logic.codec import terms_to_data, to_data
 from rulec.logic.opportunities import trigger_of
-from rulec.logic.printing import formula_text
+from rulec.logic.printing import formula_text, number_in_words
 from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
 
 
@@ -42,8 +44,11 @@ def to_json(rulebook: CompiledRulebook) -> str:
 def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
     """A compiled rulebook as its file has it.
 
-    Machines for cut traces are in it if the rulebook has them stored.
+    Machines for cut traces are in it if the rulebook has them stored, and if it is for several
+    steps.
     """
+    if isinstance(rulebook.recompile, StoredSteps):
+        return _entry_of_steps(rulebook.recompile)
     has_cut = isinstance(rulebook.prefixes, StoredPrefixes)
     cut = rulebook.prefixes.entries if isinstance(rulebook.prefixes, StoredPrefixes) else {}
     vocabulary = rulebook.vocabulary
@@ -65,6 +70,18 @@ def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
         facts=[_axiom(axiom) for axiom in rulebook.axioms],
         rules=[_rule(rule, cut.get(rule.name)) for rule in rulebook.rules],
     )
+
+
+def _entry_of_steps(stored_steps: StoredSteps) -> schema.BundleFile:
+    files = [entry_of(replace(book, prefixes=stored(book))) for book in stored_steps.books]
+    # Rules without bounds in seconds are the same for all steps.
+    rules = [
+        entry
+        for entries in zip(*[file.rules for file in files], strict=True)
+        for entry in (entries[:1] if entries[0].step_s is None else entries)
+    ]
+    steps = tuple(map(str, stored_steps.steps))
+    return structs.replace(files[0], version=schema.WITH_STEPS, steps=steps, rules=rules)
 
 
 _STRING_OR_ROW = re.compile(r'"(?:[^"\\]|\\.)*"|\[\s[^\[\]{}"]*\]')
@@ -149,11 +166,11 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
         raise _damaged(file, f"this is not a compiled rulebook: {json_words(problem)}") from None
     except (RecursionError, UnicodeDecodeError):
         raise _damaged(file, "this is not a compiled rulebook") from None
-    if header.version not in (schema.VERSION, schema.WITH_CUT):
+    if header.version not in (schema.VERSION, schema.WITH_CUT, schema.WITH_STEPS):
         raise _damaged(
             file,
-            f"this compiled rulebook is of version {header.version}; "
-            f"this rulec reads versions {schema.VERSION} and {schema.WITH_CUT}",
+            f"this compiled rulebook is of version {header.version}; this rulec reads versions "
+            f"{schema.VERSION}, {schema.WITH_CUT} and {schema.WITH_STEPS}",
         )
     try:
         return rulebook_of(msgspec.json.decode(data, type=schema.BundleFile))
@@ -176,16 +193,30 @@ def read_compiled(path: Path) -> CompiledRulebook:
 def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
     """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` to a folder.
 
-    The latter has machines for traces that are cut, if they can be compiled. All files are written
-    before the first appears, so that they fit together. Returns the files, the compiled rulebook
-    last. Raises RulecError R0702, and R0403 if such machines take Spot and it is not installed.
+    If it is for several steps, rules with bounds in seconds have a file for each, such as
+    ``RULE-0.5s.hoa``. ``RULEBOOK.json`` has machines for traces that are cut, if they can be
+    compiled. All files are written before the first appears, so that they fit together. Returns the
+    files, the compiled rulebook last. Raises RulecError R0702, and R0403 if such machines take Spot
+    and it is not installed.
     """
-    rulebook = replace(rulebook, prefixes=stored(rulebook))
+    several = rulebook.recompile if isinstance(rulebook.recompile, StoredSteps) else None
+    if several is None:
+        rulebook = replace(rulebook, prefixes=stored(rulebook))
     make_folder(folder)
-    texts = {folder / f"{rule.name}.hoa": rule.hoa for rule in rulebook.rules}
+    texts = {
+        folder / f"{rule.name}{_step_in_name(rule, several)}.hoa": rule.hoa
+        for book in (several.books if several else (rulebook,))
+        for rule in book.rules
+    }
     texts[folder / f"{rulebook.name}.json"] = to_json(rulebook)
     with ExitStack() as files:
         for path, text in texts.items():
             stream = files.enter_context(written_whole(path))
             stream.write(text.encode())
     return list(texts)
+
+
+def _step_in_name(rule: CompiledRule, several: StoredSteps | None) -> str:
+    if several is None or rule.step_s is None:
+        return ""
+    return f"-{number_in_words(rule.step_s).replace('/', '_')}s"

@@ -29,8 +29,8 @@ OTHER_STEP = Code(
     "R0507",
     title="a trace has another step than a rule was compiled for",
     why="A bound in seconds is so many states of a trace, how many depends on the seconds from one "
-    "to the next, `step_s`. A compiled rulebook knows the number for one step only. `rulec "
-    "compile --step` chooses it; from the source of the rulebook, every trace is judged by its "
+    "to the next, `step_s`. A compiled rulebook knows the number for some steps only, which "
+    "`rulec compile --step` chooses; from the source of the rulebook, every trace is judged by its "
     "own step.",
     bad=_TWO_STEPS + "rulec compile soon.rules --step 1 -o build > log\n"
     "rulec verify trace.jsonl -r build/soon.json",

@@ -1,4 +1,4 @@
-"""Fields of a compiled rulebook's file, versions 3 and 4 (see docs/compiled.md)."""
+"""Fields of a compiled rulebook's file, versions 3 to 5 (see docs/compiled.md)."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from rulec.rulebook.rulebook_model import Certainty, Semantics, Strength, Traffi
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 FORMAT = "rulec compiled rulebook"
-VERSION, WITH_CUT = 3, 4
-"""Versions of files; the second has machines for traces that are cut."""
+VERSION, WITH_CUT, WITH_STEPS = 3, 4, 5
+"""Versions of files; the second has machines for traces that are cut, the third several steps."""
 
 
 class _Strict(msgspec.Struct, forbid_unknown_fields=True):
@@ -128,7 +128,7 @@ class CutMachineEntry(_Strict, rename={"successors": "following", "outputs": "ou
 
 
 class BundleRule(_Strict, omit_defaults=True):
-    """One rule; ``cut`` is null in version 4 if that machine would be too large.
+    """One rule; ``cut`` is null from version 4 on if that machine would be too large.
 
     Without a ``trigger`` that is what the formula's form names.
     """
@@ -170,7 +170,10 @@ class BundleHeader(msgspec.Struct):
 
 
 class BundleFile(_Strict, kw_only=True):
-    """The whole file."""
+    """The whole file.
+
+    In version 5 it is for several ``steps``: a rule with bounds in seconds is there once for each.
+    """
 
     format: str = FORMAT
     version: int = VERSION
@@ -183,6 +186,7 @@ class BundleFile(_Strict, kw_only=True):
     sources: list[SourceEntry]
     semantics: Semantics
     traffic: Traffic = ""
+    steps: tuple[str, ...] | msgspec.UnsetType = msgspec.UNSET
     levels: tuple[str, ...]
     priorities: list[tuple[str, str]]
     extends: tuple[str, ...]

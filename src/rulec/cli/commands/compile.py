@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 import click
@@ -13,9 +14,10 @@ from rulec.report.text.console import print_result
 
 @click.command()
 @shared.rulebook_argument
-@shared.step_option(
-    "The step of the traces to be judged, in s: a decimal, or a fraction such as 1/3. It "
-    "matters to rules with bounds in seconds.  [default: that of their examples]",
+@shared.steps_option(
+    "The step of the traces to be judged, in s: a decimal, or a fraction such as 1/3; several "
+    "times for several steps. It matters to rules with bounds in seconds.  [default: that of "
+    "their examples]",
 )
 @click.option(
     "-o",
@@ -25,7 +27,7 @@ from rulec.report.text.console import print_result
     help="The folder for the files, made if need be.",
 )
 @shared.at_option
-def command(rulebook: str, output: str, step_s: Fraction | None, at: str) -> None:
+def command(rulebook: str, output: str, steps_s: Sequence[Fraction], at: str) -> None:
     """Compile RULEBOOK: a name, or the path of a source.
 
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
@@ -35,6 +37,6 @@ def command(rulebook: str, output: str, step_s: Fraction | None, at: str) -> Non
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     session = open_session(at)
-    compiled = session.compile_rulebook(rulebook, step_s=step_s)
+    compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
     for path in session.write_compiled(compiled, output):
         print_result(f"wrote {path}")
