@@ -40,9 +40,6 @@ _ENDING = ".tables"
 _OWN = "own"
 """The steps of the rules' own examples."""
 
-_NOT_A_MULTIPLE = "R0407"
-"""Written out, since its messages would load the parser."""
-
 
 @dataclass(frozen=True, slots=True)
 class CompiledQuestion:
@@ -228,8 +225,11 @@ class CachedSteps:
         try:
             compiled = compile_it()
         except RulecError as error:
+            # Messages of the parser, 20 ms: it has been loaded where there is an error.
+            from rulec.rulebook.elaborate.rule_messages import NOT_A_MULTIPLE
+
             # Whether a machine gets too large, or Spot is there, is another question next time.
-            if all(problem.code == _NOT_A_MULTIPLE for problem in error.diagnostics):
+            if all(problem.code == NOT_A_MULTIPLE.code for problem in error.diagnostics):
                 file.write(msgspec.structs.replace(text, problems=error.diagnostics), None)
             return error
         # Its source may have been changed since it was recalled.
