@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
@@ -16,6 +14,8 @@ _SHARPEST = 0.5
 
 def without_repeats(points: Points, closest_m: float) -> Points:
     """The points that are not too close to the one before them."""
+    if (np.hypot(*np.diff(points, axis=0).T) > closest_m).all():
+        return np.array(points)
     kept = [points[0]]
     for point in points[1:]:
         if np.hypot(*(point - kept[-1])) > closest_m:
@@ -25,11 +25,12 @@ def without_repeats(points: Points, closest_m: float) -> Points:
 
 def densified(points: Points, every_m: float) -> Points:
     """A polyline with further points, none farther apart than a limit."""
-    parts = [points[:1]]
-    for start, end in pairwise(points):
-        count = max(1, int(np.ceil(np.hypot(*(end - start)) / every_m)))
-        parts.append(start + (end - start) * (np.arange(1, count + 1) / count)[:, None])
-    return np.concatenate(parts)
+    ways = np.diff(points, axis=0)
+    counts = np.maximum(1, np.ceil(np.hypot(*ways.T) / every_m)).astype(int)
+    piece = np.repeat(np.arange(len(ways)), counts)
+    number = np.arange(1, len(piece) + 1) - np.repeat(np.cumsum(counts) - counts, counts)
+    between = points[:-1][piece] + ways[piece] * (number / counts[piece])[:, None]
+    return np.concatenate((points[:1], between))
 
 
 def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:

@@ -81,12 +81,17 @@ class TrackOutlines(Mapping[int, Points]):
 
     def __getitem__(self, step: int) -> Points:
         row = self.track.row_of(step)
+        outline: Points = self.laid_out[row]
+        return outline
+
+    @property
+    def laid_out(self) -> NDArray[float64]:
+        """All of them; the axes are moment, point, and x and y."""
         if not self._laid_out:
             rows = self.track.rows
             sizes = self.track.length, self.track.width, self.track.shift
             self._laid_out.append(rectangles(rows[:, :2], rows[:, 2], *sizes))
-        outline: Points = self._laid_out[0][row]
-        return outline
+        return self._laid_out[0]
 
     def __iter__(self) -> Iterator[int]:
         return iter(self.track.steps.tolist())

@@ -19,6 +19,7 @@ from rulec.extraction.source_tolerances import tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
+from rulec.recordings.track import TrackOutlines, TrackStates
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.route import lanelet_area
 
@@ -83,13 +84,9 @@ class Tracks:
         Those that stand for good have one, unless it is to be ``repeated``.
         """
         for row, body in enumerate(self.participants):
-            if body.standing:
-                outline = next(iter(body.outlines.values()))
-                for column in range(self.present.shape[1] if repeated else 1):
-                    yield row, column, outline
-                continue
-            for column in np.flatnonzero(self.present[row]).tolist():
-                yield row, column, body.outlines[self.first + column]
+            columns, own = _outlines_of(body, self.first, self.present[row], repeated=repeated)
+            for column, outline in zip(columns.tolist(), own, strict=True):
+                yield row, column, outline
 
     @cached_property
     def bodies(self) -> Bodies:
@@ -126,12 +123,32 @@ _ARRAYS = tuple(x.name for x in fields(Tracks))[4:]
 
 
 def _bodies(tracks: Tracks, *, repeated: bool) -> Bodies:
-    located = list(tracks.outlines(repeated=repeated))
-    rows, columns = (
-        np.array([(row, column) for row, column, _ in located], dtype=intp).reshape(-1, 2).T
-    )
-    outlines = JoinedOutlines.of([outline for _, _, outline in located] or [np.empty((0, 2))])
-    return Bodies(rows, columns, outlines)
+    rows: list[NDArray[intp]] = []
+    columns: list[NDArray[intp]] = []
+    outlines: list[Points] = []
+    for row, body in enumerate(tracks.participants):
+        at, own = _outlines_of(body, tracks.first, tracks.present[row], repeated=repeated)
+        rows.append(np.full(len(at), row, dtype=intp))
+        columns.append(at)
+        outlines.extend(own)
+    if not outlines:
+        none = np.empty(0, dtype=intp)
+        return Bodies(none, none, JoinedOutlines(np.empty((0, 2)), none))
+    return Bodies(np.concatenate(rows), np.concatenate(columns), JoinedOutlines.of(outlines))
+
+
+def _outlines_of(
+    body: Participant, first: int, present: Flags, *, repeated: bool
+) -> tuple[NDArray[intp], Iterable[Points]]:
+    """The columns of a participant's outlines, and these."""
+    if body.standing:
+        columns = np.arange(len(present) if repeated else 1)
+        return columns, [next(iter(body.outlines.values()))] * len(columns)
+    columns = np.flatnonzero(present)
+    if isinstance(body.outlines, TrackOutlines):
+        at = np.searchsorted(body.outlines.track.steps, columns + first)
+        return columns, body.outlines.laid_out[at]
+    return columns, [body.outlines[first + column] for column in columns.tolist()]
 
 
 _STEERED = frozenset({"vehicle", "light_rider"})
@@ -140,17 +157,18 @@ _STEERED = frozenset({"vehicle", "light_rider"})
 def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
     """The tracks of the participants of a recording that occupy something."""
     bodies = tuple(body for body in recording.participants if body.outlines)
-    steps = [step for body in bodies if not body.standing for step in body.outlines]
-    first, last = min(steps, default=0), max(steps, default=0)
+    laid_out = [_poses(body) for body in bodies]
+    steps = [own for body, (own, _) in zip(bodies, laid_out, strict=True) if not body.standing]
+    first = min((int(own.min()) for own in steps), default=0)
+    last = max((int(own.max()) for own in steps), default=0)
     shape = len(bodies), last - first + 1
     x, y, heading, stated = (np.full(shape, np.nan) for _ in range(4))
-    for row, body in enumerate(bodies):
-        poses = _poses(body)
+    for row, (body, (own, poses)) in enumerate(zip(bodies, laid_out, strict=True)):
         if body.standing:
-            x[row], y[row], heading[row], stated[row] = next(iter(poses.values()))
+            x[row], y[row], heading[row], stated[row] = poses[0]
             continue
-        at = np.fromiter(poses, dtype=int, count=len(poses)) - first
-        x[row, at], y[row, at], heading[row, at], stated[row, at] = np.array([*poses.values()]).T
+        at = own - first
+        x[row, at], y[row, at], heading[row, at], stated[row, at] = poses.T
     present = ~np.isnan(x)
     steers = np.array([bool(_STEERED.intersection(body.object_types)) for body in bodies], bool)
     motion = motion_of(
@@ -189,13 +207,20 @@ def _inside(flags: Flags, x: Floats, y: Floats, lanelets: Iterable[Lanelet]) -> 
     return inside
 
 
-def _poses(body: Participant) -> dict[int, tuple[float, float, float, float]]:
-    poses = {}
-    for step, outline in body.outlines.items():
-        state = body.states.get(step)
+def _poses(body: Participant) -> tuple[NDArray[intp], Floats]:
+    """The steps of a participant, and its place, heading and stated speed in each, a row."""
+    states, outlines = body.states, body.outlines
+    if (
+        isinstance(states, TrackStates)
+        and isinstance(outlines, TrackOutlines)
+        and states.track is outlines.track
+    ):
+        return states.track.steps, states.track.rows[:, :4]
+    poses = []
+    for step, outline in outlines.items():
+        state = states.get(step)
         if state is None:
-            x, y = outline.mean(axis=0).tolist()
-            poses[step] = x, y, 0.0, 0.0
+            poses.append((*outline.mean(axis=0).tolist(), 0.0, 0.0))
         else:
-            poses[step] = state.x, state.y, state.heading, state.speed
-    return poses
+            poses.append((state.x, state.y, state.heading, state.speed))
+    return np.fromiter(outlines, dtype=intp, count=len(poses)), np.array(poses)
