@@ -15,12 +15,12 @@ recording jumps or somebody leaves a lanelet sideways, the drive breaks for a hi
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
 from math import hypot, inf, pi, radians
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -29,12 +29,15 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.tracks import Tracks
-from rulec.recordings.recording import Recording, is_lane
+from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.scenario.recorded.reference_line import turn
-from rulec.scenario.recorded.route import directions_beside, lanelet_area
+from rulec.scenario.recorded.route import directions_at, lanelet_area
 
 NEAR_M = 3.0
 """The farthest that a vehicle may be beside a lanelet that it is matched to."""
+
+_AROUND_M = NEAR_M + 0.1
+"""Who is not even so near to the rectangle around a lanelet is not near it."""
 
 SIGMA_M = 1.0
 SIGMA_RAD = radians(20)
@@ -50,8 +53,7 @@ BREAK_COST = 50.0
 """The cost of going on where no lanelet leads to."""
 
 
-@dataclass(frozen=True, slots=True)
-class Candidate:
+class Candidate(NamedTuple):
     """A lanelet that a state may be on: the cost of its distance, and the place along it (m)."""
 
     cost: float
@@ -116,23 +118,45 @@ def candidates(recording: Recording, tracks: Tracks) -> dict[int, Candidates]:
     rows, columns = np.nonzero(tracks.present & moving[:, None])
     if not lanes or not len(rows):
         return {}
-    points = shapely.points(tracks.x[rows, columns], tracks.y[rows, columns])
+    places = np.stack((tracks.x[rows, columns], tracks.y[rows, columns]), axis=1)
+    points, headings = shapely.points(places), tracks.heading[rows, columns]
     areas = [lanelet_area(lanelet) for lanelet in lanes]
-    near, near_lanes = shapely.STRtree(areas).query(points, predicate="dwithin", distance=NEAR_M)
-    found: dict[int, dict[int, dict[str, Candidate]]] = defaultdict(lambda: defaultdict(dict))
-    for lane in np.unique(near_lanes):
-        chosen = near[near_lanes == lane]
-        directions = directions_beside(lanes[lane], points[chosen])
-        angle = np.abs(turn(directions, tracks.heading[rows[chosen], columns[chosen]]))
-        middle = shapely.LineString(lanes[lane].centre)
-        away = shapely.distance(middle, points[chosen])
-        costs = ((away / SIGMA_M) ** 2 + (angle / SIGMA_RAD) ** 2) / 2
-        along = shapely.line_locate_point(middle, points[chosen])
-        fits = angle < pi / 2
-        for index, cost, s in zip(chosen[fits], costs[fits], along[fits], strict=True):
-            own = found[int(rows[index])][int(columns[index])]
-            own[lanes[lane].id] = Candidate(float(cost), float(s))
-    return {row: dict(sorted(by_column.items())) for row, by_column in found.items()}
+    low, high = np.split(shapely.bounds(areas), 2, axis=1)
+    found = []
+    for lanelet, area, *corners in zip(
+        lanes, areas, low - _AROUND_M, high + _AROUND_M, strict=True
+    ):
+        around = np.flatnonzero(((places >= corners[0]) & (places <= corners[1])).all(axis=1))
+        shapely.prepare(area)
+        near = around[shapely.dwithin(area, points[around], NEAR_M)]
+        found.append(_candidates_on(lanelet, near, points[near], headings[near]))
+    at, costs, along = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    names = np.repeat(np.arange(len(lanes)), [len(own) for own, _, _ in found])
+    # By place, lanelets in the order of the file
+    order = np.argsort(at, kind="stable")
+    by_row: dict[int, dict[int, dict[str, Candidate]]] = {}
+    for row, column, lane, cost, s in zip(
+        *(x[order].tolist() for x in (rows[at], columns[at], names, costs, along)), strict=True
+    ):
+        own = by_row.setdefault(row, {}).setdefault(column, {})
+        own[lanes[lane].id] = Candidate(cost, s)
+    return {**by_row}
+
+
+def _candidates_on(
+    lanelet: Lanelet,
+    near: NDArray[intp],
+    points: NDArray[np.object_],
+    headings: NDArray[np.float64],
+) -> tuple[NDArray[intp], NDArray[np.float64], NDArray[np.float64]]:
+    """Those ``near`` a lanelet that may be on it, their costs, and their places along it (m)."""
+    middle = shapely.LineString(lanelet.centre)
+    along = shapely.line_locate_point(middle, points)
+    angle = np.abs(turn(directions_at(lanelet, along), headings))
+    fits = angle < pi / 2
+    away = shapely.distance(middle, points[fits])
+    costs = ((away / SIGMA_M) ** 2 + (angle[fits] / SIGMA_RAD) ** 2) / 2
+    return near[fits], costs, along[fits]
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 
 import numpy as np
 from numpy import float64, intp
@@ -45,3 +45,14 @@ class JoinedOutlines:
         farthest = np.maximum.reduceat(away, self.starts) * _REACH_FACTOR + _REACH_MORE_M
         reach: NDArray[float64] = np.repeat(farthest, self.counts)
         return reach
+
+    def least_and_greatest(
+        self, values: NDArray[float64]
+    ) -> tuple[NDArray[float64], NDArray[float64]]:
+        """The bounds of the corners' values (a row of each kind): a row for each outline."""
+        if (self.counts == self.counts[0]).all():
+            corners = np.moveaxis(values.reshape(len(values), -1, self.counts[0]), -1, 0)
+            return reduce(np.minimum, corners).T, reduce(np.maximum, corners).T
+        bounds = (f.reduceat(values, self.starts, axis=1).T for f in (np.minimum, np.maximum))
+        least, greatest = bounds
+        return least, greatest

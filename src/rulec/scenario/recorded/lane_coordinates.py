@@ -70,9 +70,11 @@ class Lanes:
         at = np.nan_to_num(places[:, 0])
         before = pieces_at(self.s, at)
         part = (at - self.s[before]) / (self.s[before + 1] - self.s[before])
-        part = np.clip(part, 0.0, 1.0)[:, None]
-        bounds = self.bounds[before] * (1 - part) + self.bounds[before + 1] * part
-        return places[:, 1:] - bounds
+        part = np.clip(part, 0.0, 1.0)
+        # The axis of the bounds comes first in memory
+        first, second = (np.take(self.bounds.T, number, axis=1) for number in (before, before + 1))
+        left_of: Points = (places[:, 1] - (first * (1 - part) + second * part)).T
+        return left_of
 
     def existing_at(self, s: _Values) -> NDArray[np.bool_]:
         """Flags of the lanes (last axis, from the right) that exist at places."""
@@ -245,7 +247,6 @@ def outline_bounds(
     that no body is torn apart where a road meets itself. ``expected``: for each middle about which
     ``s``, and how far from there, its foot is.
     """
-    starts = outlines.starts
     found = (
         line.coordinates_near(outlines.middles, *expected)
         if expected
@@ -254,8 +255,8 @@ def outline_bounds(
     around = np.repeat(found[:, 0], outlines.counts)
     feet = line.coordinates_near(outlines.corners, around, outlines.reach)
     feet[np.isnan(around)] = np.nan
-    coordinates = np.column_stack((feet, across(feet)))
-    return np.minimum.reduceat(coordinates, starts), np.maximum.reduceat(coordinates, starts)
+    coordinates = np.concatenate((feet.T, across(feet).T))
+    return outlines.least_and_greatest(coordinates)
 
 
 def kept_off_touched(low: _Values, high: _Values, straight: _Values) -> tuple[_Values, _Values]:

@@ -2,7 +2,7 @@
 
 The places with a foot on a piece lie between the two lines that bound its fan, one through each
 end. On which side of such a line a place is, is a sum of products: for all places and pieces that
-is one product of matrices.
+is one product of matrices. Single precision will do, since who may have a foot is tried in full.
 """
 
 from __future__ import annotations
@@ -11,36 +11,36 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy import float64, intp
+from numpy import float32, float64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.recording import Points
 
-_MARGIN_M = 1e-3
-_FAR_M = 1e5
-"""Up to so far from the line's first corner the margin covers what is rounded away."""
+_MARGIN_M, _MARGIN_PART = 1e-2, 1e-6
+"""What single precision rounds away, of a place so far (m) from the line's first corner."""
 
 _AT_ONCE = 1 << 17
 _MOST_PLACES = 2048
+_FEW = 1 << 16
 _Values = NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LineFans:
-    """For each piece (column) how far a place is beyond its beginning, and before its end.
+    """How far places are beyond each end of a piece, first and last ones included.
 
-    ``normals`` (3 rows) times x, y from ``origin`` and 1 is that, each with half of the columns;
-    places with more than minus ``margin`` in both may have a foot there.
+    That is ``normals`` (3 rows, a column for each end) times x, y from ``origin`` and 1. A place
+    beyond the one end and before the other, but for ``margin``, may have its foot on the piece.
     """
 
     origin: Points
-    normals: _Values
+    normals: NDArray[float32]
     margin: _Values
 
     def candidates(
         self, places: Points, low: NDArray[intp], high: NDArray[intp]
     ) -> tuple[NDArray[intp], NDArray[intp]]:
-        """Numbers of places, ascending, with the pieces that may have a foot, ascending for each.
+        """Numbers of places, each's end to end, with the pieces that may have a foot, ascending.
 
         Only pieces from ``low`` to ``high`` of each place; all that have a foot are among them.
         """
@@ -48,43 +48,44 @@ class LineFans:
         if not parts:
             return np.empty(0, dtype=intp), np.empty(0, dtype=intp)
         numbers, pieces = (np.concatenate(part) for part in zip(*parts, strict=True))
-        order = np.argsort(numbers, kind="stable")
-        return numbers[order], pieces[order]
+        return numbers, pieces
 
     def _parts(
         self, places: Points, low: NDArray[intp], high: NDArray[intp]
     ) -> Iterator[tuple[NDArray[intp], NDArray[intp]]]:
-        homogeneous = np.column_stack((places - self.origin, np.ones(len(places))))
-        scale = max(1.0, float(np.nanmax(np.abs(homogeneous), initial=0.0)) / _FAR_M)
-        least = -self.margin * scale
-        # Places with the same pieces in question go together
-        order = np.argsort(low, kind="stable")
+        count = len(self.margin)
+        away = places - self.origin
+        farthest = float(np.nanmax(np.abs(away), initial=0.0))
+        margin = (self.margin * (_MARGIN_M + _MARGIN_PART * farthest)).astype(float32)
+        homogeneous = np.column_stack((away, np.ones(len(away)))).astype(float32)
+        # Places with the same pieces in question go together; few numbers are sorted faster
+        order = np.argsort(low.astype(np.uint16) if count < _FEW else low, kind="stable")
         widest = int((high - low).max(initial=0)) + 1
-        bounded = bool((high - low + 1 < len(self.margin)).any())
+        bounded = bool((high - low + 1 < count).any())
         size = min(max(1, _AT_ONCE // widest), _MOST_PLACES)
         for at in range(0, len(places), size):
             numbers = order[at : at + size]
-            first, last = low[numbers[0]], int(high[numbers].max())
-            pieces = np.arange(first, last + 1)
-            beyond = homogeneous[numbers] @ self.normals[:, :, first : last + 1]
-            fits = (beyond >= least[first : last + 1]).all(axis=0)
-            if bounded:
-                fits &= (pieces >= low[numbers, None]) & (pieces <= high[numbers, None])
+            first, end = int(low[numbers[0]]), int(high[numbers].max()) + 1
+            beyond = homogeneous[numbers] @ self.normals[:, first : end + 1]
+            fits = beyond[:, :-1] >= -margin[first:end]
+            fits &= beyond[:, 1:] <= margin[first:end]
             place, piece = np.nonzero(fits)
-            yield numbers[place], pieces[piece]
+            numbers, pieces = numbers[place], piece + first
+            if bounded:
+                inside = (pieces >= low[numbers]) & (pieces <= high[numbers])
+                numbers, pieces = numbers[inside], pieces[inside]
+            yield numbers, pieces
 
 
 def line_fans(start: Points, ahead: Points, lengths: _Values, slopes: Points) -> LineFans:
-    """The fans of pieces, with the slopes of their bounds (columns) at either end."""
+    """The fans of pieces, with the slopes of the lines that bound them (columns) at either end."""
     origin = start[:1]
-    ux, uy = ahead.T
-    first, last = slopes.T
-    bounds = []
-    for side, slope, corner in (
-        (1.0, first, start - origin),
-        (-1.0, last, start - origin + ahead * lengths[:, None]),
-    ):
-        nx, ny = side * (ux - uy * slope), side * (uy + ux * slope)
-        bounds.append(np.stack((nx, ny, -(nx * corner[:, 0] + ny * corner[:, 1]))))
-    margin = _MARGIN_M * (2 + np.abs(first) + np.abs(last))
-    return LineFans(origin, np.stack(bounds), margin)
+    corners = np.concatenate((start, start[-1:] + ahead[-1:] * lengths[-1:, None])) - origin
+    # Two pieces have the line between them in common
+    directions = np.concatenate((ahead, ahead[-1:]))
+    slope = np.concatenate((slopes[:, 0], slopes[-1:, 1]))
+    normals = directions + slope[:, None] * np.stack((-directions[:, 1], directions[:, 0]), axis=1)
+    normals /= np.hypot(*normals.T)[:, None]
+    offsets = -(normals * corners).sum(axis=1)
+    margin = 1 + 1e-2 * np.abs(slopes).sum(axis=1)
+    return LineFans(origin, np.vstack((normals.T, offsets)).astype(float32), margin)

@@ -81,15 +81,19 @@ class ReferenceLine:
         slopes = np.stack((self.first, self.first + self.change), axis=1)
         return line_fans(self.start, self.ahead, self.lengths, slopes)
 
+    @cached_property
+    def _columns(self) -> _Values:
+        own = self.lengths, self.first, self.change, self.arc
+        return np.stack((*self.ahead.T, *self.start.T, *own))
+
     def _nearest(self, places: Points, low: NDArray[intp], high: NDArray[intp]) -> Points:
         """The coordinates of the nearest foot on one of the pieces from ``low`` to ``high``."""
         numbers, pieces = self._fans.candidates(places, low, high)
-        (ux, uy), (x, y) = self.ahead[pieces].T, self.start[pieces].T
+        ux, uy, x, y, lengths, first, change, arc = np.take(self._columns, pieces, axis=1)
         dx, dy = places[numbers, 0] - x, places[numbers, 1] - y
         along = dx * ux + dy * uy
         across = ux * dy - uy * dx
-        lengths, first = self.lengths[pieces], self.first[pieces]
-        turned_lengths = lengths - across * self.change[pieces]
+        turned_lengths = lengths - across * change
         with np.errstate(divide="ignore", invalid="ignore"):
             part = (along + across * first) / turned_lengths
         good = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
@@ -97,13 +101,13 @@ class ReferenceLine:
         best = good.nonzero()[0]
         best = best[_least_of_each(numbers[best], distance[best])]
         found = np.full((len(places), 2), np.nan)
-        found[numbers[best], 0] = self.arc[pieces[best]] + part[best] * lengths[best]
+        found[numbers[best], 0] = arc[best] + part[best] * lengths[best]
         found[numbers[best], 1] = np.copysign(distance[best], across[best])
         return found
 
 
 def _least_of_each(groups: NDArray[intp], values: _Values) -> NDArray[intp]:
-    """Where the first of the least values of each group is; groups are ascending."""
+    """Where the first of the least values of each group is; each is end to end."""
     if not len(groups):
         return groups
     begins = np.concatenate(([True], groups[1:] != groups[:-1]))

@@ -29,9 +29,15 @@ def lanelet_area(lanelet: Lanelet) -> shapely.Polygon:
 
 def directions_beside(lanelet: Lanelet, points: NDArray[np.object_]) -> NDArray[np.float64]:
     """The direction (rad) of a lanelet's centre line nearest each point."""
+    return directions_at(
+        lanelet, shapely.line_locate_point(shapely.LineString(lanelet.centre), points)
+    )
+
+
+def directions_at(lanelet: Lanelet, along: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The direction (rad) of a lanelet's centre line at places along it (m)."""
     steps = np.diff(lanelet.centre, axis=0)
     reached = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
-    along = shapely.line_locate_point(shapely.LineString(lanelet.centre), points)
     piece = pieces_at(reached, along)
     directions: NDArray[np.float64] = np.arctan2(steps[piece, 1], steps[piece, 0])
     return directions
