@@ -14,7 +14,7 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_in
-from rulec.monitoring.batch.batch_verify import verify_chunk
+from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
 from rulec.monitoring.verdict import NotJudged, Verdict, agreed
 from rulec.recordings.recording import Recording
 from rulec.value_display import Rows, short_repr
@@ -84,8 +84,8 @@ class RecordingVerdicts(Rows):
         yield from self._verified(waiting)
 
     def _verified(self, drives: list[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
-        traces = [drive.trace for drive in drives if isinstance(drive, Drive)]
-        answers = zip(*(verify_chunk(traces, rules) for rules in self._roundings), strict=True)
+        traces = [drive.arrays for drive in drives if isinstance(drive, Drive)]
+        answers = zip(*(verify_arrays(traces, rules) for rules in self._roundings), strict=True)
         for drive in drives:
             yield DriveVerdict(drive, _agreed(next(answers))) if isinstance(drive, Drive) else drive
 

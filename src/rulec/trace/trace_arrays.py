@@ -60,6 +60,29 @@ class TraceArrays:
 
     __hash__ = None  # type: ignore[assignment]
 
+    @property
+    def is_partial(self) -> bool:
+        """Whether anything that is said is not, or not exactly, known."""
+        partial = [
+            *self.unknown.items(),
+            *((name, low != high) for name, (low, high) in self.bounds.items()),
+        ]
+        return any(bool((flags & self._said(name)).any()) for name, flags in partial)
+
+    def says(self, name: str) -> bool:
+        """Whether some state says a name."""
+        return name in self.world.keys() | self.about.keys() and bool(self._said(name).any())
+
+    def _said(self, name: str) -> Flags:
+        """Where a name is said."""
+        column = self.world[name] if name in self.world else self.about[name]
+        said = np.ones(len(column), dtype=bool)
+        if name in self.absent:
+            said &= ~self.absent[name]
+        if name in self.about and name in self.only:
+            said &= np.repeat(self.only[name], np.diff(self.starts))
+        return said
+
     def trace(self) -> Trace:
         """The trace with its states."""
         states: list[dict[str, Any]] = [{} for _ in range(self.n_states)]

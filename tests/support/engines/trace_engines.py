@@ -3,7 +3,7 @@
 import io
 import json
 import tempfile
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,10 +11,12 @@ from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.cli.main import main
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.batch.columns.columnize import columnize
+from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
 from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.verify import verify_or_reason
 from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
 from rulec.vocabulary import Enumeration, Quantity, Signal
+from support.builders.array_traces import CannotSayError, in_arrays
 from support.engines.engine import each, told
 from support.oracles.bits.bit_verdicts import verify_on_bits
 from support.oracles.presence import there
@@ -90,6 +92,18 @@ def repeated(copy):
         return alike([in_common_names(told(one)) for one in verify_many(many, compiled)])
 
     return judge_all
+
+
+def stacked(rulebook, compiled, traces):
+    """In arrays, whatever their objects; what these cannot say is judged one by one."""
+    answers, arrays = {}, {}
+    for place, trace in enumerate(traces):
+        with suppress(CannotSayError):
+            arrays[place] = in_arrays(trace, rulebook.vocabulary)
+        if place not in arrays:
+            answers[place] = verify_or_reason(trace, compiled)
+    answers |= zip(arrays, verify_arrays(list(arrays.values()), compiled), strict=True)
+    return [told(answers[place]) for place in range(len(traces))]
 
 
 def as_it_is(trace, number):

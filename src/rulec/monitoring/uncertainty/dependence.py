@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import chain, combinations, groupby, product
 from typing import TypeAlias
 
 from rulec.automata.outcome_machine import KEPT, OutcomeRange, SetMonitor
@@ -13,6 +13,9 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 
 MOST_WAYS = 1 << 12
 """So many sets of states are told apart while looking for what decides, from each start."""
+
+MOST_REMEMBERED = 1 << 14
+"""Steps that are kept before all are forgotten."""
 
 BEFORE = ""
 """Stands among names for what was before the first state."""
@@ -33,6 +36,86 @@ class PossibleAlternative:
     constants: Mapping[str, object]
 
 
+class Ways:
+    """The ways that words of one machine lead, step by step, remembered from word to word.
+
+    Letters have numbers: states are many, their letters few. So have the choices that letters of
+    words leave, side by side, once the digits of some reads are fixed; fewer still, and what comes
+    of many letters is the same.
+    """
+
+    def __init__(self, monitor: SetMonitor, classes: LetterClasses) -> None:
+        self.monitor = monitor
+        self._classes = classes
+        self._forget()
+
+    def _forget(self) -> None:
+        self._numbers: dict[Letters, int] = {}
+        self._letters: list[Letters] = []
+        self._choices: dict[tuple[_Word, tuple[int, ...]], int] = {}
+        self._places: dict[frozenset[tuple[int, ...]], int] = {}
+        self._sets: list[frozenset[tuple[int, ...]]] = []
+        self._after: dict[tuple[frozenset[_Way], int], frozenset[_Way]] = {}
+        self._onward: dict[tuple[_Way, int], list[_Way]] = {}
+
+    def forget_many(self) -> None:
+        """Forget what has been met, if it is much; numbers mean nothing any more."""
+        if max(len(self._after), len(self._onward), len(self._choices)) > MOST_REMEMBERED:
+            self._forget()
+
+    def word(self, states: Sequence[Letters]) -> _Word:
+        """A word in numbers."""
+        numbers = self._numbers
+        for letters in dict.fromkeys(states):
+            if numbers.setdefault(letters, len(self._letters)) == len(self._letters):
+                self._letters.append(letters)
+        return tuple([numbers[letters] for letters in states])
+
+    def choices(self, letters: _Word, fixed: tuple[int, ...]) -> int:
+        """The number of the choices of digits of fixed reads that some word has."""
+        key = letters, fixed
+        found = self._choices.get(key)
+        if found is None:
+            groups = [self._classes.groups(self._letters[number], fixed) for number in letters]
+            parts = dict.fromkeys(part for group in groups for part in group)
+            choices = frozenset(tuple([group.get(part, 0) for group in groups]) for part in parts)
+            found = self._places.setdefault(choices, len(self._sets))
+            if found == len(self._sets):
+                self._sets.append(choices)
+            self._choices[key] = found
+        return found
+
+    def after(self, ways: frozenset[_Way], choices: int) -> frozenset[_Way]:
+        """The ways after one step of each word."""
+        key = ways, choices
+        found = self._after.get(key)
+        if found is None:
+            found = frozenset(chain.from_iterable([self._after_one(way, choices) for way in ways]))
+            self._after[key] = found
+        return found
+
+    def _after_one(self, way: _Way, choices: int) -> list[_Way]:
+        key = way, choices
+        found = self._onward.get(key)
+        if found is None:
+            found = self._onward[key] = [
+                tuple([None if step is None else step.states for step in row])
+                for row in self.steps((way,), choices)
+            ]
+        return found
+
+    def steps(self, ways: Iterable[_Way], choices: int) -> Iterator[list[OutcomeRange | None]]:
+        """Steps from each way, for each of some choices."""
+        step_of = self.monitor.step
+        for way, choice in product(ways, self._sets[choices]):
+            steps = [
+                None if here is None or not classes else step_of(here, classes)
+                for here, classes in zip(way, choice, strict=True)
+            ]
+            if any(steps):
+                yield steps
+
+
 class Dependence:
     """What decides the outcome of one rule and binding.
 
@@ -41,21 +124,15 @@ class Dependence:
 
     def __init__(
         self,
-        monitor: SetMonitor,
-        classes: LetterClasses,
+        ways: Ways,
         alternatives: Sequence[PossibleAlternative],
         unknown: Sequence[frozenset[str]],
     ) -> None:
-        self._monitor = monitor
-        self._classes = classes
+        ways.forget_many()
+        self._ways = ways
+        self._monitor = ways.monitor
         self._unknown = unknown
-        # States are many, their letters few: words are of numbers of these.
-        numbers: dict[Letters, int] = {}
-        self._alternatives = [
-            (tuple([numbers.setdefault(x, len(numbers)) for x in own.letters]), own.constants)
-            for own in alternatives
-        ]
-        self._letters = list(numbers)
+        self._alternatives = [(ways.word(own.letters), own.constants) for own in alternatives]
 
     def smallest(self, names: Sequence[str]) -> tuple[str, ...] | None:
         """The smallest set of names that decides; of equally small ones the first in order.
@@ -92,35 +169,20 @@ class Dependence:
     def _agree(self, group: Sequence[_Word], fixed: tuple[int, ...], starts: Set[int]) -> bool:
         """Whether words that have the same digits of fixed reads come to the same."""
         ways: frozenset[_Way] = frozenset([(start,) * len(group) for start in starts])
-        known: dict[tuple[frozenset[_Way], _Word], frozenset[_Way]] = {}
-        *before, last = zip(*group, strict=True)
-        for letters in before:
-            after = known.get((ways, letters))
-            if after is None:
-                steps = self._steps(ways, letters, fixed)
-                after = frozenset(
-                    tuple([None if x is None else x.states for x in row]) for row in steps
-                )
-                if len(after) > MOST_WAYS * len(starts):
+        most = MOST_WAYS * len(starts)
+        known = {
+            letters: self._ways.choices(letters, fixed) for letters in set(zip(*group, strict=True))
+        }
+        *before, last = [known[letters] for letters in zip(*group, strict=True)]
+        for choices, alike in groupby(before):
+            for _ in alike:
+                after = self._ways.after(ways, choices)
+                if len(after) > most:
                     return False
-                known[ways, letters] = after
-            ways = after
-        return all(_is_one(row) for row in self._steps(ways, last, fixed))
-
-    def _steps(
-        self, ways: Iterable[_Way], letters: _Word, fixed: tuple[int, ...]
-    ) -> Iterator[list[OutcomeRange | None]]:
-        """Steps from each way, for each choice of digits of fixed reads that some word has."""
-        groups = [self._classes.groups(self._letters[number], fixed) for number in letters]
-        parts = dict.fromkeys(part for group in groups for part in group)
-        choices = {tuple([group.get(part, 0) for group in groups]) for part in parts}
-        for way, choice in product(ways, choices):
-            steps = [
-                None if here is None or not classes else self._monitor.step(here, classes)
-                for here, classes in zip(way, choice, strict=True)
-            ]
-            if any(steps):
-                yield steps
+                if after == ways:
+                    break  # the same again, however often
+                ways = after
+        return all(_is_one(row) for row in self._ways.steps(ways, last))
 
 
 def _is_one(steps: Sequence[OutcomeRange | None]) -> bool:

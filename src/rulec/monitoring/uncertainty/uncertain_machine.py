@@ -22,7 +22,12 @@ from rulec.automata.outcome_machine import (
 )
 from rulec.automata.thresholds import scale
 from rulec.logic.printing import number_in_words
-from rulec.monitoring.uncertainty.dependence import BEFORE, Dependence, PossibleAlternative
+from rulec.monitoring.uncertainty.dependence import (
+    BEFORE,
+    Dependence,
+    PossibleAlternative,
+    Ways,
+)
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, names_of_read
@@ -63,6 +68,7 @@ class UncertainMachine:
         self.machine = machine
         self.monitor = SetMonitor(machine)
         self.classes = LetterClasses(machine)
+        self._ways = Ways(self.monitor, self.classes)
         self._reasons: dict[object, OpenReasons] = {}
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
 
@@ -120,7 +126,7 @@ class UncertainMachine:
         names = [name for name in order if any(name in own for own in (*unknown, varying))]
         if len(self.machine.starts) > 1:
             names.append(BEFORE)
-        dependence = Dependence(self.monitor, self.classes, alternatives, unknown)
+        dependence = Dependence(self._ways, alternatives, unknown)
         found = dependence.smallest(names)
         on = names if found is None else found
         told: tuple[Reason, ...] = ("not told",) if any(on) else ()

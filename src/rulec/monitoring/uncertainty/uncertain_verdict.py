@@ -25,7 +25,10 @@ from rulec.monitoring.uncertainty.uncertain_machine import (
     UncertainMachine,
     uncertain_machine,
 )
-from rulec.monitoring.uncertainty.within_tolerance import told_within_bounds
+from rulec.monitoring.uncertainty.within_tolerance import (
+    is_within_bounds,
+    told_within_bounds,
+)
 from rulec.monitoring.verdict import (
     NO_PAST,
     CarriedState,
@@ -100,14 +103,23 @@ class UncertainRun:
             if answer is not None:
                 yield answer
 
+    def answers(self, rule_name: str) -> Iterator[Violation | OpenVerdict]:
+        """What is not kept of a rule."""
+        return self._answers(*self._machine(rule_name))
+
+    def answer(self, rule_name: str, objects: Mapping[str, str]) -> Violation | OpenVerdict | None:
+        """What is not kept of a rule for these objects, None if all is."""
+        own = binding_of(objects, self.trace.present, len(self.trace.states))
+        return self._answer(*self._machine(rule_name), own)
+
     def reasons(self, rule_name: str, objects: Mapping[str, str]) -> OpenReasons:
         """Why the verdict on a rule and these objects is open."""
-        trace = self.trace
-        rule, machine = next(own for own in self.judged.machines if own[0].name == rule_name)
-        own = binding_of(objects, trace.present, len(trace.states))
-        answer = self._answer(rule, machine, own)
+        answer = self.answer(rule_name, objects)
         assert isinstance(answer, OpenVerdict)
         return OpenReasons(answer.because, answer.depends_on, answer.outcomes, answer.exact)
+
+    def _machine(self, rule_name: str) -> tuple[CompiledRule, UncertainMachine]:
+        return next(own for own in self.judged.machines if own[0].name == rule_name)
 
     def _answer(
         self, rule: CompiledRule, machine: UncertainMachine, binding: Binding
@@ -172,4 +184,4 @@ def _reasons(
     declared, states, is_exact = about
     found = machine.reasons(words, constants, tuple(declared.declarations))
     found = found._replace(exact=found.exact and is_exact)
-    return told_within_bounds(found, states, declared)
+    return told_within_bounds(found, lambda name: is_within_bounds(name, states, declared))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from rulec.monitoring.verdict import OpenReasons, Reason
@@ -11,13 +11,11 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 
-def told_within_bounds(
-    found: OpenReasons, states: Sequence[State], vocabulary: Vocabulary
-) -> OpenReasons:
+def told_within_bounds(found: OpenReasons, is_within: Callable[[str], bool]) -> OpenReasons:
     """The reasons, apart for names that are not told, and for those told within bounds."""
     if "not told" not in found.because:
         return found
-    within = [name for name in found.depends_on if _is_within_bounds(name, states, vocabulary)]
+    within = [name for name in found.depends_on if is_within(name)]
     if not within:
         return found
     first: tuple[Reason, ...] = ("tolerance",)
@@ -27,7 +25,7 @@ def told_within_bounds(
     return found._replace(because=(*first, *others))
 
 
-def _is_within_bounds(name: str, states: Sequence[State], vocabulary: Vocabulary) -> bool:
+def is_within_bounds(name: str, states: Sequence[State], vocabulary: Vocabulary) -> bool:
     """Whether some number is an interval, and none is unknown altogether."""
     default = vocabulary.declarations[name].default
     values = [value for state in states for value in _leaves(state.get(name, default))]

@@ -1,0 +1,1 @@
+"""Verification of many traces in arrays, whatever their objects: each rule once for all."""

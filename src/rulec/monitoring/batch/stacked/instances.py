@@ -1,0 +1,144 @@
+"""The choices of objects of all traces for which a rule may be anything but kept.
+
+Most choices need no machine: in every state a few reads already show that the letter does nothing
+(see ``IdleLetters``), whatever the other reads are. So pairs of objects are made only where both
+of them have something to say in one state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.monitoring.batch.stacked.stack import Places, Stack
+from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
+from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
+
+_MOST_TOGETHER = 1 << 20
+"""So many states of pairs are looked at together."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Instances:
+    """Choices of objects for a rule's variables, in the order in which verdicts list them.
+
+    ``traces`` are theirs, ``objects`` has an array for each variable; each is judged from its
+    state in ``firsts`` to that in ``lasts``. Objects and states are numbered as in the stack.
+    """
+
+    traces: Places
+    objects: tuple[Places, ...]
+    firsts: Places
+    lasts: Places
+
+    def bounds(self) -> Places:
+        """Where the states of each begin if they stand one after the other, and all end."""
+        return np.concatenate([np.zeros(1, dtype=np.intp), np.cumsum(self.lasts - self.firsts + 1)])
+
+    def spots(self, rule: StackedRule, stack: Stack) -> Spots:
+        """The states of each, one after the other, with the cells of its objects."""
+        bounds = self.bounds()
+        lengths = np.diff(bounds)
+        states = np.arange(bounds[-1]) + np.repeat(self.firsts - bounds[:-1], lengths)
+        cells = {
+            variable: states + np.repeat(stack.starts[own] - stack.firsts[own], lengths)
+            for variable, own in zip(rule.variables, self.objects, strict=True)
+        }
+        return Spots(states, cells)
+
+
+def numbers_at(
+    rule: StackedRule, reader: StackReader, spots: Spots | None, variables: Sequence[str] = ()
+) -> list[Numbers]:
+    """The numbers of a rule's reads at some spots, or in all states.
+
+    Reads of others than the ``variables`` may be anything.
+    """
+    known = frozenset(variables)
+    return [
+        reader.numbers(read, spots) if known.issuperset(read.variables) else read.unknown
+        for read in rule.reads
+    ]
+
+
+def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
+    """All choices that may not be kept, and perhaps others that are."""
+    stack = reader.stack
+    busy = ~_are_idle(rule, numbers_at(rule, reader, None), stack.n_states)
+    if not rule.variables:
+        traces = np.unique(np.searchsorted(stack.begins, np.flatnonzero(busy), side="right") - 1)
+        return Instances(traces, (), stack.begins[traces], stack.begins[traces + 1] - 1)
+    chosen = [
+        _busy_cells(rule, reader, busy, (variable, kind))
+        for variable, kind in zip(rule.variables, rule.types, strict=True)
+    ]
+    objects: tuple[Places, ...]
+    if len(chosen) == 1:
+        objects = (np.unique(stack.object_of[chosen[0]]),)
+    else:
+        objects = _pairs(rule, reader, chosen[0], chosen[1])
+    firsts = np.max([stack.firsts[own] for own in objects], axis=0)
+    lasts = np.min([stack.lasts[own] for own in objects], axis=0)
+    return Instances(stack.trace_of[objects[0]], objects, firsts, lasts)
+
+
+def _are_idle(rule: StackedRule, numbers: Sequence[Numbers], n_spots: int) -> NDArray[np.bool_]:
+    letters = rule.letters.numbers(numbers)
+    flags = rule.idle.of(rule.letters)
+    return flags.take(np.broadcast_to(np.asarray(letters), (n_spots,)))
+
+
+def _busy_cells(
+    rule: StackedRule,
+    reader: StackReader,
+    busy: NDArray[np.bool_],
+    about: tuple[str, str],
+) -> Places:
+    """The cells of objects for a variable in which a letter might do something."""
+    (variable, kind), stack = about, reader.stack
+    cells = stack.cells_of_type(kind)
+    if not busy.all():
+        cells = cells[busy[stack.state_of[cells]]]
+    if not len(cells):
+        return cells
+    spots = Spots(stack.state_of[cells], {variable: cells})
+    numbers = numbers_at(rule, reader, spots, (variable,))
+    return cells[~_are_idle(rule, numbers, len(cells))]
+
+
+def _pairs(
+    rule: StackedRule, reader: StackReader, first: Places, second: Places
+) -> tuple[Places, Places]:
+    """The pairs of objects that have cells in one state in which a letter might do something."""
+    stack = reader.stack
+    n_objects = len(stack.types)
+    found = [np.empty(0, dtype=np.intp)]
+    for one, other in _joined(first, second, stack):
+        distinct = stack.object_of[one] != stack.object_of[other]
+        one, other = one[distinct], other[distinct]
+        cells = dict(zip(rule.variables, (one, other), strict=True))
+        numbers = numbers_at(rule, reader, Spots(stack.state_of[one], cells), rule.variables)
+        busy = ~_are_idle(rule, numbers, len(one))
+        pairs = stack.object_of[one[busy]] * n_objects + stack.object_of[other[busy]]
+        found.append(np.unique(pairs))
+    every = np.unique(np.concatenate(found))
+    return every // n_objects, every % n_objects
+
+
+def _joined(first: Places, second: Places, stack: Stack) -> Iterator[tuple[Places, Places]]:
+    """The pairs of cells of one state, some at a time."""
+    second = second[np.argsort(stack.state_of[second], kind="stable")]
+    states, theirs = stack.state_of[first], stack.state_of[second]
+    begins = np.searchsorted(theirs, states, side="left")
+    counts = np.searchsorted(theirs, states, side="right") - begins
+    parts = np.cumsum(counts) // _MOST_TOGETHER
+    for part in np.unique(parts):
+        own = np.flatnonzero(parts == part)
+        repeats = counts[own]
+        before = np.cumsum(repeats) - repeats
+        places = np.arange(repeats.sum()) + np.repeat(begins[own] - before, repeats)
+        yield np.repeat(first[own], repeats), second[places]

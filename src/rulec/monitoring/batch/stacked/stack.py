@@ -1,0 +1,260 @@
+"""Traces in arrays laid end to end, whatever their objects.
+
+The states of all traces stand one after the other, trace by trace; what is said about objects
+stands in *cells*, one for each state in which an object is there, object by object.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.thresholds import EXACT_IN_FLOATS
+from rulec.monitoring.batch.columns.columnize import (
+    UnencodableError,
+    column_dtype,
+    encode_values,
+    one_value,
+)
+from rulec.trace.trace_arrays import Flags, TraceArrays, starts_of
+from rulec.trace.trace_columns import Array
+from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
+
+Places = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StackColumn:
+    """The values of a name in all states, or cells, as in ``TraceColumns``.
+
+    None is for nowhere. Where a value is ``missing`` nothing is said, and there is no default.
+    """
+
+    values: Array
+    upper: Array | None
+    unknown: Flags | None
+    missing: Flags | None
+
+    @property
+    def apart(self) -> Flags | None:
+        """Where a number is known as an interval."""
+        return None if self.upper is None else self.upper != self.values
+
+
+class Stack:
+    """Traces that say the same names, end to end; ``vocabulary`` has the defaults of the others.
+
+    ``begins`` is where the states of each trace begin, ``starts`` where the cells of each object
+    do, both with the end of all as the last. ``trace_of``, ``firsts`` and ``lasts`` are the trace
+    and the first and last state of each object, among all.
+    """
+
+    def __init__(self, traces: Sequence[TraceArrays], vocabulary: Vocabulary) -> None:
+        self.traces = traces
+        self.vocabulary = vocabulary
+        lengths = np.array([trace.n_states for trace in traces], dtype=np.intp)
+        self.begins = np.concatenate([np.zeros(1, dtype=np.intp), np.cumsum(lengths)])
+        self.n_states = int(self.begins[-1])
+        n_objects = [len(trace.objects) for trace in traces]
+        self.trace_of = np.repeat(np.arange(len(traces)), n_objects)
+        self.first_object = np.concatenate([[0], np.cumsum(n_objects, dtype=np.intp)])
+        spans = np.concatenate([trace.spans for trace in traces])
+        self.firsts = spans[:, 0] + self.begins[self.trace_of]
+        self.lasts = spans[:, 1] + self.begins[self.trace_of]
+        self.starts = starts_of(spans)
+        self.types = [kind for trace in traces for kind in trace.objects.values()]
+        self.names = [name for trace in traces for name in trace.objects]
+        self._columns: dict[str, StackColumn | None] = {}
+        self._of_type: dict[str, Flags] = {}
+        self._cells_of_type: dict[str, Places] = {}
+
+    @cached_property
+    def object_of(self) -> Places:
+        """The object of each cell."""
+        return np.repeat(np.arange(len(self.types)), np.diff(self.starts))
+
+    @cached_property
+    def state_of(self) -> Places:
+        """The state of each cell."""
+        shift: Places = self.firsts - self.starts[:-1]
+        return np.arange(self.starts[-1]) + np.repeat(shift, np.diff(self.starts))
+
+    def of_type(self, kind: str) -> Flags:
+        """Which objects are of a type, or of one below it."""
+        if kind not in self._of_type:
+            suits = {own: self.vocabulary.is_subtype(own, kind) for own in set(self.types)}
+            self._of_type[kind] = np.array([suits[own] for own in self.types], dtype=bool)
+        return self._of_type[kind]
+
+    def cells_of_type(self, kind: str) -> Places:
+        """The cells of the objects of a type."""
+        if kind not in self._cells_of_type:
+            suits = self.of_type(kind)
+            every = np.arange(self.starts[-1])
+            self._cells_of_type[kind] = every if suits.all() else every[suits[self.object_of]]
+        return self._cells_of_type[kind]
+
+    def says(self, name: str) -> bool:
+        """Whether some state may say a name."""
+        return any(name in own for own in (self.traces[0].world, self.traces[0].about))
+
+    def can_tell(self, name: str) -> bool:
+        """Whether a name's values can be read from arrays. Raises UnencodableError."""
+        column, declaration = self.column(name), self.vocabulary.declarations[name]
+        if column is None:
+            return declaration.default is not None
+        return not (declaration.constant and column.apart is not None and column.apart.any())
+
+    def odd_traces(self) -> set[int]:
+        """Traces in which something is missing, or a constant changes. Raises UnencodableError."""
+        odd: set[int] = set()
+        for name in (*self.traces[0].world, *self.traces[0].about):
+            column = self.column(name)
+            assert column is not None, "it is said"
+            if column.missing is not None:
+                odd.update(self._traces_at(name, np.flatnonzero(column.missing)))
+            if self.vocabulary.declarations[name].constant:
+                starts = self.starts if name in self.traces[0].about else self.begins
+                lengths = np.diff(starts)
+                for values in (column.values, column.unknown):
+                    if values is not None:
+                        changed = values != np.repeat(values[starts[:-1]], lengths)
+                        odd.update(self._traces_at(name, np.flatnonzero(changed)))
+        return odd
+
+    def _traces_at(self, name: str, places: Places) -> list[int]:
+        if name in self.traces[0].about:
+            places = self.state_of[places]
+        found: list[int] = np.unique(
+            np.searchsorted(self.begins, places, side="right") - 1
+        ).tolist()
+        return found
+
+    def column(self, name: str) -> StackColumn | None:
+        """The column of a name; None if no state says it. Raises UnencodableError."""
+        if name not in self._columns:
+            self._columns[name] = self._column(name) if self.says(name) else None
+        return self._columns[name]
+
+    def default(self, name: str) -> Any:
+        """What holds where nothing is said, as columns have it; None if there is nothing."""
+        declaration = self.vocabulary.declarations[name]
+        default: Any = declaration.default
+        if default is None or default is UNKNOWN:
+            return default
+        return encode_values([default], declaration)[0]
+
+    def _column(self, name: str) -> StackColumn:
+        declaration = self.vocabulary.declarations.get(name)
+        is_about = name in self.traces[0].about
+        if declaration is None or len(declaration.parameters) != is_about:
+            raise UnencodableError
+        parts = [trace.about[name] if is_about else trace.world[name] for trace in self.traces]
+        unknown = self._joined(name, [trace.unknown for trace in self.traces], parts)
+        unsaid = self._joined(name, [trace.absent for trace in self.traces], parts)
+        if is_about:
+            unsaid = _either(unsaid, self._not_about(name, declaration))
+        upper = None
+        if isinstance(declaration, Enumeration):
+            values = self._places(name, declaration, parts)
+            unfit = values >= len(declaration.values)
+        elif isinstance(declaration, Signal):
+            values = np.concatenate(parts)
+            if values.dtype != bool or any(name in trace.texts for trace in self.traces):
+                raise UnencodableError
+            unfit = np.zeros(0, dtype=bool)
+        else:
+            values, upper = self._numbers(name, parts)
+            unfit = ~np.isfinite(values)
+            if upper is not None:
+                unfit |= ~(values <= upper) | ~np.isfinite(upper)
+        if unfit.any():
+            nowhere = _either(unknown, unsaid)
+            if nowhere is None or (unfit & ~nowhere).any():
+                raise UnencodableError
+            values = np.where(unfit, _anything(declaration), values)
+            upper = None if upper is None else np.where(unfit, values, upper)
+        column = StackColumn(values, upper, unknown, None)
+        return column if unsaid is None else self._with_default(name, column, unsaid)
+
+    def _with_default(self, name: str, column: StackColumn, unsaid: Flags) -> StackColumn:
+        """The column with the default where nothing is said."""
+        default, unknown = self.default(name), column.unknown
+        declaration = self.vocabulary.declarations[name]
+        if default is None:
+            return StackColumn(column.values, column.upper, unknown, unsaid)
+        if default is UNKNOWN:
+            raise UnencodableError  # it is not told, and yet said of somebody
+        values = np.where(unsaid, default, column.values).astype(column_dtype(declaration))
+        upper = None if column.upper is None else np.where(unsaid, default, column.upper)
+        unknown = None if unknown is None else unknown & ~unsaid
+        return StackColumn(values, upper, unknown, None)
+
+    def _places(self, name: str, declaration: Enumeration, parts: Sequence[Array]) -> Array:
+        """The places among the declared values; the one after these for any other."""
+        places = {value: place for place, value in enumerate(declaration.values)}
+        found = []
+        for trace, part in zip(self.traces, parts, strict=True):
+            texts = trace.texts.get(name)
+            if texts is None:
+                raise UnencodableError
+            if texts != declaration.values:
+                table = [places.get(text, len(places)) for text in texts]
+                part = np.array(table, dtype=np.intp).take(part)
+            found.append(part)
+        return np.concatenate(found)
+
+    def _numbers(self, name: str, parts: Sequence[Array]) -> tuple[Array, Array | None]:
+        """The numbers, or the least that they may be, and the greatest, if some are apart."""
+        for trace, part in zip(self.traces, parts, strict=True):
+            if part.dtype.kind not in "fiu" or name in trace.texts:
+                raise UnencodableError
+            if part.dtype.kind != "f" and (np.abs(part) > EXACT_IN_FLOATS).any():
+                raise UnencodableError
+        if not any(name in trace.bounds for trace in self.traces):
+            return np.concatenate(parts).astype(np.float64), None
+        bounds = [
+            trace.bounds.get(name, (part, part))
+            for trace, part in zip(self.traces, parts, strict=True)
+        ]
+        low, high = (np.concatenate(ends).astype(np.float64) for ends in zip(*bounds, strict=True))
+        return low, high
+
+    def _not_about(self, name: str, declaration: Declaration) -> Flags | None:
+        """The cells of the objects that a name is not said of."""
+        every = [
+            trace.only.get(name, np.ones(len(trace.objects), dtype=bool)) for trace in self.traces
+        ]
+        said = np.concatenate(every)
+        if (said & ~self.of_type(declaration.parameters[0])).any():
+            raise UnencodableError
+        return None if said.all() else np.repeat(~said, np.diff(self.starts))
+
+    def _joined(
+        self, name: str, flags: Sequence[Mapping[str, Flags]], parts: Sequence[Array]
+    ) -> Flags | None:
+        if not any(name in own for own in flags):
+            return None
+        joined = np.concatenate(
+            [
+                own.get(name, np.zeros(len(part), dtype=bool))
+                for own, part in zip(flags, parts, strict=True)
+            ]
+        )
+        return joined if joined.any() else None
+
+
+def _either(one: Flags | None, other: Flags | None) -> Flags | None:
+    if one is None or other is None:
+        return other if one is None else one
+    return one | other
+
+
+def _anything(declaration: Declaration) -> Any:
+    return encode_values([one_value(declaration)], declaration)[0]

@@ -1,0 +1,245 @@
+"""Reader of traces in arrays: the numbers of a rule's reads, in states or for chosen objects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.thresholds import scale
+from rulec.logic import formula as ltl
+from rulec.logic.fold import fold
+from rulec.monitoring.batch.columns.column_reader import (
+    KLEENE_COLUMNS,
+    UNKNOWN,
+    Mask,
+    Summand,
+    Truth,
+    digits_of_sum,
+    known,
+)
+from rulec.monitoring.batch.stacked.stack import Places, Stack, StackColumn
+from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
+from rulec.trace.trace_arrays import Flags
+from rulec.trace.trace_columns import Array
+from rulec.vocabulary import Enumeration, Signal
+from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
+from rulec.vocabulary.partial_values import Interval, PartialValue
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Spots:
+    """States of the stack, and the cells of the variables' objects in each.
+
+    ``whole`` are all states, or all cells, in their order.
+    """
+
+    states: Places
+    cells: Mapping[str, Places]
+    whole: bool = False
+
+    def part(self, chosen: Places | slice) -> Spots:
+        """Some of them."""
+        cells = {variable: own[chosen] for variable, own in self.cells.items()}
+        return Spots(self.states[chosen], cells)
+
+
+class StackReader:
+    """Caching reader of the reads' numbers, for all rules."""
+
+    def __init__(self, stack: Stack) -> None:
+        self.stack = stack
+        self._numbers: dict[object, Array | int] = {}
+        self._every_state = np.arange(stack.n_states)
+
+    def numbers(self, read: StackedRead, spots: Spots | None) -> Numbers:
+        """The numbers of a read at some spots, or in all states; one if they are all the same.
+
+        Raises UnencodableError.
+        """
+        if len(read.variables) > 1:
+            assert spots is not None, "it is about objects"
+            return self._of(read, spots)
+        if read.key not in self._numbers:
+            self._numbers[read.key] = self._everywhere(read)
+        found = self._numbers[read.key]
+        if spots is None or not isinstance(found, np.ndarray):
+            return found
+        return found.take(spots.cells[read.variables[0]] if read.variables else spots.states)
+
+    def _everywhere(self, read: StackedRead) -> Array | int:
+        """The numbers in all states, or cells."""
+        stack = self.stack
+        every = Spots(self._every_state, {}, whole=True)
+        if read.variables:
+            cells = np.arange(stack.starts[-1])
+            every = Spots(stack.state_of, {read.variables[0]: cells}, whole=True)
+        found = self._of(read, every)
+        if isinstance(found, np.ndarray) and len(found) and (found == found[0]).all():
+            return int(found[0])
+        return found
+
+    def _of(self, read: StackedRead, spots: Spots) -> Numbers:
+        if isinstance(read.read, Read):
+            return self._values(read.read, spots)
+        if read.count is not None:
+            return self._counted(read, read.read, spots)
+        return self._between(read.read, spots)
+
+    def _values(self, read: Read, spots: Spots) -> Numbers:
+        declaration = self.stack.vocabulary.declarations[read.name]
+        n_values = len(declaration.values) if isinstance(declaration, Enumeration) else 2
+        column = self.stack.column(read.name)
+        if column is None:
+            default = self.stack.default(read.name)
+            return n_values if default is UNKNOWN_VALUE else int(default)
+        values = column.values if column.values.dtype != bool else column.values.view(np.uint8)
+        if column.unknown is not None:
+            values = np.where(column.unknown, np.asarray(n_values, dtype=values.dtype), values)
+        return self._taken(values, read.variables, spots)
+
+    def _taken(self, values: Array, variables: Sequence[str], spots: Spots) -> Array:
+        """A column's values at the spots."""
+        if spots.whole and (variables or not spots.cells):
+            return values
+        return values.take(spots.cells[variables[0]] if variables else spots.states)
+
+    def _between(self, read: NumberRead, spots: Spots) -> Numbers:
+        n_spots = len(spots.states)
+        lows: list[Summand] = []
+        highs: list[Summand] = []
+        unknown: Mask = np.False_
+        for factor, term in read.terms:
+            assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
+            low, high, dark = self._bounds(term, spots)
+            lows.append((factor, low if factor > 0 else high))
+            highs.append((factor, high if factor > 0 else low))
+            unknown = unknown | dark
+        if np.all(unknown):
+            return read.size - 1
+        low_digits = _digits(read, lows, n_spots, unknown)
+        same = all(low is high for (_, low), (_, high) in zip(lows, highs, strict=True))
+        high_digits = low_digits if same else _digits(read, highs, n_spots, unknown)
+        numbers = low_digits * read.size + high_digits
+        return np.where(unknown, read.size - 1, numbers) if np.any(unknown) else numbers
+
+    def _bounds(
+        self, term: ltl.QuantityTerm, spots: Spots
+    ) -> tuple[Array | float, Array | float, Mask]:
+        """The least and the most that a term may be, and where it is unknown."""
+        column = self.stack.column(term.name)
+        if column is None:
+            default = self.stack.default(term.name)
+            if default is UNKNOWN_VALUE:
+                return 0.0, 0.0, np.True_
+            number = float(default)
+            return number, number, np.False_
+        low = self._taken(column.values, term.arguments, spots)
+        high = low if column.upper is None else self._taken(column.upper, term.arguments, spots)
+        if column.unknown is None:
+            return low, high, np.False_
+        return low, high, self._taken(column.unknown, term.arguments, spots)
+
+    def _counted(self, read: StackedRead, number: NumberRead, spots: Spots) -> Numbers:
+        """The numbers of a count, everywhere: of who is there, or of whom a variable names."""
+        count, stack = read.count, self.stack
+        assert count is not None
+        factor = number.terms[0][0]
+        if read.counts_itself:
+            truth = self._truth(count, spots, read.variables[0])
+            suits = stack.of_type(count.type)[stack.object_of]
+            least = (suits & truth.true).astype(np.intp)
+            most = (suits & ~truth.false).astype(np.intp)
+        else:
+            cells = np.flatnonzero(stack.of_type(count.type)[stack.object_of])
+            states = stack.state_of[cells]
+            own_spots = Spots(states, {count.variable: cells})
+            truth = self._truth(count, own_spots, count.variable)
+            there = np.ones(len(states), dtype=bool)
+            least = np.bincount(states[there & truth.true], minlength=stack.n_states)
+            most = np.bincount(states[there & ~truth.false], minlength=stack.n_states)
+        every = range(int(most.max(initial=0)) + 1)
+        digits = np.array([number.digit(factor * Fraction(n)) for n in every], dtype=np.intp)
+        numbers: Array = digits.take(least) * number.size + digits.take(most)
+        return numbers
+
+    def _truth(self, count: ltl.Count, spots: Spots, counted: str) -> Truth:
+        """Where an object counts, and where it does not; any variable names the one counted."""
+
+        def proposition(part: ltl.Proposition) -> Truth:
+            assert isinstance(part, ltl.Atom), "it compares nothing"
+            arguments = [counted] * len(part.arguments)
+            return self._atom(replace(part, arguments=tuple(arguments)), spots)
+
+        def identity(_: ltl.Same) -> Truth:
+            return known(np.True_)
+
+        return fold(count.body, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
+
+    def _atom(self, atom: ltl.Atom, spots: Spots) -> Truth:
+        declaration = self.stack.vocabulary.declarations[atom.name]
+        column = self.stack.column(atom.name)
+        values: Any
+        if column is None:
+            values, dark = self.stack.default(atom.name), None
+            if values is UNKNOWN_VALUE:
+                return UNKNOWN
+        else:
+            values = self._taken(column.values, atom.arguments, spots)
+            dark = column.unknown
+        if isinstance(declaration, Enumeration):
+            assert atom.value is not None, "the rulebook has been checked"
+            holds = np.asarray(values == declaration.values.index(atom.value))
+        else:
+            holds = np.asarray(values, dtype=bool)
+        if dark is None:
+            return known(holds)
+        here = self._taken(dark, atom.arguments, spots)
+        return Truth(holds & ~here, ~holds & ~here)
+
+    def values_at(
+        self, name: str, variables: Sequence[str], spots: Spots
+    ) -> list[PartialValue | None]:
+        """What states at some spots say of a name."""
+        declaration = self.stack.vocabulary.declarations[name]
+        column = self.stack.column(name)
+        if column is None:
+            default: Any = declaration.default
+            return [default] * len(spots.states)
+        where = spots.cells[variables[0]] if variables else spots.states
+        values: list[Any] = column.values[where].tolist()
+        if isinstance(declaration, Enumeration):
+            values = [declaration.values[place] for place in values]
+        elif not isinstance(declaration, Signal) and column.upper is not None:
+            ends = zip(values, column.upper[where].tolist(), strict=True)
+            values = [low if low == high else Interval(low, high) for low, high in ends]
+        if column.unknown is not None:
+            for place in np.flatnonzero(column.unknown[where]).tolist():
+                values[place] = UNKNOWN_VALUE
+        return values
+
+
+def is_partial(column: StackColumn) -> Flags | None:
+    """Where no single value is known."""
+    apart = column.apart
+    if apart is None or column.unknown is None:
+        return column.unknown if apart is None else apart
+    return apart | column.unknown
+
+
+def _digits(read: NumberRead, summands: Sequence[Summand], n_spots: int, ignored: Mask) -> Array:
+    ready = scale(read)
+    if ready.quantity is None:
+        return digits_of_sum(read, summands, n_spots, ignored).astype(np.intp)
+    ((_, numbers),) = summands
+    if not isinstance(numbers, np.ndarray):
+        return np.full(n_spots, ready.digit(numbers), dtype=np.intp)
+    digits = np.zeros(n_spots, dtype=np.intp)
+    for floor in ready.floors:
+        digits += numbers >= floor
+    return digits

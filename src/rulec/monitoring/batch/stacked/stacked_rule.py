@@ -1,0 +1,226 @@
+"""A rule made ready for traces in arrays: its reads, letters, and the letters that do nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
+from rulec.automata.outcome_machine import KEPT, VIOLATED
+from rulec.automata.thresholds import scale
+from rulec.logic import formula as ltl
+from rulec.monitoring.batch.uncertain.partial_reader import meanings_of
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
+    EntangledReads,
+    local_reads,
+)
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterSets
+from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
+from rulec.vocabulary import Enumeration, Vocabulary
+
+MOST_SETS = 1 << 14
+"""Sets of letters, and words, that are kept before all are forgotten."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StackedRead:
+    """A read, and the digits, as bits, that its numbers stand for; ``unknown`` is any digit.
+
+    ``variables`` are those of the rule that it is asked of, ``names`` what it depends on. ``count``
+    is what is counted, if it is a count: objects that any variable may stand for, or, if it
+    ``counts_itself``, none but the one that the only variable stands for.
+    """
+
+    read: Read | NumberRead
+    variables: tuple[str, ...]
+    names: tuple[str, ...]
+    meanings: tuple[int, ...]
+    unknown: int
+    count: ltl.Count | None
+    key: object
+
+    @property
+    def counts_itself(self) -> bool:
+        """Whether only the object that it is asked of may count."""
+        return self.count is not None and bool(self.variables)
+
+
+class StackedRule:
+    """A rule with its machine for words of sets of letters.
+
+    ``entangled`` are its entangled reads, if its own objects alone decide what these may be, and
+    ``related`` the places of all reads that may have to do with each other. ``constants`` are those
+    of reads of what never changes.
+    """
+
+    def __init__(
+        self,
+        rule: CompiledRule,
+        machine: UncertainMachine,
+        rulebook: CompiledRulebook,
+        vocabulary: Vocabulary,
+    ) -> None:
+        self.rule = rule
+        self.machine = machine
+        self.variables = tuple([variable.name for variable in rule.variables])
+        self.types = tuple([variable.type for variable in rule.variables])
+        self.reads = tuple([_stacked(read, vocabulary) for read in rule.machine.reads])
+        self.names = frozenset(name for read in self.reads for name in read.names)
+        self.entangled: EntangledReads | None = local_reads(rule, rulebook)
+        self.related = _related(self.reads) if self.entangled is None else self.entangled.numbers
+        self.constants = tuple(
+            [
+                n
+                for n, read in enumerate(self.reads)
+                if not set(vocabulary.constants).isdisjoint(read.names)
+            ]
+        )
+        self.is_simple = _is_simple(self)
+        self.idle = IdleLetters(machine)
+        self.letters = self._no_letters()
+        self._answers: dict[bytes, Answer] = {}
+
+    def _no_letters(self) -> LetterSets:
+        return LetterSets(self.machine.classes.diagram, [read.meanings for read in self.reads])
+
+    def forget_many(self) -> None:
+        """Forget the sets that have been met, if they are many; their numbers are no more."""
+        if len(self.letters.sets) > MOST_SETS:
+            self.letters, self._answers = self._no_letters(), {}
+            self.idle.flags = np.zeros(0, dtype=bool)
+
+    def answer(self, word: NDArray[np.intp]) -> Answer:
+        """What a word of numbers of letter sets comes to."""
+        key = word.tobytes()
+        found = self._answers.get(key)
+        if found is None:
+            if len(self._answers) >= MOST_SETS:
+                self._answers.clear()
+            found = self._answers[key] = self._run(word)
+        return found
+
+    def _run(self, word: NDArray[np.intp]) -> Answer:
+        monitor, sets = self.machine.monitor, self.letters.sets
+        lost = monitor.machine.lost
+        starts = np.flatnonzero(np.concatenate([[True], word[1:] != word[:-1]]))
+        lengths = np.diff(starts, append=len(word)).tolist()
+        here = monitor.start
+        for start, length, number in zip(
+            starts.tolist(), lengths, word[starts].tolist(), strict=True
+        ):
+            classes = sets[number]
+            for place in range(start, start + length):
+                before, step = here, monitor.step(here, classes)
+                here = step.states
+                if step.best == VIOLATED and lost.issuperset(monitor.states(here)):
+                    return Answer(VIOLATED, VIOLATED, place)
+                if here == before:
+                    break  # the same again, however often
+        return Answer(step.best, step.worst)
+
+
+class IdleLetters:
+    """The letters that lead a machine to where they keep it, with every word of them kept.
+
+    So what a word of nothing else comes to needs no run, nor does any part of it.
+    """
+
+    def __init__(self, machine: UncertainMachine) -> None:
+        self._monitor = monitor = machine.monitor
+        self.flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
+        letters = np.array(machine.machine.letters)
+        weights = np.bincount(letters[letters != IMPOSSIBLE], minlength=machine.machine.n_classes)
+        singles = range(len(weights))
+        homes = dict.fromkeys([monitor.start])
+        homes |= dict.fromkeys(monitor.step(monitor.start, 1 << n).states for n in singles)
+        worth = {
+            home: sum(int(weights[n]) for n in singles if self._stays(home, 1 << n))
+            for home in homes
+        }
+        self._home = max(worth, key=worth.__getitem__)
+
+    def _stays(self, home: int, classes: int) -> bool:
+        steps = (self._monitor.step(here, classes) for here in (self._monitor.start, home))
+        return all(step.states == home and step.worst == KEPT for step in steps)
+
+    def of(self, letters: LetterSets) -> NDArray[np.bool_]:
+        """Whether each set of letters that has been met is idle."""
+        sets = letters.sets
+        if len(self.flags) < len(sets):
+            more = [bool(x) and self._stays(self._home, x) for x in sets[len(self.flags) :]]
+            self.flags = np.concatenate([self.flags, np.array(more, dtype=bool)])
+        return self.flags
+
+
+def _stacked(read: Read | NumberRead, vocabulary: Vocabulary) -> StackedRead:
+    meanings = tuple(meanings_of(read, vocabulary))
+    if isinstance(read, Read):
+        declaration = vocabulary.declarations[read.name]
+        unknown = len(declaration.values) if isinstance(declaration, Enumeration) else 2
+        key: object = read.name, len(read.variables)
+        return StackedRead(
+            read,
+            read.variables,
+            (read.name,),
+            meanings=meanings,
+            unknown=unknown,
+            count=None,
+            key=key,
+        )
+    ready = scale(read)
+    variables = tuple(dict.fromkeys(ready.variables))
+    term = ready.quantity
+    key = id(read) if term is None else (term.name, len(term.arguments), ready.floors)
+    counts = [term for _, term in read.terms if isinstance(term, ltl.Count)]
+    count = counts[0] if len(read.terms) == 1 and counts else None
+    return StackedRead(
+        read,
+        variables,
+        ready.names,
+        meanings=meanings,
+        unknown=read.size - 1,
+        count=count,
+        key=key,
+    )
+
+
+def _related(reads: Sequence[StackedRead]) -> tuple[int, ...]:
+    """Reads that count, or share names."""
+    return tuple(
+        n
+        for n, read in enumerate(reads)
+        if read.count is not None
+        or any(not set(read.names).isdisjoint(other.names) for other in reads if other is not read)
+    )
+
+
+def _is_simple(rule: StackedRule) -> bool:
+    """Whether the rule's reads are of the kinds that can be read from arrays."""
+    return (
+        len(rule.variables) <= 2
+        and IMPOSSIBLE not in rule.machine.machine.letters
+        and all(_is_simple_read(read, rule) for read in rule.reads)
+        and all(_is_value(rule.reads[place]) for place in rule.constants)
+        and len({rule.reads[place].names for place in rule.constants}) == len(rule.constants)
+    )
+
+
+def _is_value(read: StackedRead) -> bool:
+    """Whether a read is a single value, no sum or count."""
+    return isinstance(read.read, Read) or scale(read.read).quantity is not None
+
+
+def _is_simple_read(read: StackedRead, rule: StackedRule) -> bool:
+    if isinstance(read.read, Read):
+        return True
+    if read.count is None:
+        return not any(isinstance(term, ltl.Count) for _, term in read.read.terms)
+    if any(isinstance(part, ltl.Comparison) for part in ltl.atoms_of(read.count.body)):
+        return False
+    if not read.variables:
+        return True
+    return len(rule.variables) == 1 and rule.entangled is not None

@@ -1,0 +1,185 @@
+"""Verification of traces in arrays, with verdicts equal to ``verify``'s on their states.
+
+Whatever is odd about a trace, or about a rule for some objects, is left to ``verify``, and so are
+the rules that arrays cannot be read for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property, partial
+from operator import itemgetter
+from typing import TypeAlias
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
+from rulec.automata.outcome_machine import VIOLATED
+from rulec.automata.thresholds import exact_step
+from rulec.diagnostics import RulecError
+from rulec.monitoring.batch.batch_verify import Answer, verify_chunk
+from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
+from rulec.monitoring.batch.stacked.stack import Stack
+from rulec.monitoring.batch.stacked.stack_reader import StackReader
+from rulec.monitoring.batch.stacked.stacked_outcomes import (
+    StackedOutcome,
+    StackedWords,
+    outcomes,
+)
+from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
+from rulec.monitoring.constant_values import with_constants
+from rulec.monitoring.state_validation import check_objects, check_told
+from rulec.monitoring.uncertainty.judged_rules import judged_rules
+from rulec.monitoring.uncertainty.suppositions import spelled_out
+from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
+from rulec.monitoring.verdict import OpenReasons, OpenVerdict, Verdict, Violation
+from rulec.monitoring.verify import rulebook_for_step, verify_or_reason
+from rulec.trace.trace_arrays import TraceArrays
+
+Found: TypeAlias = Violation | OpenVerdict
+
+_Placed: TypeAlias = tuple[tuple[int, ...], Found]
+"""What is not kept, after the places of its rule and of its objects."""
+
+
+def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
+    """Answers for traces in arrays, in their order: a verdict, or a ``NotJudged``."""
+    answers: list[Answer | None] = [None] * len(traces)
+    groups: dict[object, list[int]] = {}
+    for place, trace in enumerate(traces):
+        names = frozenset(trace.world), frozenset(trace.about)
+        key = trace.step_s, trace.ends, trace.told, names
+        groups.setdefault(key, []).append(place)
+    for places in groups.values():
+        together = [traces[place] for place in places]
+        try:
+            verdicts = _StackedRun(together, rulebook).verdicts()
+        except (UnencodableError, RulecError):
+            verdicts = list(verify_chunk([trace.trace() for trace in together], rulebook))
+        for place, verdict in zip(places, verdicts, strict=True):
+            answers[place] = verdict
+    return [answer for answer in answers if answer is not None]
+
+
+class _StackedRun:
+    """The judgement of traces that say the same names. Raises RulecError, UnencodableError."""
+
+    def __init__(self, traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> None:
+        example = traces[0]
+        self._traces = traces
+        self._whole_rulebook = rulebook
+        self._rulebook = rules = rulebook_for_step(example.step_s, rulebook)
+        for rule in rules.rules:
+            check_step(rule, exact_step(example.step_s))
+        check_told(example.told, rules.vocabulary)
+        for trace in traces:
+            check_objects(trace.objects, rules.vocabulary)
+        if rules.axioms:
+            raise UnencodableError  # what facts say of values is looked up state by state
+        self._judged = judged_rules(rules, example.told, cut=example.ends == "cut")
+        self._stack = Stack(traces, self._judged.vocabulary)
+        self._reader = StackReader(self._stack)
+        self._reasons = StackedReasons(self._reader)
+        self._closely = [_CloseLook(trace, rules) for trace in traces]
+        self._found: list[list[_Placed]] = [[] for _ in traces]
+        self._odd: set[int] = set()
+
+    def verdicts(self) -> list[Answer]:
+        """The answers."""
+        key = self._traces[0].told, self._traces[0].ends
+        known: dict[object, list[StackedRule]] = self._rulebook.prepared.setdefault(StackedRule, {})
+        if key not in known:
+            known[key] = [
+                StackedRule(rule, machine, self._rulebook, self._judged.vocabulary)
+                for rule, machine in self._judged.machines
+            ]
+        for number, rule in enumerate(known[key]):
+            if rule.is_simple and all(map(self._stack.can_tell, rule.names)):
+                rule.forget_many()
+                for outcome in outcomes(rule, self._reader, self._rulebook):
+                    self._add(number, outcome)
+            else:
+                self._add_closely(number, rule)
+        self._odd |= self._stack.odd_traces()
+        return [
+            verify_or_reason(trace.trace(), self._whole_rulebook)
+            if number in self._odd
+            else self._verdict(number)
+            for number, trace in enumerate(self._traces)
+        ]
+
+    def _add(self, rule_number: int, outcome: StackedOutcome) -> None:
+        words, place, stack = outcome.words, outcome.place, self._stack
+        number = int(words.instances.traces[place])
+        chosen = tuple([int(own[place]) for own in words.instances.objects])
+        rule = words.rule.rule
+        names = [stack.names[item] for item in chosen]
+        binding = dict(zip(words.rule.variables, names, strict=True))
+        found: Found | None
+        if outcome.answer is None:
+            try:
+                found = self._closely[number].answer(rule.name, binding)
+            except RulecError:
+                self._odd.add(number)
+                return
+        elif outcome.answer.best == VIOLATED:
+            step = outcome.answer.step
+            if step is not None:
+                step += int(words.instances.firsts[place] - stack.begins[number])
+            found = Violation(rule.name, rule.strength, binding, step)
+        else:
+            why = partial(self._why, number, words, place)
+            found = OpenVerdict.explained_later(rule.name, rule.strength, binding, why)
+        if found is not None:
+            self._found[number].append(((rule_number, *chosen), found))
+
+    def _why(self, number: int, words: StackedWords, place: int) -> OpenReasons:
+        found = self._reasons.of(words, place)
+        if found is not None:
+            return found
+        items = [self._stack.names[int(own[place])] for own in words.instances.objects]
+        binding = dict(zip(words.rule.variables, items, strict=True))
+        return self._closely[number].reasons(words.rule.rule.name, binding)
+
+    def _add_closely(self, rule_number: int, rule: StackedRule) -> None:
+        for number, close in enumerate(self._closely):
+            try:
+                answers = close.answers(rule.rule.name)
+            except RulecError:
+                self._odd.add(number)
+                continue
+            self._found[number] += [
+                ((rule_number, place), found) for place, found in enumerate(answers)
+            ]
+
+    def _verdict(self, number: int) -> Verdict:
+        found = [result for _, result in sorted(self._found[number], key=itemgetter(0))]
+        trace, judged = self._traces[number], self._judged
+        violations = tuple([result for result in found if isinstance(result, Violation)])
+        if trace.ends == "complete" and trace.told is None and not trace.is_partial:
+            return Verdict(trace.id, violations)
+        doubtful = tuple([result for result in found if isinstance(result, OpenVerdict)])
+        presumed = tuple([name for name in judged.presumed if not trace.says(name)])
+        return Verdict(trace.id, violations, doubtful, judged.not_judged, presumed)
+
+
+class _CloseLook:
+    """Verdicts on single rules of one trace, by its states."""
+
+    def __init__(self, trace: TraceArrays, rulebook: CompiledRulebook) -> None:
+        self._trace = trace
+        self._rulebook = rulebook
+
+    @cached_property
+    def _run(self) -> UncertainRun:
+        vocabulary = self._rulebook.vocabulary
+        trace = with_constants(spelled_out(self._trace.trace(), vocabulary), vocabulary)
+        return UncertainRun(trace, self._rulebook)
+
+    def answer(self, rule: str, binding: Mapping[str, str]) -> Found | None:
+        return self._run.answer(rule, binding)
+
+    def answers(self, rule: str) -> list[Found]:
+        return list(self._run.answers(rule))
+
+    def reasons(self, rule: str, binding: Mapping[str, str]) -> OpenReasons:
+        return self._run.reasons(rule, binding)

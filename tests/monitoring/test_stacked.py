@@ -1,0 +1,171 @@
+"""Traces in arrays, judged together whatever their objects, get the verdicts of each."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import Phase, given, settings
+
+import rulec
+from rulec.logic.free_names import names_in
+from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
+from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.monitoring.verify import verify_or_reason
+from rulec.trace import Trace
+from rulec.trace.trace_arrays import TraceArrays
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from support.builders.array_traces import CannotSayError, in_arrays
+from support.builders.rulebooks import compile_here
+from support.generators.blurred_traces import blurred
+from support.generators.constant_values import steady, with_some_constant, with_unknown_constants
+from support.generators.random_rulebooks import rulebook
+from support.generators.random_traces import traces
+from support.generators.seeds import seeds
+
+
+def without_pairs(trace, vocabulary):
+    """No array says anything of two objects."""
+    names = {name for name, own in vocabulary.declarations.items() if len(own.parameters) < 2}
+    states = [{x: value for x, value in state.items() if x in names} for state in trace.states]
+    return replace(trace, states=tuple(states))
+
+
+def seen(chance, trace, names):
+    """Perhaps cut out of something longer, perhaps from a source that cannot tell all."""
+    told = None
+    if chance.random() < 0.5:
+        said = set().union(*trace.states)
+        told = frozenset(x for x in names if x in said or chance.random() < 0.5)
+    return replace(trace, ends="cut" if chance.random() < 0.3 else "complete", told=told)
+
+
+def in_plain_words(answer):
+    return str(answer.error) if isinstance(answer, NotJudged) else answer
+
+
+@given(seeds)
+@settings(phases=[Phase.generate], max_examples=settings().max_examples // 2)
+def test_together_they_get_the_verdicts_of_each(chance):
+    book = replace(with_some_constant(chance, rulebook(chance, Fraction(1))), axioms=())
+    compiled, constants = compile_here(book, Fraction(1)), book.vocabulary.constants
+    names = {name for rule in book.rules for name in names_in(rule.formula)}
+    arrays = []
+    for whole in traces(chance, Fraction(1))[:5]:
+        plain = without_pairs(whole, book.vocabulary)
+        dark = blurred(chance, plain, names - set(constants), most=12)
+        dark = with_unknown_constants(chance, steady(dark, constants), constants)
+        own = seen(chance, without_pairs(dark, book.vocabulary), book.vocabulary.declarations)
+        try:
+            arrays.append(in_arrays(own, book.vocabulary))
+        except CannotSayError:
+            continue
+    expected = [in_plain_words(verify_or_reason(own.trace(), compiled)) for own in arrays]
+    assert [in_plain_words(answer) for answer in verify_arrays(arrays, compiled)] == expected
+
+
+def test_arrays_say_what_the_states_say():
+    book = rulec.compile(rulec.parse_rulebook(BOOK))
+    states = (
+        {"speed": Interval(1, 2), "light": "red"},
+        {"speed": 3.0, "light": UNKNOWN, "parked": {"a": True, "b": UNKNOWN}},
+        {"speed": UNKNOWN, "parked": {"a": False}, "far": {"a": 1.5}},
+    )
+    trace = Trace("t", 0.5, {"a": "car", "b": "car"}, states, {"b": (0, 1)}, ends="cut")
+    assert in_arrays(trace, book.vocabulary).trace() == trace
+
+
+BOOK = """\
+rulebook many
+type car
+signal clear default true
+light is one of red, green default green
+quantity speed in m/s default 0
+quantity far(c: car) in m default 0
+quantity limit in m/s default 10
+quantity reach in m default 10
+signal parked(c: car) default false
+signal ahead(c: car) default false
+hard rule slow { require always (speed <= limit) }
+hard rule between (c: car) { require always (far(c) - reach <= 3 m or clear) }
+hard rule one_parked { require always (count c: car (parked(c)) <= 1) }
+hard rule other_parked (v: car) { require always not some c: car (c = v and parked(c)) }
+hard rule in_turn (v: car, w: car) { require always (parked(v) implies not ahead(w)) }
+hard rule once_only (v: car) { require always (ahead(v) implies next always not ahead(v)) }
+"""
+"""What is read: the world, one object, both, two of them, whom a rule is about, and others."""
+
+FOUR = {"a": "car", "b": "car", "c": "car", "d": "car"}
+
+
+def found(answer):
+    assert isinstance(answer, Verdict)
+    of_violations = [(one.rule, *one.binding.values(), one.step) for one in answer.violations]
+    return of_violations, [(one.rule, *one.binding.values()) for one in answer.open]
+
+
+@pytest.mark.parametrize(
+    ("state", "violated", "undecided"),
+    [
+        ({"speed": 10}, [], []),
+        ({"speed": Interval(10.01, 12)}, [("slow", 1)], []),
+        ({"speed": UNKNOWN}, [], [("slow",)]),
+        ({"clear": False, "far": {"b": 13.0, "c": 13.01}}, [("between", "c", 1)], []),
+        ({"clear": UNKNOWN, "far": {"c": 13.01}}, [], [("between", "c")]),
+        (
+            {"parked": {"a": True, "c": True}},
+            [("one_parked", 1), ("other_parked", "a", 1), ("other_parked", "c", 1)],
+            [],
+        ),
+        ({"ahead": {"a": True, "b": True}}, [], []),
+        (
+            {"parked": {"b": True}, "ahead": {"a": True, "b": True}},
+            [("other_parked", "b", 1), ("in_turn", "b", "a", 1)],
+            [],
+        ),
+        (
+            {"parked": {"b": UNKNOWN}, "ahead": {"c": True}},
+            [],
+            [("other_parked", "b"), ("in_turn", "b", "c")],
+        ),
+    ],
+)
+def test_one_state_of_four_cars(state, violated, undecided):
+    compiled = rulec.compile(rulec.parse_rulebook(BOOK))
+    own = in_arrays(Trace("own", 1.0, FOUR, ({}, state, {})), compiled.vocabulary)
+    calm = in_arrays(Trace("calm", 1.0, {"z": "car"}, ({}, {}, {})), compiled.vocabulary)
+    assert [found(x) for x in verify_arrays([calm, own, calm], compiled)] == [
+        ([], []),
+        (violated, undecided),
+        ([], []),
+    ]
+
+
+def test_objects_that_never_meet_are_no_pair():
+    compiled = rulec.compile(rulec.parse_rulebook(BOOK))
+    states = ({"parked": {"a": True}}, {"ahead": {"b": True}}, {})
+    apart = Trace("apart", 1.0, {"a": "car", "b": "car"}, states, {"a": (0, 0), "b": (1, 2)})
+    (answer,) = verify_arrays([in_arrays(apart, compiled.vocabulary)], compiled)
+    assert found(answer) == ([("other_parked", "a", 0)], [])
+
+
+def test_a_state_counts_from_the_beginning_of_the_trace():
+    compiled = rulec.compile(rulec.parse_rulebook(BOOK))
+    states = ({}, {}, {"ahead": {"b": True}}, {}, {"ahead": {"b": True}}, {})
+    late = Trace("late", 1.0, {"a": "car", "b": "car"}, states, {"b": (1, 5)})
+    answers = verify_arrays([in_arrays(late, compiled.vocabulary)] * 2, compiled)
+    assert [found(answer) for answer in answers] == [([("once_only", "b", 4)], [])] * 2
+
+
+@pytest.mark.parametrize(
+    ("arrays", "message"),
+    [
+        ({"world": {"fast": np.array([True])}}, "`fast`, which vocabulary `many`"),
+        ({"objects": {"a": "bus"}, "spans": np.array([[0, 0]])}, "type `bus`"),
+    ],
+)
+def test_what_is_odd_is_refused_as_states_are(arrays, message):
+    compiled = rulec.compile(rulec.parse_rulebook(BOOK))
+    (answer,) = verify_arrays([TraceArrays("odd", 1.0, 1, **arrays)], compiled)
+    assert isinstance(answer, NotJudged)
+    assert message in str(answer.error)
