@@ -39,8 +39,7 @@ from rulec.extraction.signals.participant_signals import (
     participant_signals,
 )
 from rulec.extraction.signals.settling import settled
-from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import Wanted
+from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, together
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
@@ -57,26 +56,31 @@ def presences(context: DriveContext) -> Iterator[Presence]:
 
     Those in which a participant is not beside the road never are: its extents are not known then.
     """
+    taken, numbers = {body.id for body in context.tracks.participants}, dict[str, int]()
+    for row, first, last in _presences(context):
+        own = context.tracks.participants[row].id
+        numbers[own] = numbers.get(own, 0) + 1
+        name = own
+        if numbers[own] > 1:
+            name = next(free for k in count(2) if (free := f"{own}_{k}") not in taken)
+            taken.add(name)
+        yield Presence(name, row, first, last)
+
+
+def _presences(context: DriveContext) -> Iterator[tuple[int, int, int]]:
+    """The row, first and last column of each presence.
+
+    Who is in sight only, too far away to count, is none.
+    """
     longest = round(context.thresholds.away_s / context.recording.step_s)
-    participants = context.tracks.participants
-    taken = {body.id for body in participants}
-    unknown = np.cumsum(np.isnan(context.extents.s), axis=1)
-    for row, body in enumerate(participants):
-        columns = np.flatnonzero(context.relevant[row])
-        gone = unknown[row]
-        breaks = [
-            k
-            for k in range(1, len(columns))
-            if columns[k] - columns[k - 1] > longest + 1 or gone[columns[k]] > gone[columns[k - 1]]
-        ]
-        # Who is in sight only, too far away to count, is no object
-        parts = np.split(columns, breaks) if len(columns) else []
-        for number, part in enumerate(parts, 1):
-            name = body.id
-            if number > 1:
-                name = next(free for k in count(2) if (free := f"{body.id}_{k}") not in taken)
-                taken.add(name)
-            yield Presence(name, row, int(part[0]), int(part[-1]))
+    rows, columns = np.nonzero(context.relevant)
+    unknown = np.cumsum(np.isnan(context.extents.s), axis=1)[rows, columns]
+    parted = (np.diff(rows) > 0) | (np.diff(columns) > longest + 1) | (np.diff(unknown) > 0)
+    if len(rows):
+        begins, ends = np.append(True, parted), np.append(parted, True)
+        yield from zip(
+            rows[begins].tolist(), columns[begins].tolist(), columns[ends].tolist(), strict=True
+        )
 
 
 _SIGNALS: tuple[Callable[[DriveContext, Wanted], SignalColumns], ...] = (
@@ -198,9 +202,8 @@ ALL_SIGNALS = TraceWriter()
 
 def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) -> Drive:
     """The drive of ``ego`` as a trace called ``name``."""
-    signals, wanted = SignalColumns(), _wanted(writer)
-    for signals_of in _SIGNALS:
-        signals |= signals_of(context, wanted)
+    wanted = _wanted(writer)
+    signals = together([signals_of(context, wanted) for signals_of in _SIGNALS])
     signals = settled(signals, LEAST_S, context.recording.step_s)
     types = [body.object_types for body in context.tracks.participants]
     chosen = written(signals, types, writer.vocabulary, writer.names)

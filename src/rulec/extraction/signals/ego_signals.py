@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
-from rulec.extraction.signals.signal_columns import SignalColumns, named_values, rounded
-from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
-from rulec.extraction.tracks.tracks import Floats
+from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, named_values, rounded
+from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.tracks import Flags, Floats
 
 _EGO_TYPES = {
     "truck": "ego_truck",
@@ -24,6 +24,7 @@ _EGO_TYPES = {
 }
 _LANES = ("kerb_lane", "middle_lane", "far_lane")
 _COUNTS = ("one_lane", "two_lanes", "three_or_more_lanes")
+_HAIR_M = 0.001
 _PLACES = ("centred", "at_near_edge", "at_far_edge")
 
 
@@ -104,19 +105,31 @@ def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
 def _straddling(context: DriveContext) -> SignalColumns:
     """Whether ego is in two lanes; unknown where places, or the map, decide it."""
     place, offset = context.tolerances.place_m, context.map_offset_m
-    shifts = [0.0 * offset, offset] if offset.any() else [0.0 * offset]
+    states = np.flatnonzero(_near_a_bound(context))
+    shifts = [np.zeros(len(states)), *([offset[states]] if offset.any() else [])]
     tried = [(0.0, shifts[0]), *product((place, -place), shifts)]
+    # Numbers of tries are the first axis
     by = -np.stack([shift for _, shift in tried])[..., None]
-    own, least = context.ego_extents, context.thresholds.touching_m
-    bounds = {"left_of_min": own.left_of_min + by, "left_of_max": own.left_of_max + by}
-    inside = (
-        replace(own, **bounds).inside > np.array([least + less for less, _ in tried])[:, None, None]
-    )
-    both = (inside & context.existing_lanes).sum(axis=-1) > 1
-    return SignalColumns(
-        {"straddling": both[0]},
-        unknown={"straddling": both.any(axis=0) & ~both.all(axis=0)},
-    )
+    own = context.ego_extents
+    bounds = {
+        "left_of_min": own.left_of_min[0, states] + by,
+        "left_of_max": own.left_of_max[0, states] + by,
+    }
+    least = context.thresholds.touching_m + np.array([less for less, _ in tried])
+    inside = replace(own, **bounds).inside > least[:, None, None]
+    both = (inside & context.existing_lanes[states]).sum(axis=-1) > 1
+    straddling, unknown = np.zeros((2, context.states), dtype=bool)
+    straddling[states], unknown[states] = both[0], both.any(axis=0) & ~both.all(axis=0)
+    return SignalColumns({"straddling": straddling}, unknown={"straddling": unknown})
+
+
+def _near_a_bound(context: DriveContext) -> Flags:
+    """Flags of states in which ego may be in two lanes, places and the map being as they are."""
+    own, loose = context.ego_extents, context.tolerances.place_m + np.abs(context.map_offset_m)
+    across = np.minimum(-own.left_of_min[0], own.left_of_max[0])
+    least = context.thresholds.touching_m - loose - _HAIR_M
+    near: Flags = (across > least[:, None]).any(axis=1)
+    return near
 
 
 def room_beside(context: DriveContext) -> tuple[Floats, Floats]:

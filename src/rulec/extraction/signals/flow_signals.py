@@ -23,8 +23,8 @@ from rulec.extraction.signals.queues import (
     queues_by_lane,
     vehicles_around,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns, next_state
-from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, next_state
+from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 _SETS_OFF_MPS2 = 2.0

@@ -17,11 +17,12 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
+    Wanted,
     latest,
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
+from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 

@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumns, latest, next_state
+from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, latest, next_state
 from rulec.extraction.signals.signal_passes import (
     Passes,
-    Wanted,
     once_a_recording,
     signals_by,
 )
@@ -105,20 +104,11 @@ def _lamps(context: DriveContext) -> Mapping[Lamp, tuple[Flags, Flags]]:
     return flags
 
 
-@once_a_recording
-def _row_of(context: DriveContext) -> Mapping[str, int]:
-    """The rows of participants in the tracks of the whole recording."""
-    participants = context.surroundings.tracks.participants
-    return {body.id: row for row, body in enumerate(participants)}
-
-
 @once
 def _own_part(context: DriveContext) -> tuple[NDArray[intp], ...]:
     """The drive's rows and columns in arrays of the whole recording."""
-    row_of = _row_of(context)
-    rows = [row_of[body.id] for body in context.tracks.participants]
     begins = context.first_step - context.surroundings.tracks.first
-    return np.ix_(np.array(rows, dtype=int), np.arange(begins, begins + context.states))
+    return np.ix_(context.tracks.rows, np.arange(begins, begins + context.states))
 
 
 def _lit(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:

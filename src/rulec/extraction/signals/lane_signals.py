@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.signal_columns import SignalColumns, named_values
-from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, named_values
+from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark
 
@@ -156,30 +156,73 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     Unknown where places, or the map, decide it, or marks are not told.
     """
     place, offsets = context.tolerances.place_m, context.map_offset_m
-    judged, unmoved = _JudgedLines(context, {}), np.zeros(context.states)
-    low, high = context.ego_extents.left_of_min[0], context.ego_extents.left_of_max[0]
-    found = judged.on(np.arange(context.states), low, high, 0.0, unmoved)
+    unmoved, low, high = (
+        np.zeros(context.states),
+        context.ego_extents.left_of_min[0],
+        context.ego_extents.left_of_max[0],
+    )
+    found = _under(context, _across(context, low, high, (0.0, unmoved)), slice(None))
     not_told = ~found[:, 0] & found[:, -1]
     near = _near_a_line(context, place + np.abs(offsets))
     shifts = [unmoved, offsets] if offsets.any() else [unmoved]
     others = list(product((place, -place), shifts))
-    tried = [(low, high, np.flatnonzero(near), *other) for other in others]
+    tried = [(near, _across(context, low, high, other)) for other in others]
     # Where places are known so badly, a body's direction is that of its slow or slipping track
     if place >= context.thresholds.touching_m:
-        states = np.flatnonzero(near | found[:, 0])
-        half = np.zeros((context.states, 1))
-        half[states, 0] = _widths(context, states) / 2
-        middle = context.ego_extents.left_of[0]
+        middle, half = context.ego_extents.left_of[0], _own_widths(context)[:, None] / 2
         tried += [
-            (middle - half, middle + half, states, *other) for other in [(0.0, unmoved), *others]
+            (near | found[:, 0], _across(context, middle - half, middle + half, other))
+            for other in [(0.0, unmoved), *others]
         ]
-    for begins, ends, states, more, shift in tried:
-        other = judged.on(states, begins, ends, more, shift)
+    for where, crossed in tried:
+        states = np.flatnonzero(where)
+        other = _under(context, crossed[states], states)
         not_told[states] |= (other[:, :-1] != found[states, :-1]).any(axis=1)
     names = ("on_solid_line", "broken_on_own_side", "single_line")
     return SignalColumns(
         dict(zip(names, found.T, strict=False)), unknown=dict.fromkeys(names, not_told)
     )
+
+
+def _across(context: DriveContext, low: Floats, high: Floats, other: tuple[float, Floats]) -> Flags:
+    """Flags of the lines that a body lies across, by state: line ``k`` lies right of lane ``k``.
+
+    ``low`` and ``high`` say how far (m) left of each line it begins and ends. The ``other`` numbers
+    are how much more (m) of it has to be beyond a line, and by state how much farther right it is.
+    """
+    more, right = other
+    across = np.minimum(right[:, None] - low, high - right[:, None])
+    crossed: Flags = across > context.thresholds.touching_m + more
+    return crossed
+
+
+def _under(context: DriveContext, crossed: Flags, states: NDArray[intp] | slice) -> Flags:
+    """What ``_solid_lines`` says of the lines crossed in these states, and are marks not told?
+
+    A row of flags each.
+    """
+    number, lane = _marked_rows(context).number[states], context.steady_lane[states]
+    bits = crossed @ (1 << np.arange(crossed.shape[1]))
+    found = np.zeros((len(crossed), 4), dtype=bool)
+    somewhere = np.flatnonzero(bits)
+    keys = np.stack((number, lane, bits), axis=1)[somewhere].tolist()
+    judged = {key: _judged(context, *key) for key in set(map(tuple, keys))}
+    found[somewhere] = np.array([judged[tuple(key)] for key in keys], dtype=bool).reshape(-1, 4)
+    return found
+
+
+def _judged(
+    context: DriveContext, number: int, lane: int, bits: int
+) -> tuple[bool, bool, bool, bool]:
+    """The same of a row of lanelets, with ego in a lane of it; bit ``k`` is for line ``k``."""
+    row = _marked_rows(context).rows[number]
+    marks = [
+        # Those at ego's side first
+        _turned(_between(*pair)) if lane >= line else _between(*pair)
+        for line, pair in enumerate(pairwise([None, *row, None]))
+        if bits >> line & 1
+    ]
+    return *_solid_lines(marks), any(not any(pair) for pair in marks)
 
 
 def _between(right: Lanelet | None, left: Lanelet | None) -> _Marks:
@@ -205,62 +248,27 @@ def _near_a_line(context: DriveContext, margin_m: Floats) -> Flags:
     return near
 
 
-def _widths(context: DriveContext, states: NDArray[intp]) -> Floats:
-    """The widths (m) of ego's body in these states."""
-    (ego,), headings = context.ego.participants, context.ego.heading[0]
-    widths = [
-        np.ptp(ego.outlines[context.first_step + state] @ (-np.sin(way), np.cos(way)))
-        for state, way in zip(states.tolist(), headings[states].tolist(), strict=True)
-    ]
-    return np.array(widths, dtype=float)
+def _own_widths(context: DriveContext) -> Floats:
+    """The width (m) of ego's body by state."""
+    begins = context.first_step - context.surroundings.tracks.first
+    own: Floats = _widths(context)[context.ego.rows[0], begins : begins + context.states]
+    return own
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _JudgedLines:
-    """What marks of lines mean that a body lies across; ``known``: of which it is known already.
-
-    Line ``k`` lies right of lane ``k``.
-    """
-
-    context: DriveContext
-    known: dict[tuple[int, int, tuple[bool, ...]], tuple[bool, bool, bool, bool]]
-
-    def on(
-        self, states: NDArray[intp], low: Floats, high: Floats, more_m: float, right_m: Floats
-    ) -> Flags:
-        """Flags in some states (a row each) of what ``_solid_lines`` says, and of marks not told.
-
-        ``low`` and ``high`` say how far (m) left of each line, by state, the body begins and ends.
-        By so much more it has to lie across one, and in each state it is so much farther right.
-        """
-        low, high, right = low[states], high[states], right_m[states, None]
-        crossed = np.minimum(right - low, high - right) > self._touching_m + more_m
-        found = np.zeros((len(states), 4), dtype=bool)
-        number, lane = _marked_rows(self.context).number, self.context.steady_lane
-        for at in np.flatnonzero(crossed.any(axis=1)).tolist():
-            state = int(states[at])
-            key = int(number[state]), int(lane[state]), tuple(crossed[at].tolist())
-            if key not in self.known:
-                self.known[key] = self._judged(*key)
-            found[at] = self.known[key]
-        return found
-
-    @property
-    def _touching_m(self) -> float:
-        return self.context.thresholds.touching_m
-
-    def _judged(
-        self, number: int, lane: int, crossed: tuple[bool, ...]
-    ) -> tuple[bool, bool, bool, bool]:
-        row = _marked_rows(self.context).rows[number]
-        lines = zip(pairwise([None, *row, None]), crossed, strict=True)
-        marks = [
-            # Those at ego's side first
-            _turned(_between(*pair)) if lane >= line else _between(*pair)
-            for line, (pair, is_crossed) in enumerate(lines)
-            if is_crossed
-        ]
-        return *_solid_lines(marks), any(not any(pair) for pair in marks)
+@once_a_recording
+def _widths(context: DriveContext) -> Floats:
+    """The widths (m) of bodies across their headings, of the whole recording; 0 where unknown."""
+    tracks = context.surroundings.tracks
+    bodies, widths = tracks.bodies, np.zeros(tracks.present.shape)
+    outlines, way = bodies.outlines, tracks.heading[bodies.rows, bodies.columns]
+    x, y = outlines.corners.T
+    sin, cos = (np.repeat(values, outlines.counts) for values in (np.sin(way), np.cos(way)))
+    across = y * cos - x * sin
+    most, least = (
+        extreme.reduceat(across, outlines.starts) for extreme in (np.maximum, np.minimum)
+    )
+    widths[bodies.rows, bodies.columns] = most - least
+    return widths
 
 
 _NONE = SignalColumns()

@@ -18,12 +18,13 @@ from rulec.extraction.signals.measured_numbers import (
 )
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
+    Wanted,
     latest,
     named_values,
     next_state,
     rounded,
 )
-from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
+from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.partition.cells.regions import LATERALS, STATIONS
 

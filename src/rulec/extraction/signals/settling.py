@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
 from math import ceil
 
 import numpy as np
@@ -21,22 +20,46 @@ def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float)
     Such a value between two equal ones becomes theirs, and no better known than they. At the ends
     of a recording nobody knows it: it may be noise or last.
     """
-    own = {name: ceil(seconds / step_s - _HAIR) for name, seconds in least_s.items()}
+    least = {name: ceil(seconds / step_s - _HAIR) for name, seconds in least_s.items()}
+    unknown = dict(signals.unknown)
     world, about = (
-        {name: without_blips(column, own.get(name, 1)) for name, column in columns.items()}
+        {**columns, **_changed(columns, least, unknown)}
         for columns in (signals.world, signals.about)
     )
-    unknown = dict(signals.unknown)
-    for name, flags in unknown.items():
-        before = signals.world[name] if name in signals.world else signals.about[name]
-        after = world[name] if name in world else about[name]
-        unknown[name] = flags | _next_to((before != after) & ~flags, flags)
-    for columns in (world, about):
-        for name in own.keys() & columns.keys():
-            brief = _brief_at_ends(columns[name], own[name])
-            if brief.any():
-                unknown[name] = unknown.get(name, False) | brief
     return replace(signals, world=world, about=about, unknown=unknown)
+
+
+def _changed(
+    columns: Mapping[str, SignalColumn], least: Mapping[str, int], unknown: dict[str, Flags]
+) -> dict[str, SignalColumn]:
+    """The columns that change by being settled, each as it is then.
+
+    What is not known of them, or of others, is added to ``unknown``.
+    """
+    changed: dict[str, SignalColumn] = {}
+    for names in _alike(columns, least):
+        before = np.stack([columns[name] for name in names])
+        after = without_blips(before, least[names[0]])
+        brief = _brief_at_ends(after, least[names[0]])
+        for number, name in enumerate(names):
+            if after is not before and (blips := after[number] != before[number]).any():
+                changed[name] = after[number]
+                if (flags := unknown.get(name)) is not None:
+                    unknown[name] = flags | _next_to(blips & ~flags, flags)
+            if brief[number].any():
+                unknown[name] = brief[number] | unknown.get(name, False)
+    return changed
+
+
+def _alike(
+    columns: Mapping[str, SignalColumn], least: Mapping[str, int]
+) -> Iterable[Sequence[str]]:
+    """The names of columns with a least number of states, those of one kind and number together."""
+    groups: dict[object, list[str]] = {}
+    for name, column in columns.items():
+        if least.get(name, 1) > 1 and column.size:
+            groups.setdefault((column.dtype, least[name]), []).append(name)
+    return groups.values()
 
 
 def _next_to(changed: Flags, flags: Flags) -> Flags:
@@ -55,29 +78,33 @@ def _next_to(changed: Flags, flags: Flags) -> Flags:
 
 def _brief_at_ends(column: SignalColumn, least: int) -> Flags:
     """Flags of the values that a column, or rows, begins or ends with for fewer states."""
-    states = column.shape[-1]
-    brief = np.zeros(column.shape, dtype=bool)
-    for length in range(1, min(least, states)):
-        brief[..., :length] |= (column[..., length - 1] != column[..., length])[..., None]
-        brief[..., -length:] |= (column[..., -length] != column[..., -length - 1])[..., None]
+    brief, most = np.zeros(column.shape, dtype=bool), min(least, column.shape[-1]) - 1
+    if most > 0:
+        begins = column[..., :most] != column[..., 1 : most + 1]
+        ends = column[..., -most:] != column[..., -most - 1 : -1]
+        either = np.logical_or.accumulate
+        brief[..., :most] |= either(begins[..., ::-1], axis=-1)[..., ::-1]
+        brief[..., -most:] |= either(ends, axis=-1)
     return brief
 
 
 def without_blips(column: SignalColumn, least: int) -> SignalColumn:
     """A column, or rows of them, without values that last for fewer states than ``least``.
 
-    Only between equal neighbours, from the first on: flicker becomes what it began with.
+    Only between equal neighbours, from the first on: flicker becomes what it began with. Where
+    there are none it is the column itself.
     """
-    if least <= 1 or not column.size:
+    states = column.shape[-1]
+    rows = column.reshape(-1, states)
+    begins = np.ones(rows.shape, dtype=bool)
+    begins[:, 1:] = rows[:, 1:] != rows[:, :-1]
+    starts = np.append(np.flatnonzero(begins), rows.size)
+    between = (starts[:-1] % states > 0) & (starts[1:] % states > 0)
+    brief = np.flatnonzero(between & (np.diff(starts) < least))
+    if not len(brief):
         return column
-    rows = column.reshape(-1, column.shape[-1])
-    changes = np.ones(rows.shape, dtype=bool)
-    changes[:, 1:] = rows[:, 1:] != rows[:, :-1]
-    short = np.flatnonzero((changes.sum(axis=1) > 2) & (rows.shape[1] > 2))
-    found = np.array(rows)
-    for row in short.tolist():
-        starts = [*np.flatnonzero(changes[row]).tolist(), rows.shape[1]]
-        for start, end in pairwise(starts[1:-1]):
-            if end - start < least and found[row, start - 1] == rows[row, end]:
-                found[row, start:end] = found[row, start - 1]
+    given, found = rows.ravel(), np.array(rows).ravel()
+    for start, end in zip(starts[brief].tolist(), starts[brief + 1].tolist(), strict=True):
+        if found[start - 1] == given[end]:
+            found[start:end] = found[start - 1]
     return found.reshape(column.shape)

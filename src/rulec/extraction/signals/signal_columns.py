@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -14,6 +14,9 @@ from rulec.extraction.tracks.tracks import Flags
 
 SignalColumn = NDArray[Any]
 Bounds: TypeAlias = tuple[SignalColumn, SignalColumn]
+
+Wanted: TypeAlias = frozenset[str] | None
+"""The names of the signals that somebody reads; None for all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +36,21 @@ class SignalColumns:
     bounds: Mapping[str, Bounds] = field(default_factory=dict)
 
     def __or__(self, other: SignalColumns) -> SignalColumns:
-        names = [field.name for field in fields(self)]
-        return SignalColumns(*({**getattr(self, name), **getattr(other, name)} for name in names))
+        return together((self, other))
+
+
+def together(parts: Sequence[SignalColumns], wanted: Wanted = None) -> SignalColumns:
+    """The signals of all these, only those of the names that are wanted."""
+
+    def columns(kind: str) -> dict[str, Any]:
+        return {
+            name: column
+            for part in parts
+            for name, column in getattr(part, kind).items()
+            if wanted is None or name in wanted
+        }
+
+    return SignalColumns(*map(columns, ("world", "about", "unknown", "only", "bounds")))
 
 
 def named_values(codes: SignalColumn, names: Sequence[str]) -> SignalColumn:

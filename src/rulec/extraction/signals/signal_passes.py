@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
 from functools import wraps
-from typing import Any, TypeAlias, TypeVar, cast
+from typing import TypeAlias, TypeVar, cast
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.signal_columns import SignalColumns
-
-Wanted: TypeAlias = frozenset[str] | None
-"""The names of the signals that somebody reads; None for all."""
+from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, together
 
 Passes: TypeAlias = Mapping[tuple[str, ...], Callable[[DriveContext], SignalColumns]]
 """Names -> the function that gives signals of these names, and no others."""
@@ -21,22 +17,12 @@ _Value = TypeVar("_Value")
 
 def signals_by(passes: Passes, context: DriveContext, wanted: Wanted) -> SignalColumns:
     """The wanted signals of a drive, by those passes that give any of them."""
-    signals = SignalColumns()
-    for names, signals_of in passes.items():
-        if wanted is None or not wanted.isdisjoint(names):
-            signals |= signals_of(context)
-    return signals if wanted is None else _only(signals, wanted)
-
-
-def _only(signals: SignalColumns, wanted: frozenset[str]) -> SignalColumns:
-    """The signals of these names."""
-    columns: dict[str, Any] = {
-        field.name: {
-            name: column for name, column in getattr(signals, field.name).items() if name in wanted
-        }
-        for field in fields(signals)
-    }
-    return replace(signals, **columns)
+    parts = [
+        signals_of(context)
+        for names, signals_of in passes.items()
+        if wanted is None or not wanted.isdisjoint(names)
+    ]
+    return together(parts, wanted)
 
 
 def once_a_recording(

@@ -38,6 +38,7 @@ class Surroundings:
     computed: dict[object, object] = field(default_factory=dict)
     _directions: dict[str, Directions] = field(default_factory=dict)
     _rings: dict[Side, frozenset[str]] = field(default_factory=dict)
+    _opposite_m: dict[str, float] = field(default_factory=dict)
 
     @cached_property
     def tolerances(self) -> Tolerances:
@@ -106,30 +107,37 @@ class Surroundings:
 
     def _nearest_opposite(self, lanelet: Lanelet) -> float:
         """The distance (m) from its carriageway to a lane that leads the other way."""
+        if lanelet.id not in self._opposite_m:
+            self._opposite_m[lanelet.id] = self._computed_opposite(lanelet)
+        return self._opposite_m[lanelet.id]
+
+    def _computed_opposite(self, lanelet: Lanelet) -> float:
         lanes, tree = self._lanes
         beside = [
             name
             for left in (True, False)
             for name in lanes_beside(self.recording, lanelet.id, left=left)
         ]
-        row = [lanelet, *(self.recording.lanelets[name] for name in beside)]
         steps = np.hypot(*np.diff(lanelet.centre, axis=0).T)
         longest = int(np.argmax(steps))
         middle = shapely.Point(*((lanelet.centre[longest] + lanelet.centre[longest + 1]) / 2))
-        own = shapely.intersection(
-            shapely.union_all([lanelet_area(x) for x in row]),
-            shapely.buffer(middle, OTHER_CARRIAGEWAY_M),
-        )
         places = np.array([middle])
         heading = float(directions_beside(lanelet, places)[0])
-        nearest = np.inf
+        opposite = []
         for index in tree.query(middle, predicate="dwithin", distance=OTHER_CARRIAGEWAY_M).tolist():
             lane = lanes[index]
             if lane.id != lanelet.id and lane.id not in beside:
                 turned = abs(turn(heading, float(directions_beside(lane, places)[0])))
                 if turned > _AGAINST and _is_beside(lane, middle, heading):
-                    nearest = min(nearest, float(shapely.distance(lanelet_area(lane), own)))
-        return nearest
+                    opposite.append(lanelet_area(lane))
+        if not opposite:
+            return np.inf
+        row = [lanelet, *(self.recording.lanelets[name] for name in beside)]
+        own = shapely.intersection(
+            shapely.union_all([lanelet_area(x) for x in row]),
+            shapely.buffer(middle, OTHER_CARRIAGEWAY_M),
+        )
+        return float(shapely.distance(opposite, own).min())
 
 
 def _is_beside(lane: Lanelet, place: shapely.Point, heading: float) -> bool:

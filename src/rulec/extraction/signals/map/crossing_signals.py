@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import next_crossing
-from rulec.extraction.signals.signal_columns import SignalColumns, latest, named_values
-from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, latest, named_values
+from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane
 from rulec.extraction.tracks.tracks import Flags, Floats
 

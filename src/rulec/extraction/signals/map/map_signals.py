@@ -11,10 +11,11 @@ from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import stop_line
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
+    Wanted,
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
+from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import Passes, Wanted, once_a_road, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns, Wanted
+from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_by
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Lanelet
 

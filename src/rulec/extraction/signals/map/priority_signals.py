@@ -17,8 +17,8 @@ from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.conflicts import SLOWEST_MPS, first_column, in_conflict
 from rulec.extraction.signals.map.oncoming_priority import gives_way_to, turns_far
 from rulec.extraction.signals.map.roundabout_signals import without_junction
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
-from rulec.extraction.signals.signal_passes import Passes, Wanted, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, Wanted
+from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import Junction, approaches, before_joining
 from rulec.extraction.tracks.tracks import Flags

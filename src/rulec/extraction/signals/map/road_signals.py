@@ -11,10 +11,9 @@ import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, Wanted
 from rulec.extraction.signals.signal_passes import (
     Passes,
-    Wanted,
     once_a_recording,
     signals_by,
 )

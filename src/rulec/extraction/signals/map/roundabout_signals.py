@@ -8,8 +8,8 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
-from rulec.extraction.signals.signal_passes import Passes, Wanted, once_a_road, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, Wanted
+from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_by
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.extraction.tracks.tracks import Flags
 

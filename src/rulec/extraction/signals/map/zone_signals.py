@@ -13,10 +13,9 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_signals import room_beside
 from rulec.extraction.signals.map.map_signals import next_crossing
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumns, Wanted
 from rulec.extraction.signals.signal_passes import (
     Passes,
-    Wanted,
     once_a_recording,
     once_a_road,
     signals_by,
