@@ -21,6 +21,9 @@ settings.register_profile(
 )
 settings.load_profile(os.environ.get("RULEC_TEST_PROFILE", "quick"))
 
+# As many processes as there are processors run tests; commands in them start no more.
+os.environ.setdefault("RULEC_JOBS", "1")
+
 
 def pytest_collection_modifyitems(items):
     """Leave what is marked ``long`` to the long profile."""

@@ -9,6 +9,7 @@ import pytest
 
 from rulec.batch import worker_pool
 from rulec.batch.batch_messages import process_lost
+from rulec.batch.jobs import Jobs, available_processors, chosen_jobs
 from rulec.batch.worker_pool import LostTask, in_order
 
 
@@ -31,17 +32,27 @@ def die(number):
     yield "done"
 
 
+def die_once(marker, number):
+    """The middle of three tasks is killed behind its second result, the first time."""
+    yield "begun"
+    yield "half"
+    if number == 1 and not marker.exists():
+        marker.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    yield "done"
+
+
+def process(_):
+    yield os.getpid()
+
+
 def fail(number):
     yield "begun"
     if number == 1:
         raise ValueError("a mistake of the program's")
 
 
-def ignore(_):
-    pass
-
-
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("jobs", [Jobs(1), Jobs(2), Jobs(2, alone_s=60.0)])
 def test_results_are_in_the_order_of_the_tasks(jobs):
     told = []
     found = list(in_order(partial(squares, 3), range(5), jobs, told.append))
@@ -51,17 +62,40 @@ def test_results_are_in_the_order_of_the_tasks(jobs):
 
 def test_more_results_than_may_wait(monkeypatch):
     monkeypatch.setattr(worker_pool, "MOST_WAITING", 2)
-    found = list(in_order(partial(squares, 40), range(4), 3, ignore))
+    found = list(in_order(partial(squares, 40), range(4), Jobs(3)))
     assert found == [(n, n * n + k) for n in range(4) for k in range(40)]
 
 
 def test_tasks_without_results():
-    assert list(in_order(none, range(3), 2, ignore)) == []
-    assert list(in_order(none, [], 2, ignore)) == []
+    assert list(in_order(none, range(3), Jobs(2))) == []
+    assert list(in_order(none, [], Jobs(2))) == []
 
 
-def test_a_process_that_is_killed_loses_its_task_alone():
-    found = list(in_order(die, range(3), 2, ignore))
+def test_small_work_starts_no_process():
+    assert {pid for _, pid in in_order(process, range(3), Jobs(2, alone_s=60.0))} == {os.getpid()}
+    assert {pid for _, pid in in_order(process, range(1), Jobs(2))} == {os.getpid()}
+    assert os.getpid() not in {pid for _, pid in in_order(process, range(2), Jobs(2))}
+
+
+def test_jobs_are_as_many_as_this_process_may_use(monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 2, 5})
+    assert available_processors() == 3
+    assert chosen_jobs(0) == Jobs(3)
+    assert chosen_jobs(7) == Jobs(7)
+    assert chosen_jobs(None).processes == 3
+    assert chosen_jobs(None).alone_s > 0
+
+
+def test_a_task_whose_process_is_killed_is_done_again(tmp_path):
+    lost = []
+    work = partial(die_once, tmp_path / "marker")
+    found = list(in_order(work, range(3), Jobs(2), lost=lambda *about: lost.append(about)))
+    assert found == [(n, word) for n in range(3) for word in ("begun", "half", "done")]
+    assert lost == [(1, signal.SIGKILL)]
+
+
+def test_a_process_that_is_killed_twice_loses_its_task_alone():
+    found = list(in_order(die, range(3), Jobs(2)))
     assert found == [
         (0, "begun"),
         (0, "done"),
@@ -75,7 +109,7 @@ def test_a_process_that_is_killed_loses_its_task_alone():
 def test_a_mistake_is_raised_where_it_belongs():
     found = []
     with pytest.raises(ValueError, match="a mistake of the program's"):
-        found += (one for one in in_order(fail, range(3), 2, ignore))
+        found += (one for one in in_order(fail, range(3), Jobs(2)))
 
 
 def test_no_process_stays_behind_when_the_caller_leaves():
@@ -86,7 +120,7 @@ def test_no_process_stays_behind_when_the_caller_leaves():
             super().__init__(*arguments)
             pools.append(self)
 
-    results = worker_pool.in_order(partial(squares, 3), range(9), 2, ignore)
+    results = worker_pool.in_order(partial(squares, 3), range(9), Jobs(2))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(worker_pool, "_Pool", Noted)
         assert next(results) == (0, 0)

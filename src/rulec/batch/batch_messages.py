@@ -8,17 +8,18 @@ from rulec.diagnostics.code import Code
 PROCESS_LOST = Code(
     "R0708",
     title="a process was stopped before it had judged its file",
-    why="With `-j N` files are judged in several processes. One of them was killed, as a system "
-    "does whose memory is used up. The other files are judged; of this one nothing more is known "
-    "than what was said until then. Judge it alone, or use fewer processes.",
+    why="Files are judged in several processes, as `-j N` says. One of them was killed, as a "
+    "system does whose memory is used up; another one judged the file again, and was killed, too. "
+    "The other files are judged; of this one nothing more is known than what was said until then. "
+    "Use one process, or fewer.",
     kind="circumstance",
 )
 
 
-def process_lost(file: str, signal_number: int | None) -> RulecError:
+def process_lost(file: str, signal_number: int | None, deed: str = "judged") -> RulecError:
     by = "" if signal_number is None else f" by signal {signal_number}"
     return PROCESS_LOST.error(
         SourceLocation(file),
-        f"the process that judged the file was stopped{by}",
-        help="judge it alone, or use fewer processes: perhaps there is too little memory",
+        f"the process that {deed} the file was stopped{by}, and so was another one after it",
+        help="use one process, with `-j 1`: perhaps there is too little memory",
     )

@@ -3,22 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 from rulec.batch.batch_messages import process_lost
+from rulec.batch.jobs import Jobs
 from rulec.batch.recording_judge import JudgeSettings, Piece, judge
 from rulec.batch.worker_pool import LostTask, in_order
+
+LARGE_BYTES = 1_000_000
+"""Files that are that large together take more than a moment."""
 
 
 def judged_files(
     settings: JudgeSettings,
     files: Sequence[str],
-    jobs: int,
+    jobs: Jobs,
     tell: Callable[[int], object],
+    lost: Callable[[str, int | None], object],
 ) -> Iterator[tuple[str, Piece]]:
-    """Each file with each piece of its answer; ``tell`` is told how many files are done."""
-    for file, piece in in_order(partial(judge, settings), files, jobs, tell):
+    """Each file with each piece of its answer.
+
+    ``tell`` is told how many files are done, ``lost`` which one's process was killed, by which
+    signal, so that it is judged again.
+    """
+    if _size(files) >= LARGE_BYTES:
+        jobs = replace(jobs, alone_s=0.0)
+    for file, piece in in_order(partial(judge, settings), files, jobs, tell, lost):
         if isinstance(piece, LostTask):
             yield file, process_lost(settings.labels.get(file, file), piece.signal_number)
         else:
             yield file, piece
+
+
+def _size(files: Sequence[str]) -> int:
+    """Bytes of these files; those of the first thousand tell enough."""
+    return sum(path.stat().st_size for path in map(Path, files[:1000]) if path.is_file())

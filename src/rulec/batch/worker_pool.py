@@ -10,7 +10,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
-from typing import Generic, TypeVar
+from time import monotonic
+from typing import Generic, NoReturn, TypeVar
+
+from rulec.batch.jobs import Jobs
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -26,7 +29,7 @@ _STOP_S = 5.0
 
 @dataclass(frozen=True, slots=True)
 class LostTask:
-    """A task whose process was killed, by a signal for one, before it was done."""
+    """A task whose process was killed, by a signal for one, before it was done, twice."""
 
     signal_number: int | None
 
@@ -42,31 +45,45 @@ class _Done:
     """The end of a task's results."""
 
 
+def ignore(*_: object) -> None:
+    """Tell nobody."""
+
+
 def in_order(
     work: Callable[[Task], Iterator[Result]],
     tasks: Sequence[Task],
-    jobs: int,
-    tell: Callable[[int], object],
+    jobs: Jobs,
+    tell: Callable[[int], object] = ignore,
+    lost: Callable[[Task, int | None], object] = ignore,
 ) -> Iterator[tuple[Task, Result | LostTask]]:
     """Every task with each of its results, in the order of the tasks.
 
-    ``work`` goes to other processes, so it has to be a function of a module, or a partial one. With
-    one job, or one task, it is called here. ``tell`` is told how many tasks are done.
+    ``work`` goes to other processes, so it has to be a function of a module, or a partial one, with
+    the same results whenever it is called. Where one process has to do, or a single task is left,
+    it is called here. ``tell`` is told how many tasks are done. A task whose process is killed is
+    done again by a new one, once; ``lost`` is told of it, with the signal.
     """
-    if min(jobs, len(tasks)) <= 1:
-        for number, task in enumerate(tasks, 1):
-            for result in work(task):
-                yield task, result
-            tell(number)
+    begin = monotonic()
+    here = 0
+    for task in tasks:
+        is_worth_it = jobs.processes > 1 and len(tasks) - here > 1
+        if is_worth_it and monotonic() - begin >= jobs.alone_s:
+            break
+        for result in work(task):
+            yield task, result
+        here += 1
+        tell(here)
+    if here == len(tasks):
         return
-    pool = _Pool(work, tasks, min(jobs, len(tasks)))
+    left = tasks[here:]
+    pool = _Pool(work, left, min(jobs.processes, len(left)), lost)
     try:
-        for number, task in enumerate(tasks):
+        for number, task in enumerate(left):
             for found in pool.results(number):
                 if isinstance(found, _Raised):
                     raise found.error
                 yield task, found
-            tell(number + 1)
+            tell(here + number + 1)
     finally:
         pool.stop()
 
@@ -101,14 +118,23 @@ class _Pool(Generic[Task, Result]):
     """Processes, and the results that are not yet wanted, by the number of their task."""
 
     def __init__(
-        self, work: Callable[[Task], Iterator[Result]], tasks: Sequence[Task], jobs: int
+        self,
+        work: Callable[[Task], Iterator[Result]],
+        tasks: Sequence[Task],
+        jobs: int,
+        lost: Callable[[Task, int | None], object],
     ) -> None:
         self._work = work
         self._tasks = tasks
         self._jobs = jobs
+        self._lost = lost
         self._workers: list[_Worker[Task, Result]] = []
         self._next = 0
+        self._again: deque[int] = deque()
         self._waiting: dict[int, deque[object]] = {}
+        self._received: dict[int, int] = {}
+        self._known: dict[int, int] = {}
+        """Of tasks that are done again, how many of their results have come before."""
 
     def results(self, number: int) -> Iterator[Result | LostTask | _Raised]:
         """The results of a task; those of later ones are kept meanwhile."""
@@ -125,19 +151,20 @@ class _Pool(Generic[Task, Result]):
 
     def stop(self) -> None:
         """End all processes, whatever they are doing."""
-        for worker in self._workers:
-            worker.process.terminate()
-            worker.connection.close()
-        for worker in self._workers:
-            worker.process.join(_STOP_S)
-            if worker.process.exitcode is None:
-                worker.process.kill()
-                worker.process.join()
+        with _without_interrupts():
+            for worker in self._workers:
+                worker.process.terminate()
+                worker.connection.close()
+            for worker in self._workers:
+                worker.process.join(_STOP_S)
+                if worker.process.exitcode is None:
+                    worker.process.kill()
+                    worker.process.join()
 
     def _hand_out(self, wanted: int) -> None:
-        """Give tasks to processes that have none."""
+        """Give tasks to processes that have none, first those that are done again."""
         last = min(len(self._tasks), wanted + self._jobs * TASKS_AHEAD)
-        while self._next < last:
+        while self._again or self._next < last:
             worker = next((one for one in self._workers if one.number is None), None)
             if worker is None:
                 if len(self._workers) == self._jobs:
@@ -145,11 +172,16 @@ class _Pool(Generic[Task, Result]):
                 with _without_interrupts():
                     worker = _Worker(self._work)
                     self._workers.append(worker)
-            worker.number = self._next
-            self._waiting[self._next] = deque()
-            self._next += 1
+            if self._again:
+                number = self._again.popleft()
+            else:
+                number = self._next
+                self._waiting[number] = deque()
+                self._next += 1
+            worker.number = number
+            self._received[number] = 0
             try:
-                worker.connection.send(self._tasks[worker.number])
+                worker.connection.send(self._tasks[number])
             except OSError:
                 self._lose(worker)
 
@@ -169,23 +201,33 @@ class _Pool(Generic[Task, Result]):
             except (EOFError, OSError):
                 self._lose(worker)
                 continue
-            self._waiting[worker.number].append(result)
+            self._received[worker.number] += 1
+            if self._received[worker.number] > self._known.get(worker.number, 0):
+                self._waiting[worker.number].append(result)
             if isinstance(result, _Done):
                 worker.number = None
 
     def _lose(self, worker: _Worker[Task, Result]) -> None:
         """Note that a process is gone; another one takes its place where there is work."""
-        assert worker.number is not None, "it was busy"
+        number = worker.number
+        assert number is not None, "it was busy"
         worker.process.join(_STOP_S)
         code = worker.process.exitcode
         killed = -code if code is not None and code < 0 else None
-        self._waiting[worker.number] += (LostTask(killed), _Done())
         self._workers.remove(worker)
         worker.connection.close()
+        if number in self._known:
+            self._waiting[number] += (LostTask(killed), _Done())
+            return
+        self._known[number] = self._received[number]
+        self._again.append(number)
+        self._lost(self._tasks[number], killed)
 
 
 def _serve(work: Callable[[Task], Iterator[Result]], connection: Connection) -> None:
     """Do tasks until nobody is there to give any."""
+    # What a task has begun, such as processes of its own, is ended with it.
+    signal.signal(signal.SIGTERM, _leave)
     try:
         while True:
             task = connection.recv()
@@ -199,3 +241,7 @@ def _serve(work: Callable[[Task], Iterator[Result]], connection: Connection) -> 
             connection.send(_Done())
     except (EOFError, OSError):
         return
+
+
+def _leave(number: int, _: object) -> NoReturn:
+    raise SystemExit(128 + number)

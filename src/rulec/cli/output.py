@@ -17,7 +17,7 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.files import written_whole
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.findings.finding_formats import render
-from rulec.report.text.console import PAGE_WIDTH, page_width, print_result
+from rulec.report.text.console import PAGE_WIDTH, page_width, print_aside, print_result
 from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
@@ -101,6 +101,12 @@ def line_writer(stream: IO[bytes]) -> Callable[[str], None]:
 def width_of(to: Output) -> int:
     """How wide a text may be, in characters: on a terminal that of its window."""
     return PAGE_WIDTH if to.is_file else page_width()
+
+
+def print_lost(deed: str, what: str, signal_number: int | None) -> None:
+    """Say that the process that, for one, ``judged`` something was stopped, and what follows."""
+    by = "" if signal_number is None else f" by signal {signal_number}"
+    print_aside(f"rulec: the process that {deed} {what} was stopped{by}; another one does it again")
 
 
 def counted(number: int, noun: str) -> str:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from rulec.batch.jobs import Jobs
 from rulec.batch.recording_batch import judged_files
 from rulec.batch.recording_judge import (
     DriveProblem,
@@ -19,6 +20,7 @@ from rulec.batch.recording_judge import (
     in_a_line,
     judge_aloud,
 )
+from rulec.cli.output import print_lost
 from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
 from rulec.recordings.recording_inputs import STANDARD_INPUT
@@ -42,7 +44,7 @@ class RecordingRun:
     complete: bool = True
     open_hard: bool = False
 
-    def files(self, paths: Sequence[str], jobs: int) -> None:
+    def files(self, paths: Sequence[str], jobs: Jobs) -> None:
         """Judge files, with one table for all of them if there are several."""
         with _without_standard_input(paths) as (files, labels):
             self.settings = replace(self.settings, labels=labels)
@@ -63,16 +65,19 @@ class RecordingRun:
             if self.to.wants_findings:
                 self.to.found(not_judged_file(file, error, self.settings.rules.name))
 
-    def _aloud(self, files: Sequence[str], jobs: int) -> Iterator[tuple[str, Piece]]:
+    def _aloud(self, files: Sequence[str], jobs: Jobs) -> Iterator[tuple[str, Piece]]:
         """The pieces of all files, and how far it is."""
         if len(files) > 1:
             with progress(f"judging {len(files):,} files", len(files)) as tell:
-                yield from judged_files(self.settings, files, jobs, tell)
+                yield from judged_files(self.settings, files, jobs, tell, self._lost)
             return
         (file,) = files
         with progress(f"judging {self.settings.labels.get(file, file)}", 1) as tell:
             for piece in judge_aloud(self.settings, file, lambda done, all_: tell(done / all_)):
                 yield file, piece
+
+    def _lost(self, file: str, signal_number: int | None) -> None:
+        print_lost("judged", self.settings.labels.get(file, file), signal_number)
 
     def _take(self, file: str, piece: Piece, *, several: bool) -> None:
         if isinstance(piece, str):

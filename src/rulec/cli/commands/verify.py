@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from rulec.trace.trace_model import Ending
 
     Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
-
-MOST_JOBS = 256
 
 
 @click.command()
@@ -70,15 +68,7 @@ MOST_JOBS = 256
 )
 @scenario_options.drives_options
 @scenario_options.recording_or_trace_options
-@click.option(
-    "-j",
-    "--jobs",
-    type=click.IntRange(0, MOST_JOBS),
-    default=1,
-    show_default=True,
-    metavar="N",
-    help="Judge so many recordings at a time; 0 is as many as there are processors.",
-)
+@shared.jobs_option("Judge so many recordings at a time")
 @output_options(FORMATS, "the answer", multiple=True)
 @shared.at_option
 def command(
@@ -91,7 +81,7 @@ def command(
     to: tuple[Output, ...],
     at: str,
     egos: tuple[str, ...],
-    jobs: int,
+    jobs: Jobs,
     **options: Any,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
@@ -162,7 +152,7 @@ def command(
             for problem in inputs.problems:
                 recorded.not_read(problem)
             if recordings:
-                recorded.files(recordings, jobs or os.cpu_count() or 1)
+                recorded.files(recordings, jobs)
             violated = bool(recorded.total.violated) or (strict and recorded.open_hard)
             judged, complete = recorded.judged, recorded.complete
         if traces:

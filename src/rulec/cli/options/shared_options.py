@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 import click
 
+from rulec.batch.jobs import Jobs, chosen_jobs
 from rulec.cli.options.output_options import endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.report.findings.finding_formats import FORMATS
@@ -17,6 +18,8 @@ from rulec.report.findings.finding_formats import FORMATS
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 RULEBOOK_HELP = "A rulebook: its name, its source (.rules) or a compiled one (.json)."
+
+MOST_JOBS = 256
 
 _SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/(?!0+$)[0-9]{1,9})?")
 
@@ -133,6 +136,24 @@ def steps_option(help_text: str) -> Callable[[Decorated], Decorated]:
 def rules_option(help_text: str) -> Callable[[Decorated], Decorated]:
     """``--rule PATTERN``, any number of them."""
     return click.option("--rule", "patterns", multiple=True, metavar="PATTERN", help=help_text)
+
+
+def _jobs(context: click.Context, parameter: click.Parameter, value: int | None) -> Jobs:
+    return chosen_jobs(value)
+
+
+def jobs_option(what: str) -> Callable[[Decorated], Decorated]:
+    """``-j N``, from which Jobs are made."""
+    return click.option(
+        "-j",
+        "--jobs",
+        type=click.IntRange(0, MOST_JOBS),
+        callback=_jobs,
+        envvar="RULEC_JOBS",
+        metavar="N",
+        help=f"{what}, in processes of their own; 0 is as many as there are processors.  "
+        "[default: RULEC_JOBS; else as many as there are processors, where it is worth it]",
+    )
 
 
 at_option = click.option(

@@ -1,0 +1,116 @@
+"""Work in several processes, as users see it: the same bytes, a killed process, Ctrl-C."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from support.builders.recorded_cars import three_cars
+from support.builders.terminal_signals import as_from_a_terminal
+
+BOOK = "rulebook tiny\nuse road\nhard rule slow { require always speed <= 45 km/h }\n"
+
+RULEC = [sys.executable, "-c", "from rulec.cli.entry_point import run; raise SystemExit(run())"]
+
+IN_WORKERS = """
+import os, signal, sys, time
+from pathlib import Path
+if "--multiprocessing-fork" in sys.orig_argv:
+    from rulec.batch import recording_judge
+    judge = recording_judge.judge
+    def odd(settings, path):
+        marker = Path(path + "." + str(os.getpid()))
+        if "odd" in path and len(list(marker.parent.glob("*.xml.*"))) < LEAST:
+            marker.touch()
+            yield from list(judge(settings, path))[:1] if settings.lines else ()
+            DEED
+        yield from judge(settings, path)
+    recording_judge.judge = odd
+"""
+"""A module that Python imports when it starts: workers do something odd with one file."""
+
+
+@pytest.fixture
+def drives(tmp_path):
+    """Four recordings of 3 vehicles, and a rulebook that one of each violates."""
+    (tmp_path / "tiny.rules").write_text(BOOK)
+    (tmp_path / "drives").mkdir()
+    first = Path(three_cars(tmp_path / "drives"))
+    for name in ("a", "b", "odd", "z"):
+        (tmp_path / "drives" / f"{name}.xml").write_bytes(first.read_bytes())
+    first.unlink()
+    return tmp_path
+
+
+def with_workers(folder, deed, least=99):
+    """The environment of a process whose workers do this."""
+    text = IN_WORKERS.replace("DEED", deed).replace("LEAST", str(least))
+    (folder / "sitecustomize.py").write_text(text)
+    return {**os.environ, "PYTHONPATH": str(folder)}
+
+
+def verify(folder, *arguments, env=None):
+    command = [*RULEC, "verify", "drives", "-r", "./tiny.rules", *arguments]
+    done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+DIE = "os.kill(os.getpid(), signal.SIGKILL)"
+
+
+def test_a_worker_that_is_killed_once_changes_nothing(drives):
+    expected = verify(drives, "--json", "-j", "1")
+    found = verify(drives, "--json", "-j", "2", env=with_workers(drives, DIE, least=1))
+    assert found[:2] == expected[:2]
+    assert len(found[1].splitlines()) == 12
+    assert "the process that judged drives/odd.xml was stopped by signal 9; another" in found[2]
+
+
+@pytest.mark.long
+def test_a_worker_that_is_killed_again_is_reported(drives):
+    status, out, err = verify(drives, "-j", "2", env=with_workers(drives, DIE))
+    assert status == 2
+    assert "3 recordings with 9 drives" in out
+    assert "error[R0708]" in err
+    assert "--> drives/odd.xml" in err
+
+
+def processes_of(group):
+    found = subprocess.run(["pgrep", "-g", str(group)], capture_output=True, text=True, check=False)
+    return found.stdout.split()
+
+
+def in_a_group_from_a_terminal():
+    os.setpgrp()
+    as_from_a_terminal()
+
+
+def test_an_interrupt_ends_all_processes_and_leaves_no_file(drives):
+    command = [*RULEC, "verify", "drives", "-r", "./tiny.rules", "-j", "2", "-o", "found.csv"]
+    process = subprocess.Popen(
+        command,
+        cwd=drives,
+        env=with_workers(drives, "time.sleep(600)"),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=in_a_group_from_a_terminal,
+    )
+    while not list(drives.glob("drives/odd.xml.*")):
+        assert process.poll() is None
+        time.sleep(0.02)
+    assert len(processes_of(process.pid)) >= 3
+    # A terminal sends it to all of them.
+    os.killpg(process.pid, signal.SIGINT)
+    _, err = process.communicate()
+    assert process.returncode == 130
+    assert err.decode().split("\n", 1)[1].strip() == "rulec: interrupted"
+    # Python's own, which looks after shared memory, sees the end of the others a moment later.
+    until = time.monotonic() + 60
+    while processes_of(process.pid) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert processes_of(process.pid) == []
+    assert not list(drives.glob("*found*"))
