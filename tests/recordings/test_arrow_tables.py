@@ -10,9 +10,9 @@ import pytest
 from pyarrow import feather, parquet
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.encodings import arrow_tables
-from rulec.recordings.encodings.arrow_messages import OddMessageError, batch_size
-from rulec.recordings.encodings.arrow_tables import Wanted, read_table
+from rulec.recordings.encodings.arrow import arrow_tables
+from rulec.recordings.encodings.arrow.arrow_messages import OddMessageError, batch_size
+from rulec.recordings.encodings.arrow.arrow_tables import Wanted, read_table
 from rulec.recordings.encodings.xml_element import XmlFormat
 
 FORM = XmlFormat("a table", "", "it has rows", 10_000_000)

@@ -79,6 +79,10 @@ _BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
         "Waymo scenario": AUTO_LABELS,
         "Argoverse 2 motion forecasting": TRACKER,
         "Argoverse 2 sensor log": LIDAR,
+        "123D log of Argoverse 2": LIDAR,
+        "123D log of Waymo": AUTO_LABELS,
+        # The least exact of its data sets counts for those of which it is not known
+        "123D log": KEYFRAMES,
         "ScenarioNet scenario": KEYFRAMES,
         "ScenarioNet scenario of Waymo": AUTO_LABELS,
     }

@@ -94,6 +94,7 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "osi": _EITHER | {"icy", "no_overtaking_sign", "visibility", "wet"},
     "argoverse-motion": _ARGOVERSE,
     "argoverse-sensor": _ARGOVERSE,
+    "123d": _ARGOVERSE | {"built_up", "limit", "road_class"},
 }
 """Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""
 

@@ -91,6 +91,13 @@ def _argoverse_sensor(source: RecordingSource) -> Iterator[Recording]:
     yield read_sensor_log(source.path, source.map_path)
 
 
+def _d123(source: RecordingSource) -> Iterator[Recording]:
+    # As above.
+    from rulec.recordings.d123.log_recording import read_d123
+
+    yield read_d123(source.path, source.map_path)
+
+
 def _is_protobuf(glance: Glance) -> bool:
     return glance.name.endswith(".pb")
 
@@ -272,5 +279,13 @@ FORMATS = (
         files="*.pkl",
         recognises=_is_scenarionet,
         read=_scenarionet,
+    ),
+    RecordingFormat(
+        name="123d",
+        title="logs of 123D: Argoverse 2, nuPlan, nuScenes, Waymo and others in one form",
+        files="sync.arrow, or its folder",
+        recognises=lambda glance: is_named(glance.path, "sync.arrow"),
+        read=_d123,
+        roads="beside it, or --map",
     ),
 )

@@ -72,6 +72,19 @@ def _argoverse(path: Path, _step_s: float) -> RoadMap:
     return read_map_archive(path)
 
 
+def _d123(path: Path, _step_s: float) -> RoadMap:
+    # As above.
+    from rulec.recordings.d123.map_lanes import read_d123_map
+
+    return read_d123_map(path)
+
+
+def _is_d123(glance: Glance) -> bool:
+    return glance.head.startswith(b"ARROW1") and all(x in glance.head for x in _D123_COLUMNS)
+
+
+_D123_COLUMNS = (b"object_id", b"map_layer", b"features", b"wkb")
+
 MAP_FORMATS = (
     MapFormat("sumo", "nets of SUMO's", "*.net.xml", lambda glance: glance.root == "net", _sumo),
     MapFormat(
@@ -103,6 +116,7 @@ MAP_FORMATS = (
         lambda glance: is_named(glance.path, MAP_ARCHIVES),
         _argoverse,
     ),
+    MapFormat("123d", "maps of 123D", "map.arrow, DATASET_PLACE.arrow", _is_d123, _d123),
 )
 
 

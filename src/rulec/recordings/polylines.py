@@ -63,6 +63,23 @@ def paired(line: Points, other: Points) -> tuple[Points, Points]:
     return first, second
 
 
+def leads_the_same_way(
+    own: tuple[Points, Points], other: tuple[Points, Points], *, left: bool
+) -> bool:
+    """Does a lane on the left or right lead the same way? Lanes are their left and right bounds.
+
+    Then the border between them runs the same way for both.
+    """
+    border, same = own[0 if left else 1], other[1 if left else 0]
+    opposite = other[0 if left else 1][::-1]
+    return ends_apart(border, same) <= ends_apart(border, opposite)
+
+
+def ends_apart(line: Points, other: Points) -> float:
+    """How far the starts and the ends of two lines are apart, in sum."""
+    return float(np.hypot(*(line[[0, -1]] - other[[0, -1]]).T).sum())
+
+
 _ONE = 1e-9
 """Points that lie no farther apart, as a part of the length, are one."""
 

@@ -30,7 +30,7 @@ NOT_A_RECORDING = Code(
     "R0610",
     title="a file cannot be read as recorded traffic",
     why="What is read `rulec formats` lists: CommonRoad, SUMO, ASAM OSI, Argoverse 2, Waymo, "
-    "ScenarioNet, tracks as tables, and maps. What a file is shows in its name and its first "
+    "ScenarioNet, 123D, tracks as tables, and maps. What a file is shows in its name and its first "
     "bytes; `--input-format` says so where it does not. A file has to be complete and as its "
     "format says; the message names the line, byte, row or record where it is not. XML has to do "
     "without a `DOCTYPE`, and a pickle without programs: what these define may do anything.",

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+import shapely
+
 from rulec.recordings.recording import Lanelet, Points, Side
 from rulec.value_display import short_repr
 
@@ -41,3 +44,22 @@ def crosswalk(name: str, left: Points, right: Points, *, directed: bool = False)
         signs=frozenset(),
         limit_mps=None,
     )
+
+
+def crosswalk_with_outline(name: str, outline: Points) -> Lanelet:
+    """A crosswalk as a lanelet along which people walk: the longer way of its outline."""
+    corners = outline
+    if len(corners) > 2 and (corners[0] == corners[-1]).all():
+        corners = corners[:-1]
+    if len(corners) != 4:
+        box = shapely.minimum_rotated_rectangle(shapely.MultiPoint(outline))
+        corners = shapely.get_coordinates(box)[:4]
+    sides = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
+    if sides[0] + sides[2] < sides[1] + sides[3]:
+        corners = np.roll(corners, -1, axis=0)
+    one, other = corners[:2], corners[:1:-1]
+    middle = (one + other) / 2
+    ahead, aside = middle[1] - middle[0], one[0] - other[0]
+    if ahead[0] * aside[1] - ahead[1] * aside[0] < 0:
+        one, other = other, one
+    return crosswalk(name, one, other)

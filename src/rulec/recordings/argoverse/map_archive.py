@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from rulec.recordings.encodings.typed_json import read_json
 from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
-from rulec.recordings.polylines import paired, without_repeats
+from rulec.recordings.polylines import ends_apart, leads_the_same_way, paired, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points
 from rulec.recordings.road_map import RoadMap, crosswalk
 
@@ -130,16 +130,10 @@ def _known(names: Iterable[int], bounds: Mapping[int, object]) -> tuple[str, ...
 def _beside(
     own: int, other: int | None, bounds: Mapping[int, tuple[Points, Points]], *, left: bool
 ) -> str | None:
-    """The lane beside one if it leads the same way: then the border runs the same way for both."""
+    """The lane beside one if it leads the same way."""
     if other is None or other == own or other not in bounds:
         return None
-    border, same = bounds[own][0 if left else 1], bounds[other][1 if left else 0]
-    opposite = bounds[other][0 if left else 1][::-1]
-    return str(other) if _apart(border, same) <= _apart(border, opposite) else None
-
-
-def _apart(line: Points, other: Points) -> float:
-    return float(np.hypot(*(line[[0, -1]] - other[[0, -1]]).T).sum())
+    return str(other) if leads_the_same_way(bounds[own], bounds[other], left=left) else None
 
 
 MARKS: Mapping[str, LaneMark] = MappingProxyType(
@@ -167,7 +161,7 @@ def _crosswalks(path: Path, archive: _MapArchive) -> Iterator[Lanelet]:
         if edges is None:
             continue
         one, other = edges
-        if _apart(one, other[::-1]) < _apart(one, other):
+        if ends_apart(one, other[::-1]) < ends_apart(one, other):
             other = other[::-1]
         one, other = paired(one, other)
         along, across = (one[-1] - one[0]) + (other[-1] - other[0]), (other - one).mean(axis=0)

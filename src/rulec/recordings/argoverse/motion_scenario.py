@@ -24,7 +24,7 @@ from rulec.recordings.argoverse.object_types import (
     USUAL_SIZES_M,
 )
 from rulec.recordings.argoverse.sweep_grid import rates
-from rulec.recordings.encodings.arrow_tables import ArrowTable, Wanted, read_table
+from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.xml_element import XmlFormat, short
 from rulec.recordings.recording import MOST_STEPS, Participant, Recording
 from rulec.recordings.track import Track, TrackOutlines, TrackStates

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy import bool_, float64, int64, intp
+from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.argoverse.argoverse_files import ANNOTATIONS, MAP, POSES, map_beside, only_in
@@ -26,11 +26,11 @@ from rulec.recordings.argoverse.object_types import (
     NOT_ON_THE_ROAD,
     RIDES,
 )
-from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid, rates
-from rulec.recordings.encodings.arrow_tables import ArrowTable, Wanted, read_table
+from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, participant, with_riders
+from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
+from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.xml_element import XmlFormat, short
-from rulec.recordings.recording import Participant, Recording
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.recording import Recording
 
 SENSOR = XmlFormat(
     "a sensor log of Argoverse 2",
@@ -52,9 +52,6 @@ _BOXES = Wanted(
     texts=("track_uuid", "category"),
 )
 _LARGEST_M = 200.0
-_RIDDEN_M = 1.0
-"""A rider's box is on what it rides if their middles are no farther apart."""
-
 _NAME = re.compile(MAP.replace("*", r"([0-9A-Za-z-]+)_*.*").replace(".json", r"\.json"))
 _REMARK = (
     f"ego's middle, which the log does not say, is taken to be {EGO_MIDDLE_M:g} m ahead of its "
@@ -69,22 +66,6 @@ class _Sweeps:
     seconds: NDArray[float64]
     steps: NDArray[int64]
     poses: CityPoses
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class _Box:
-    """The boxes of a track: the sweep of each, their poses in the city, and its size (m)."""
-
-    id: str
-    category: str
-    sweeps: NDArray[intp]
-    poses: CityPoses
-    size: tuple[float, float]
-
-    def kept(self, flags: NDArray[bool_]) -> _Box:
-        """Its boxes in some sweeps only."""
-        rows = np.flatnonzero(flags)
-        return replace(self, sweeps=self.sweeps[rows], poses=self.poses.taken(rows))
 
 
 def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
@@ -110,7 +91,7 @@ def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
     road = read_map_archive(map_path)
     own = next((x for x in tracks if x.category == _EGO_CATEGORY), None)
     ego = _ego(EGO if own is None else own.id, EGO_SIZE_M if own is None else own.size, sweeps)
-    others = _with_riders([x for x in tracks if x.category != _EGO_CATEGORY])
+    others = with_riders([x for x in tracks if x.category != _EGO_CATEGORY], RIDES)
     if any(x.id == ego.id for x in others):
         raise SENSOR.refused(path, f"somebody else is called `{ego.id}`, as ego is")
     log = _NAME.fullmatch(map_path.name)
@@ -118,7 +99,11 @@ def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
         name=log[1] if log else path.resolve().parent.name,
         step_s=step_s,
         lanelets=road.lanelets,
-        participants=tuple(_participant(x, sweeps) for x in (ego, *others) if len(x.sweeps)),
+        participants=tuple(
+            participant(x, CATEGORIES[x.category], sweeps.seconds, sweeps.steps)
+            for x in (ego, *others)
+            if len(x.sweeps)
+        ),
         problems=(),
         form=FORM,
         side=road.side,
@@ -149,7 +134,7 @@ def _poses(table: ArrowTable) -> CityPoses:
     return CityPoses(rotations(quaternions), places)
 
 
-def _tracks(table: ArrowTable, sweeps: _Sweeps, sweep_of: NDArray[intp]) -> Iterator[_Box]:
+def _tracks(table: ArrowTable, sweeps: _Sweeps, sweep_of: NDArray[intp]) -> Iterator[TrackBoxes]:
     sizes = np.stack([table.numbers["length_m"], table.numbers["width_m"]], axis=1)
     odd = ((sizes <= 0) | (sizes > _LARGEST_M)).any(axis=1)
     if odd.any():
@@ -171,45 +156,11 @@ def _tracks(table: ArrowTable, sweeps: _Sweeps, sweep_of: NDArray[intp]) -> Iter
         if category not in CATEGORIES:
             raise table.refused(int(rows[0]), f"`category` is `{short(category)}`")
         length, width = np.median(sizes[rows], axis=0).tolist()
-        yield _Box(names.values[number], category, own, in_city.taken(rows), (length, width))
+        yield TrackBoxes(names.values[number], category, own, in_city.taken(rows), (length, width))
 
 
-def _ego(name: str, size: tuple[float, float], sweeps: _Sweeps) -> _Box:
+def _ego(name: str, size: tuple[float, float], sweeps: _Sweeps) -> TrackBoxes:
     count = len(sweeps.steps)
     ahead = np.tile([EGO_MIDDLE_M, 0.0, 0.0], (count, 1))
     middle = sweeps.poses.after(CityPoses(np.tile(np.eye(3), (count, 1, 1)), ahead))
-    return _Box(name, _EGO_CATEGORY, np.arange(count), middle, size)
-
-
-def _with_riders(boxes: list[_Box]) -> list[_Box]:
-    """Boxes of which one stands for a rider and what it rides: as large as both, where it rides."""
-    ridden = {x.id: np.zeros(len(x.sweeps), dtype=bool) for x in boxes}
-    sizes = {x.id: x.size for x in boxes}
-    for rider in boxes:
-        for device in boxes:
-            if device.category != RIDES.get(rider.category):
-                continue
-            _, on, under = np.intersect1d(rider.sweeps, device.sweeps, return_indices=True)
-            apart = rider.poses.translations[on, :2] - device.poses.translations[under, :2]
-            near = np.hypot(*apart.T) <= _RIDDEN_M
-            if near.any():
-                ridden[device.id][under[near]] = True
-                own, other = sizes[rider.id], device.size
-                sizes[rider.id] = max(own[0], other[0]), max(own[1], other[1])
-    return [replace(x, size=sizes[x.id]).kept(~ridden[x.id]) for x in boxes]
-
-
-def _participant(box: _Box, sweeps: _Sweeps) -> Participant:
-    x, y = box.poses.translations[:, :2].T
-    heading, seconds = box.poses.headings, sweeps.seconds[box.sweeps]
-    speed = rates(x, seconds) * np.cos(heading) + rates(y, seconds) * np.sin(heading)
-    rows = np.column_stack((x, y, heading, speed, rates(speed, seconds)))
-    track = Track(sweeps.steps[box.sweeps], rows, *box.size)
-    return Participant(
-        id=box.id,
-        type=CATEGORIES[box.category],
-        standing=False,
-        states=TrackStates(track),
-        outlines=TrackOutlines(track),
-        shows=frozenset(),
-    )
+    return TrackBoxes(name, _EGO_CATEGORY, np.arange(count), middle, size)

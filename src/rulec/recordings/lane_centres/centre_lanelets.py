@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
-import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
@@ -28,7 +27,7 @@ from rulec.recordings.lane_centres.road_features import (
 )
 from rulec.recordings.polylines import parallel_line
 from rulec.recordings.recording import Lanelet, ObservedLight, Points
-from rulec.recordings.road_map import crosswalk
+from rulec.recordings.road_map import crosswalk_with_outline
 
 ALL_JUNCTIONS = frozenset({"junctions"})
 """What such maps have: lanes elsewhere cross at other heights."""
@@ -75,7 +74,7 @@ def centre_lanelets(features: RoadFeatures, *, has_lights: bool) -> dict[str, La
             )
     lanelets.update(_regulated(lanelets, features, pieces, has_lights=has_lights))
     for name, polygon in features.crosswalks.items():
-        lanelets[f"crosswalk {name}"] = _crosswalk(f"crosswalk {name}", polygon)
+        lanelets[f"crosswalk {name}"] = crosswalk_with_outline(f"crosswalk {name}", polygon)
     return lanelets
 
 
@@ -194,22 +193,3 @@ def _regulated(
                     lights_to={pieces[name][0].id: light for name, light in lights.items()},
                 ),
             )
-
-
-def _crosswalk(name: str, polygon: Points) -> Lanelet:
-    """A crosswalk as a lanelet along which people walk: the longer way of its outline."""
-    corners = polygon
-    if len(corners) > 2 and (corners[0] == corners[-1]).all():
-        corners = corners[:-1]
-    if len(corners) != 4:
-        box = shapely.minimum_rotated_rectangle(shapely.MultiPoint(polygon))
-        corners = shapely.get_coordinates(box)[:4]
-    sides = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
-    if sides[0] + sides[2] < sides[1] + sides[3]:
-        corners = np.roll(corners, -1, axis=0)
-    one, other = corners[:2], corners[:1:-1]
-    middle = (one + other) / 2
-    ahead, aside = middle[1] - middle[0], one[0] - other[0]
-    if ahead[0] * aside[1] - ahead[1] * aside[0] < 0:
-        one, other = other, one
-    return crosswalk(name, one, other)

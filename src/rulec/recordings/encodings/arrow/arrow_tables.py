@@ -6,7 +6,7 @@ Feather's second version is Arrow's file format for interprocess communication.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,13 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.files import opened
-from rulec.recordings.encodings.arrow_messages import OddMessageError, batch_size
+from rulec.recordings.encodings.arrow.arrow_messages import OddMessageError, batch_size
+from rulec.recordings.encodings.arrow.nested_columns import (
+    Nested,
+    NestedColumn,
+    OddColumnError,
+    nested_column,
+)
 from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
 from rulec.trace.formats.arrow.parquet import unavailable
 
@@ -45,7 +51,10 @@ class TextColumn:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ArrowTable:
-    """Columns of a file by name, without gaps; numbers are finite, below ``LARGEST``."""
+    """Columns of a file by name, without gaps; numbers are finite, below ``LARGEST``.
+
+    ``metadata`` are those of its schema.
+    """
 
     path: Path
     form: XmlFormat
@@ -53,6 +62,8 @@ class ArrowTable:
     numbers: Mapping[str, NDArray[float64]]
     whole: Mapping[str, NDArray[int64]]
     texts: Mapping[str, TextColumn]
+    nested: Mapping[str, NestedColumn] = field(default_factory=dict)
+    metadata: Mapping[bytes, bytes] = field(default_factory=dict)
 
     def refused(self, row: int, why: str, expected: str = "") -> RulecError:
         """The error (R0610) for a row, the first of which is 1."""
@@ -66,12 +77,21 @@ class Wanted:
     numbers: tuple[str, ...] = ()
     whole: tuple[str, ...] = ()
     texts: tuple[str, ...] = ()
+    nested_numbers: tuple[Nested, ...] = ()
+    nested_whole: tuple[Nested, ...] = ()
+    nested_texts: tuple[Nested, ...] = ()
+    nested_bytes: tuple[Nested, ...] = ()
     optional: frozenset[str] = frozenset()
 
     @property
     def names(self) -> tuple[str, ...]:
         """All of them."""
-        return (*self.numbers, *self.whole, *self.texts)
+        return (*self.numbers, *self.whole, *self.texts, *(one.name for one in self.nested))
+
+    @property
+    def nested(self) -> tuple[Nested, ...]:
+        """Those with lists in them, and those of bytes."""
+        return (*self.nested_numbers, *self.nested_whole, *self.nested_texts, *self.nested_bytes)
 
 
 def read_table(path: Path, form: XmlFormat, wanted: Wanted) -> ArrowTable:
@@ -99,10 +119,12 @@ def read_table(path: Path, form: XmlFormat, wanted: Wanted) -> ArrowTable:
             ),
             whole=_converted(wanted.whole, found, lambda name, column: _whole(name, column, arrow)),
             texts=_converted(wanted.texts, found, lambda name, column: _texts(name, column, arrow)),
+            nested=_nested(wanted, found, arrow),
+            metadata=table.schema.metadata or {},
         )
     except OddMessageError:
         raise form.refused(path, "it is damaged (its sizes contradict each other)") from None
-    except _OddColumnError as reason:
+    except OddColumnError as reason:
         raise form.refused(path, reason.why, reason.row) from None
     except (arrow.ArrowException, OSError, ValueError, KeyError, MemoryError) as reason:
         words = short(str(reason).partition(".")[0].partition("\n")[0])
@@ -186,38 +208,48 @@ def _present(names: Iterable[str], path: Path, form: XmlFormat, wanted: Wanted) 
     return [name for name in wanted.names if name in known]
 
 
-class _OddColumnError(Exception):
-    def __init__(self, why: str, row: int | None = None) -> None:
-        self.why, self.row = why, row
-
-
 def _converted(
     names: Iterable[str], found: Mapping[str, Any], convert: Callable[[str, Any], Any]
 ) -> dict[str, Any]:
     return {name: convert(name, found[name]) for name in names if name in found}
 
 
+def _nested(wanted: Wanted, found: Mapping[str, Any], arrow: Any) -> dict[str, NestedColumn]:
+    kinds = (
+        (wanted.nested_numbers, _numbers),
+        (wanted.nested_whole, _whole),
+        (wanted.nested_texts, _texts),
+        (wanted.nested_bytes, _bytes),
+    )
+    return {
+        one.name: nested_column(one, found[one.name], arrow, read)
+        for nested, read in kinds
+        for one in nested
+        if one.name in found
+    }
+
+
 def _gap(name: str, column: Any) -> None:
     if column.null_count:
         row = int(np.argmax(column.is_null().to_numpy())) + 1
-        raise _OddColumnError(f"`{name}` has no value", row)
+        raise OddColumnError(f"`{name}` has no value", row)
 
 
 def _numbers(name: str, column: Any, arrow: Any) -> NDArray[float64]:
     if not (arrow.types.is_floating(column.type) or arrow.types.is_integer(column.type)):
-        raise _OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
+        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
     _gap(name, column)
     values = np.asarray(column.to_numpy(), dtype=float)
     odd = ~(np.abs(values) < LARGEST)
     if odd.any():
         row = int(np.argmax(odd))
-        raise _OddColumnError(f"`{name}` is {values[row]:g}", row + 1)
+        raise OddColumnError(f"`{name}` is {values[row]:g}", row + 1)
     return values
 
 
 def _whole(name: str, column: Any, arrow: Any) -> NDArray[int64]:
     if not arrow.types.is_integer(column.type):
-        raise _OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
+        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
     _gap(name, column)
     values: NDArray[int64] = column.cast(arrow.int64()).to_numpy()
     return values
@@ -226,7 +258,7 @@ def _whole(name: str, column: Any, arrow: Any) -> NDArray[int64]:
 def _texts(name: str, column: Any, arrow: Any) -> TextColumn:
     kind = column.type.value_type if arrow.types.is_dictionary(column.type) else column.type
     if not (arrow.types.is_string(kind) or arrow.types.is_large_string(kind)):
-        raise _OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
+        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
     _gap(name, column)
     if not arrow.types.is_dictionary(column.type):
         column = column.dictionary_encode()
@@ -234,7 +266,7 @@ def _texts(name: str, column: Any, arrow: Any) -> TextColumn:
     values = [value for _, own in chunks for value in own]
     longest = max((len(value or "") for value in values), default=0)
     if longest > LONGEST_TEXT:
-        raise _OddColumnError(f"a text in `{name}` is longer than {LONGEST_TEXT} characters")
+        raise OddColumnError(f"a text in `{name}` is longer than {LONGEST_TEXT} characters")
     numbers: dict[str | None, int] = {}
     codes = [
         np.array([numbers.setdefault(value, len(numbers)) for value in own], dtype=int)[indices]
@@ -242,11 +274,19 @@ def _texts(name: str, column: Any, arrow: Any) -> TextColumn:
         if len(indices)
     ]
     if None in numbers:
-        raise _OddColumnError(f"`{name}` has no value")
+        raise OddColumnError(f"`{name}` has no value")
     return TextColumn(
         np.concatenate(codes) if codes else np.zeros(0, dtype=int),
         tuple(value for value in numbers if value is not None),
     )
+
+
+def _bytes(name: str, column: Any, arrow: Any) -> list[bytes]:
+    if not (arrow.types.is_binary(column.type) or arrow.types.is_large_binary(column.type)):
+        raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
+    _gap(name, column)
+    values: list[bytes] = column.to_pylist()
+    return values
 
 
 def _chunks(column: Any) -> Iterator[tuple[NDArray[int64], list[str | None]]]:

@@ -1,0 +1,74 @@
+"""Boxes that are annotated sweep by sweep, as the participants that they are around."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy import bool_, float64, int64, intp
+from numpy.typing import NDArray
+
+from rulec.recordings.argoverse.city_frame import CityPoses
+from rulec.recordings.argoverse.sweep_grid import rates
+from rulec.recordings.recording import Participant
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+
+_RIDDEN_M = 1.0
+"""A rider's box is on what it rides if their middles are no farther apart."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class TrackBoxes:
+    """The boxes of a track: the sweep of each, their poses in the city, and its size (m)."""
+
+    id: str
+    category: str
+    sweeps: NDArray[intp]
+    poses: CityPoses
+    size: tuple[float, float]
+
+    def kept(self, flags: NDArray[bool_]) -> TrackBoxes:
+        """Its boxes in some sweeps only."""
+        rows = np.flatnonzero(flags)
+        return replace(self, sweeps=self.sweeps[rows], poses=self.poses.taken(rows))
+
+
+def with_riders(boxes: Sequence[TrackBoxes], rides: Mapping[str, str]) -> list[TrackBoxes]:
+    """Boxes of which one stands for a rider and what it rides: as large as both, where it rides.
+
+    ``rides``: the category of riders -> that of what they ride.
+    """
+    ridden = {x.id: np.zeros(len(x.sweeps), dtype=bool) for x in boxes}
+    sizes = {x.id: x.size for x in boxes}
+    for rider in boxes:
+        for device in boxes:
+            if device.category != rides.get(rider.category):
+                continue
+            _, on, under = np.intersect1d(rider.sweeps, device.sweeps, return_indices=True)
+            apart = rider.poses.translations[on, :2] - device.poses.translations[under, :2]
+            near = np.hypot(*apart.T) <= _RIDDEN_M
+            if near.any():
+                ridden[device.id][under[near]] = True
+                own, other = sizes[rider.id], device.size
+                sizes[rider.id] = max(own[0], other[0]), max(own[1], other[1])
+    return [replace(x, size=sizes[x.id]).kept(~ridden[x.id]) for x in boxes]
+
+
+def participant(
+    box: TrackBoxes, kind: str, seconds: NDArray[float64], steps: NDArray[int64]
+) -> Participant:
+    """The participant of a type; ``seconds`` and ``steps`` are those of all sweeps."""
+    x, y = box.poses.translations[:, :2].T
+    heading, moments = box.poses.headings, seconds[box.sweeps]
+    speed = rates(x, moments) * np.cos(heading) + rates(y, moments) * np.sin(heading)
+    rows = np.column_stack((x, y, heading, speed, rates(speed, moments)))
+    track = Track(steps[box.sweeps], rows, *box.size)
+    return Participant(
+        id=box.id,
+        type=kind,
+        standing=False,
+        states=TrackStates(track),
+        outlines=TrackOutlines(track),
+        shows=frozenset(),
+    )

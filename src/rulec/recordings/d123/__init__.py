@@ -1,0 +1,1 @@
+"""Logs and maps of 123D, in Arrow files."""

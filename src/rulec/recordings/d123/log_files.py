@@ -1,0 +1,83 @@
+"""The files of a log of 123D's, and what their metadata say.
+
+By the API and the writer of py123d 0.7 (`autonomousvision/py123d`): a log is a folder with
+``sync.arrow`` and a file for each modality, ``logs/SPLIT/LOG`` in the data's folder; its map is
+``map.arrow`` there, or that of its place, ``maps/DATASET/DATASET_PLACE.arrow``. Metadata are
+MessagePack in the schema's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rulec.diagnostics import SourceLocation
+from rulec.recordings.d123.message_pack import OddPackError, unpacked
+from rulec.recordings.encodings.arrow.arrow_tables import LONGEST_TEXT, ArrowTable
+from rulec.recordings.encodings.xml_element import XmlFormat
+from rulec.recordings.recording import Side
+from rulec.recordings.recording_messages import NET_MISSING
+
+LOG = XmlFormat(
+    "a log of 123D",
+    "",
+    "it is a folder with `sync.arrow`, `box_detections_se3.arrow` and `ego_state_se3.arrow`, as "
+    "py123d writes them",
+    1_000_000_000,
+)
+SYNC, BOXES, EGO = "sync.arrow", "box_detections_se3.arrow", "ego_state_se3.arrow"
+LIGHTS, MAP = "traffic_light_detections.arrow", "map.arrow"
+
+_PLACES: tuple[tuple[str, Side, str], ...] = (
+    *((name, "right", "USA") for name in ("av2", "wod", "pandaset", "boston", "us-")),
+    ("kitti360", "right", "DEU"),
+    ("singapore", "left", "SGP"),
+    ("sg-", "left", "SGP"),
+)
+"""Beginnings of the names of data sets and of places, with where these are."""
+
+
+def said_in(table: ArrowTable) -> Mapping[Any, Any]:
+    """What the metadata of a file say. Raises RulecError R0610."""
+    try:
+        found = unpacked(table.metadata.get(b"metadata", b""))
+    except OddPackError:
+        raise table.form.refused(table.path, "its `metadata` are no MessagePack") from None
+    if not isinstance(found, dict):
+        raise table.form.refused(table.path, "its `metadata` are no table of names and values")
+    return found
+
+
+def word(said: Mapping[Any, Any], name: str) -> str:
+    """A text in metadata, empty if it is none, or no name."""
+    found = said.get(name)
+    if not isinstance(found, str) or len(found) > LONGEST_TEXT or not found.isprintable():
+        return ""
+    return found
+
+
+def side_and_country(data_set: str, place: str) -> tuple[Side | None, str]:
+    """Where traffic keeps, and the country; None and empty where that is not known."""
+    for name in (place.lower(), data_set.lower()):
+        for begin, side, country in _PLACES:
+            if name.startswith(begin):
+                return side, country
+    return None, ""
+
+
+def map_of(path: Path, data_set: str, place: str) -> Path:
+    """The map of a log with this ``sync.arrow``. Raises RulecError R0614 if there is none."""
+    own = path.with_name(MAP)
+    folders = path.absolute().parents
+    if own.is_file():
+        return own
+    if len(folders) > 3 and data_set and place:
+        shared = folders[3] / "maps" / data_set / f"{data_set}_{place}.arrow"
+        if shared.is_file():
+            return shared
+    raise NET_MISSING.error(
+        SourceLocation(str(path)),
+        f"the log has no map: neither `{MAP}` beside it, nor that of its place in `maps`",
+        help="name the map with --map FILE",
+    )

@@ -1,0 +1,251 @@
+"""Logs of 123D as recordings.
+
+By the writers of py123d 0.7: boxes and ego's poses are in one frame, that of the map, metres;
+vectors are x, y, z and a quaternion (w, x, y, z), of boxes also length, width and height. Each
+modality has its own moments (µs).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy import float64, int64
+from numpy.typing import NDArray
+
+from rulec.recordings.argoverse.city_frame import CityPoses, rotations
+from rulec.recordings.argoverse.object_types import RIDES
+from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, participant, with_riders
+from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
+from rulec.recordings.d123 import log_files as files
+from rulec.recordings.d123.log_files import LOG
+from rulec.recordings.d123.map_lanes import read_d123_map, with_lights
+from rulec.recordings.d123.object_labels import LABELS, LEFT_OUT, type_of
+from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
+from rulec.recordings.encodings.arrow.nested_columns import Nested
+from rulec.recordings.encodings.xml_element import LARGEST, short
+from rulec.recordings.recording import Participant, Recording
+
+EGO = "ego"
+"""The id of ego, which has no box."""
+
+_MICROSECOND_NS = 1000
+_POSE, _BOX = 7, 10
+_LARGEST_M = 200.0
+_FARTHEST_S = 0.5
+"""Ego's pose is known at moments that are no farther from those that it is said for."""
+
+_COLOURS = {0: "green", 1: "yellow", 2: "red", 3: "inactive"}
+"""What lights show, by number; it may be unknown."""
+
+_SOURCES = (("av2", "Argoverse 2"), ("wod", "Waymo"))
+"""Data sets whose places are known better than others'."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Sweeps:
+    """The moments of boxes (ns): time steps, and seconds since the first."""
+
+    moments: NDArray[int64]
+    steps: NDArray[int64]
+    step_s: float
+
+    @property
+    def seconds(self) -> NDArray[float64]:
+        since: NDArray[float64] = (self.moments - self.moments[0]) / NANOSECONDS
+        return since
+
+
+def read_d123(path: Path, map_path: Path | None = None) -> Recording:
+    """Read a log from its ``sync.arrow``, or its folder, on the map given or its own.
+
+    Raises RulecError R0610 for a file that is none, R0614 without a map, R0701 if a file cannot be
+    opened, R0706 without pyarrow, else as reading the map.
+    """
+    path = path / files.SYNC if path.is_dir() else path
+    about = files.said_in(read_table(path, LOG, Wanted(whole=("sync.timestamp_us",))))
+    data_set, place = files.word(about, "dataset"), files.word(about, "location")
+    boxes = _table(
+        path.with_name(files.BOXES),
+        Nested(name="bounding_box_se3", listed=True, width=_BOX),
+        Nested(name="label", listed=True),
+        Nested(name="track_token", listed=True),
+    )
+    key = _key(boxes)
+    moments = boxes.whole[f"{key}.timestamp_us"] * _MICROSECOND_NS
+    if (np.diff(moments) <= 0).any() or not len(moments):
+        raise LOG.refused(boxes.path, "its moments are not in ascending order")
+    sweeps = _Sweeps(moments, *on_grid(boxes.path, LOG, moments))
+    own = _ego(path.with_name(files.EGO), sweeps)
+    others = with_riders(list(_tracks(boxes, files.said_in(boxes))), RIDES)
+    if any(x.id == own.id for x in others):
+        raise LOG.refused(boxes.path, f"somebody else is called `{own.id}`, as ego is")
+    road = read_d123_map(map_path or files.map_of(path, data_set, place))
+    lights = _lights(path.with_name(files.LIGHTS), sweeps)
+    side, country = files.side_and_country(data_set, place)
+    return Recording(
+        name=files.word(about, "log_name") or path.resolve().parent.name,
+        step_s=sweeps.step_s,
+        lanelets=with_lights(road.lanelets, lights),
+        participants=tuple(_participants([own, *others], sweeps)),
+        problems=(),
+        form=_form(data_set),
+        side=road.side or side,
+        country=road.country or country,
+        complete=road.complete,
+        remarks=road.remarks,
+        ego=own.id,
+    )
+
+
+def _form(data_set: str) -> str:
+    for begin, title in _SOURCES:
+        if data_set.lower().startswith(begin):
+            return f"123D log of {title}"
+    return "123D log"
+
+
+def _participants(tracks: list[TrackBoxes], sweeps: _Sweeps) -> Iterator[Participant]:
+    for one in tracks:
+        if len(one.sweeps):
+            yield participant(one, type_of(one.category), sweeps.seconds, sweeps.steps)
+
+
+def _table(path: Path, *nested: Nested) -> ArrowTable:
+    """A modality's file, whose columns begin with its name. Raises RulecError R0610, R0701."""
+    if not path.is_file():
+        raise LOG.refused(path.with_name(files.SYNC), f"there is no `{path.name}` beside it")
+    key = path.name.partition(".")[0]
+    named = tuple(
+        Nested(name=f"{key}.{one.name}", listed=one.listed, width=one.width) for one in nested
+    )
+    numbers = tuple(one for one in named if one.width)
+    texts = tuple(one for one in named if one.name.endswith("token"))
+    whole = tuple(one for one in named if one not in (*numbers, *texts))
+    return read_table(
+        path,
+        LOG,
+        Wanted(
+            whole=(f"{key}.timestamp_us",),
+            nested_numbers=numbers,
+            nested_whole=whole,
+            nested_texts=texts,
+        ),
+    )
+
+
+def _key(table: ArrowTable) -> str:
+    return table.path.name.partition(".")[0]
+
+
+def _tracks(table: ArrowTable, about: Mapping[Any, Any]) -> Iterator[TrackBoxes]:
+    key = _key(table)
+    said = files.word(about, "box_detection_label_class").rpartition(".")[2]
+    if said not in LABELS:
+        why = f"its labels are those of `{short(said)}`"
+        raise LOG.refused(table.path, why, expected=f"expected one of {', '.join(LABELS)}")
+    boxes, labels, tokens = (
+        table.nested[f"{key}.{name}"] for name in ("bounding_box_se3", "label", "track_token")
+    )
+    if not (
+        np.array_equal(boxes.starts, labels.starts) and np.array_equal(boxes.starts, tokens.starts)
+    ):
+        raise LOG.refused(table.path, "it has not as many labels and tracks as boxes")
+    sweep_of, values, names = boxes.row_of, boxes.values, tokens.values
+    sizes = values[:, 7:9]
+    odd = ((sizes <= 0) | (sizes > _LARGEST_M)).any(axis=1)
+    if odd.any():
+        at = int(np.argmax(odd))
+        length, width = sizes[at]
+        raise table.refused(int(sweep_of[at]), f"a box is {length:g} m by {width:g} m")
+    poses = _poses(table, values, sweep_of)
+    order = np.lexsort((sweep_of, names.codes))
+    starts = np.flatnonzero(np.diff(names.codes[order], prepend=-1))
+    for number, rows in enumerate(np.split(order, starts[1:]) if len(order) else ()):
+        own, label = sweep_of[rows], int(labels.values[rows[0]])
+        twice = np.flatnonzero(np.diff(own) == 0)
+        name = names.values[number]
+        if len(twice):
+            row = int(own[twice[0]])
+            raise table.refused(row, f"`{short(name)}` is twice in one moment")
+        if label not in LABELS[said]:
+            raise table.refused(int(own[0]), f"a label is {label}, which `{said}` has not")
+        category = LABELS[said][label]
+        if category != LEFT_OUT:
+            length, width = np.median(sizes[rows], axis=0).tolist()
+            yield TrackBoxes(name, category, own, poses.taken(rows), (length, width))
+
+
+def _poses(table: ArrowTable, values: NDArray[float64], row_of: NDArray[int64]) -> CityPoses:
+    flat = np.abs(values[:, 3:7]).max(axis=1, initial=0.0) < 1e-6
+    if flat.any():
+        raise table.refused(int(row_of[np.argmax(flat)]), "its quaternion is 0")
+    return CityPoses(rotations(values[:, 3:7]), values[:, :3])
+
+
+def _ego(path: Path, sweeps: _Sweeps) -> TrackBoxes:
+    """Ego's body at the moments of boxes, on the line between its states there."""
+    table = _table(path, Nested(name="imu_se3", width=_POSE))
+    key, about = _key(table), files.said_in(table)
+    size = _number(table, about.get("length")), _number(table, about.get("width"))
+    middle = about.get("center_to_imu_se3")
+    if not isinstance(middle, list) or len(middle) != _POSE:
+        raise LOG.refused(path, "it does not say where ego's middle is (`center_to_imu_se3`)")
+    ahead = np.array([[_number(table, value, least=-LARGEST) for value in middle]])
+    # Poses that are less than a microsecond apart have the same moment
+    moments, rows = np.unique(table.whole[f"{key}.timestamp_us"], return_index=True)
+    if not len(moments):
+        raise LOG.refused(path, "there is no pose in it")
+    moments = moments * _MICROSECOND_NS
+    values = table.nested[f"{key}.imu_se3"].values[rows]
+    centre = _poses(table, np.repeat(ahead, len(values), axis=0), rows)
+    body = _poses(table, values, rows).after(centre)
+    at = np.searchsorted(moments, sweeps.moments)
+    before, after = moments[np.maximum(at - 1, 0)], moments[np.minimum(at, len(moments) - 1)]
+    near = np.minimum(np.abs(sweeps.moments - before), np.abs(after - sweeps.moments))
+    there = np.flatnonzero(near <= _FARTHEST_S * NANOSECONDS)
+    asked, said = ((x - moments[0]).astype(float) for x in (sweeps.moments[there], moments))
+    places = np.column_stack([np.interp(asked, said, body.translations[:, k]) for k in range(3)])
+    turned = np.interp(asked, said, np.unwrap(body.headings))
+    zero = np.zeros_like(turned)
+    flat = rotations(np.column_stack((np.cos(turned / 2), zero, zero, np.sin(turned / 2))))
+    return TrackBoxes(EGO, "car", there, CityPoses(flat, places), size)
+
+
+def _number(table: ArrowTable, value: object, least: float = 0.0) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not least < value < LARGEST:
+        raise LOG.refused(table.path, "its `metadata` do not say ego's length, width and middle")
+    return float(value)
+
+
+def _lights(path: Path, sweeps: _Sweeps) -> dict[str, dict[int, str]]:
+    """Lane -> time step -> what its light shows, by the last that was said before or then."""
+    if not path.is_file():
+        return {}
+    table = _table(path, Nested(name="lane_id", listed=True), Nested(name="status", listed=True))
+    key = _key(table)
+    lanes, shown = (table.nested[f"{key}.{name}"] for name in ("lane_id", "status"))
+    if not np.array_equal(lanes.starts, shown.starts):
+        raise LOG.refused(path, "it has not as many lights as lanes")
+    moments = table.whole[f"{key}.timestamp_us"] * _MICROSECOND_NS
+    if (np.diff(moments) <= 0).any():
+        raise LOG.refused(path, "its moments are not in ascending order")
+    half = round(sweeps.step_s * NANOSECONDS / 2)
+    found: dict[str, dict[int, str]] = {}
+    latest = np.searchsorted(moments, sweeps.moments, side="right") - 1
+    for step, row, moment in zip(
+        sweeps.steps.tolist(), latest.tolist(), sweeps.moments.tolist(), strict=True
+    ):
+        if row < 0 or moment - int(moments[row]) > half:
+            continue
+        part = slice(lanes.starts[row], lanes.starts[row + 1])
+        for lane, status in zip(
+            lanes.values[part].tolist(), shown.values[part].tolist(), strict=True
+        ):
+            own = found.setdefault(str(lane), {})
+            if status in _COLOURS:
+                own[step] = _COLOURS[status]
+    return found

@@ -1,0 +1,264 @@
+"""Maps of 123D as lanelets.
+
+By the map writer and the map layers of py123d 0.7: a row for each thing, with its layer, its id
+within that, its outline or line as well-known binary, and what else there is of it as MessagePack,
+in which arrays are maps of type, shape and bytes. Bounds lie in the direction of travel.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import RulecError
+from rulec.recordings.d123 import log_files as files
+from rulec.recordings.d123.message_pack import OddPackError, unpacked
+from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
+from rulec.recordings.encodings.arrow.nested_columns import Nested
+from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat
+from rulec.recordings.polylines import leads_the_same_way, paired, without_repeats
+from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, ObservedLight, Points
+from rulec.recordings.road_map import RoadMap, crosswalk_with_outline
+
+MAP = XmlFormat(
+    "a map of 123D", "", "it is `map.arrow`, or `DATASET_PLACE.arrow`, as py123d writes them"
+)
+_LANE, _LANE_GROUP, _CROSSWALK, _ROAD_LINE = 0, 1, 3, 9
+_CLOSEST_M = 0.001
+_ALONG_M = 0.2
+"""A line of the map is that of a bound if it lies no farther from all of it."""
+
+_TYPES: Mapping[int, tuple[str, ...]] = {
+    0: (),
+    1: ("highway",),
+    2: (),
+    3: ("bicycleLane",),
+    4: ("busLane",),
+}
+"""Types of lanes by number: of most data sets those that are undefined are streets."""
+
+_MARKS: Mapping[int, LaneMark] = {
+    0: "none",
+    **dict.fromkeys((4, 5, 8, 9), "broken"),
+    **dict.fromkeys((6, 7), "double_solid"),
+    **dict.fromkeys((10, 11), "solid"),
+}
+"""Lines by number. Of two different ones side by side it is not said which is on which side."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Thing:
+    """A row: its number, what is said of it, and its geometry."""
+
+    row: int
+    id: int
+    said: Mapping[Any, Any]
+    shape: shapely.Geometry
+
+
+@dataclass(frozen=True, slots=True)
+class _Layers:
+    table: ArrowTable
+    by_number: Mapping[int, list[_Thing]]
+
+    def of(self, layer: int) -> list[_Thing]:
+        return self.by_number.get(layer, [])
+
+    def wrong(self, thing: _Thing, why: str) -> RulecError:
+        return self.table.refused(thing.row, why)
+
+
+def read_d123_map(path: Path) -> RoadMap:
+    """Read a map. Raises RulecError R0610 if it is none, R0701 if it cannot be opened, R0706."""
+    layers = _layers(path)
+    about = files.said_in(layers.table)
+    side, country = files.side_and_country(
+        files.word(about, "dataset"), files.word(about, "location")
+    )
+    lanelets = {x.id: x for x in _lanes(layers)}
+    if not lanelets:
+        raise MAP.refused(path, "there is no lane in it")
+    lanelets |= {x.id: x for x in _crosswalks(layers)}
+    return RoadMap(form="123D map", lanelets=lanelets, side=side, country=country)
+
+
+def with_lights(
+    lanelets: Mapping[str, Lanelet], lights: Mapping[str, Mapping[int, str]]
+) -> Mapping[str, Lanelet]:
+    """The lanelets with what lights were seen to show for the way to each lane that has one."""
+    seen = {name: ObservedLight(colours) for name, colours in lights.items() if name in lanelets}
+    found = dict(lanelets)
+    for name, lanelet in lanelets.items():
+        if ways := {other: seen[other] for other in lanelet.successors if other in seen}:
+            found[name] = replace(lanelet, lights=tuple(ways.values()), lights_to=ways)
+    return found
+
+
+def _layers(path: Path) -> _Layers:
+    wanted = Wanted(
+        whole=("object_id", "map_layer"),
+        nested_bytes=(Nested(name="features"), Nested(name="wkb")),
+    )
+    table = read_table(path, MAP, wanted)
+    found: dict[int, list[_Thing]] = defaultdict(list)
+    ids, layers = (table.whole[name].tolist() for name in ("object_id", "map_layer"))
+    packed, shapes = (table.nested[name].values for name in ("features", "wkb"))
+    for row, (key, layer) in enumerate(zip(ids, layers, strict=True)):
+        if layer not in (_LANE, _LANE_GROUP, _CROSSWALK, _ROAD_LINE):
+            continue
+        try:
+            said = unpacked(packed[row])
+            shape = shapely.from_wkb(shapes[row])
+        except (OddPackError, shapely.errors.ShapelyError):
+            raise table.refused(row, "its `features` or its `wkb` are damaged") from None
+        if not isinstance(said, dict):
+            raise table.refused(row, "its `features` are no table of names and values")
+        found[layer].append(_Thing(row, key, said, shape))
+    return _Layers(table, found)
+
+
+def _lanes(layers: _Layers) -> Iterator[Lanelet]:
+    things = {}
+    for one in layers.of(_LANE):
+        if one.id in things:
+            raise layers.wrong(one, f"there are two lanes {one.id}")
+        things[one.id] = one
+    bounds = {}
+    for name, one in things.items():
+        lines = [_line(layers, one, f"{side}_boundary") for side in ("left", "right")]
+        # At the edge of a part that has been cut out a lane may be a point
+        if min(map(len, lines)) > 1:
+            bounds[name] = lines[0], lines[1]
+    inside = {
+        group.id
+        for group in layers.of(_LANE_GROUP)
+        if group.said.get("intersection_id") is not None
+    }
+    before: dict[int, dict[int, None]] = defaultdict(dict)
+    for name in bounds:
+        before[name] |= dict.fromkeys(_ids(layers, things[name], "predecessor_ids"))
+    for name in bounds:
+        for after in _ids(layers, things[name], "successor_ids"):
+            before[after][name] = None
+    paint = _Paint(layers)
+    for name, own in bounds.items():
+        one = things[name]
+        left, right = paired(*own)
+        kind = one.said.get("lane_type")
+        if not isinstance(kind, int) or kind not in _TYPES:
+            raise layers.wrong(one, f"a lane is of the type {kind!s:.40}")
+        crossing = ("intersection",) * (one.said.get("lane_group_id") in inside)
+        yield Lanelet(
+            id=str(name),
+            left=left,
+            right=right,
+            centre=(left + right) / 2,
+            successors=_known(_ids(layers, one, "successor_ids"), bounds),
+            predecessors=_known(before[name], bounds),
+            left_of=_beside(one, bounds, left=True),
+            right_of=_beside(one, bounds, left=False),
+            types=frozenset((*_TYPES[kind], *crossing)),
+            signs=frozenset(),
+            limit_mps=_limit(layers, one),
+            left_mark=paint.along(own[0]),
+            right_mark=paint.along(own[1]),
+        )
+
+
+def _known(names: Iterable[int], bounds: Mapping[int, object]) -> tuple[str, ...]:
+    return tuple(str(name) for name in names if name in bounds)
+
+
+def _ids(layers: _Layers, thing: _Thing, name: str) -> list[int]:
+    found = thing.said.get(name)
+    if found is None:
+        return []
+    if not isinstance(found, list) or not all(isinstance(x, int) for x in found):
+        raise layers.wrong(thing, f"`{name}` is no list of ids")
+    return list(dict.fromkeys(found))
+
+
+def _beside(lane: _Thing, bounds: Mapping[int, tuple[Points, Points]], *, left: bool) -> str | None:
+    """The lane beside one if it leads the same way; data sets name others there, too."""
+    other = lane.said.get("left_lane_id" if left else "right_lane_id")
+    if not isinstance(other, int) or other == lane.id or other not in bounds:
+        return None
+    return str(other) if leads_the_same_way(bounds[lane.id], bounds[other], left=left) else None
+
+
+def _limit(layers: _Layers, lane: _Thing) -> float | None:
+    limit = lane.said.get("speed_limit_mps")
+    if limit is None:
+        return None
+    if not isinstance(limit, int | float) or not 0 < limit < LARGEST:
+        raise layers.wrong(lane, "`speed_limit_mps` is no speed")
+    return float(limit)
+
+
+def _line(layers: _Layers, thing: _Thing, name: str) -> Points:
+    """A line in what is said of a thing, without heights."""
+    points = _array(thing.said.get(name))
+    if points is None or not len(points):
+        raise layers.wrong(thing, f"`{name}` is no array of places")
+    if not (np.abs(points[:, :2]) < LARGEST).all():
+        raise layers.wrong(thing, f"a place of `{name}` is not on earth")
+    flat = points[:, :2].astype(float)
+    if np.hypot(*np.diff(flat, axis=0).T).sum() > LONGEST_M:
+        raise layers.wrong(thing, f"`{name}` is longer than {LONGEST_M / 1000:g} km")
+    return without_repeats(flat, _CLOSEST_M)
+
+
+def _array(said: object) -> NDArray[float64] | None:
+    """The places of an array as NumPy's bytes; None if it is none."""
+    if not isinstance(said, dict):
+        return None
+    kind, shape, data = (said.get(key) for key in (b"dtype", b"shape", b"data"))
+    if kind not in ("<f8", "<f4") or not isinstance(shape, list) or not isinstance(data, bytes):
+        return None
+    if len(shape) != 2 or shape[1] not in (2, 3) or not isinstance(shape[0], int):
+        return None
+    size = 8 if kind == "<f8" else 4
+    if shape[0] < 0 or shape[0] * shape[1] * size != len(data):
+        return None
+    return np.frombuffer(data, dtype=kind).reshape(shape[0], shape[1]).astype(float64)
+
+
+class _Paint:
+    """The lines of a map."""
+
+    def __init__(self, layers: _Layers) -> None:
+        lines = [x for x in layers.of(_ROAD_LINE) if isinstance(x.shape, shapely.LineString)]
+        self._lines = [shapely.force_2d(x.shape) for x in lines]
+        self._kinds = [x.said.get("road_line_type") for x in lines]
+        self._tree = shapely.STRtree(self._lines)
+
+    def along(self, bound: Points) -> LaneMark | None:
+        """The mark of the lines that lie along all of a bound; None without any, or if they differ.
+
+        Which of the two lanes beside it a line is said for the map does not tell.
+        """
+        line = shapely.LineString(bound)
+        near = self._tree.query(line, predicate="dwithin", distance=_ALONG_M).tolist()
+        places = shapely.points(bound)
+        kinds = {
+            self._kinds[k]
+            for k in near
+            if (shapely.distance(self._lines[k], places) <= _ALONG_M).all()
+        }
+        marks = {_MARKS.get(kind) if isinstance(kind, int) else None for kind in kinds}
+        return marks.pop() if len(marks) == 1 else None
+
+
+def _crosswalks(layers: _Layers) -> Iterator[Lanelet]:
+    for one in layers.of(_CROSSWALK):
+        outline = _line(layers, one, "outline")
+        if len(outline) > 3:
+            yield crosswalk_with_outline(f"crosswalk {one.id}", outline)

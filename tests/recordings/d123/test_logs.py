@@ -1,0 +1,162 @@
+"""123D's logs and maps: bodies, ego between its poses, lights, lanes with their marks."""
+
+import numpy as np
+import pytest
+
+from rulec import RulecError, read_map, read_recording
+from rulec.extraction.selection import RequestedDrives, selected_drives
+from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
+from rulec.recordings.d123.message_pack import OddPackError, unpacked
+from rulec.recordings.recording_inputs import input_files
+from support.builders import d123_files as d123
+
+
+def test_bodies(tmp_path):
+    recording = read_recording(d123.drive(tmp_path))
+    bodies = {one.id: one for one in recording.participants}
+    assert {key: one.type for key, one in bodies.items()} == {
+        "ego": "car",
+        "car": "car",
+        "walker": "pedestrian",
+        "rider": "bicycle",
+    }
+    assert (recording.ego, recording.step_s, recording.name) == ("ego", 0.1, "some")
+    assert (recording.side, recording.country) == ("right", "USA")
+    car = bodies["car"].states[3]
+    assert (car.x, car.y, car.heading, car.speed) == pytest.approx((33.0, 1.75, 0.0, 10.0))
+    assert bodies["walker"].states[0].heading == pytest.approx(np.pi / 2)
+    # A rider and the cycle are one body, as large as both
+    assert np.ptp(bodies["rider"].outlines[0], axis=0) == pytest.approx((1.8, 0.6))
+
+
+def test_ego_is_at_its_middle_at_the_moments_of_boxes(tmp_path):
+    """Its pose is at x = 5 at the first one and 10 m/s fast, its middle a metre ahead."""
+    file = d123.drive(tmp_path)
+    states = read_recording(file).participants[0].states
+    assert [states[k].x for k in (0, 1, 8)] == pytest.approx([6.0, 7.0, 14.0])
+    # Poses only every 0.2 s, between the moments: on the line from one to the next
+    ego = {1_050_000 + 200_000 * k: d123.pose(5.5 + 2 * k, 1.75, 0.1 * k) for k in range(4)}
+    moments = [1_000_000 + 100_000 * k for k in range(9)]
+    boxes = [[d123.box("car", d123.CAR, 30.0 + k, 1.75)] for k in range(9)]
+    states = read_recording(d123.write_log(tmp_path, moments, boxes, ego)).participants[0].states
+    assert states[1].heading == pytest.approx(0.025)
+    assert states[2].x == pytest.approx(((6.5) + (7.5 + np.cos(0.1))) / 2 + 0.5, abs=0.01)
+    # Nothing is said of ego half a second before its first pose and after its last
+    late = {10**6 + 600_000: d123.pose(5, 1.75)}
+    states = read_recording(d123.write_log(tmp_path, moments, boxes, late)).participants[0].states
+    assert list(states) == [1, 2, 3, 4, 5, 6, 7, 8]
+
+
+def test_lanes(tmp_path):
+    d123.drive(tmp_path)
+    roads = read_map(tmp_path / "map.arrow", 0.1)
+    lanes = roads.lanelets
+    assert set(lanes) == {"1", "2", "3", "4", "crosswalk 5"}
+    one, two, three, back = (lanes[name] for name in "1234")
+    assert (one.right_of, one.left_of, two.left_of, back.left_of) == ("2", None, "1", None)
+    assert (one.successors, three.predecessors) == (("3",), ("1",))
+    assert (one.types, two.types, three.types) == (set(), {"busLane"}, {"intersection"})
+    assert (one.limit_mps, two.limit_mps) == (13.4, None)
+    assert one.left.tolist() == [[0, 3.5], [60, 3.5]]
+    assert one.centre.tolist() == [[0, 1.75], [60, 1.75]]
+    # Of two kinds of lines along one bound nobody says which is whose; beside lane 3 there is none
+    assert (one.left_mark, one.right_mark, two.left_mark) == ("double_solid", "broken", "broken")
+    assert (two.right_mark, three.left_mark) == (None, None)
+    assert (roads.side, roads.country) == ("right", "USA")
+    # People walk along the longer way
+    assert np.ptp(lanes["crosswalk 5"].centre, axis=0) == pytest.approx((0, 12))
+
+
+def test_lights_are_for_the_way_to_their_lane(tmp_path):
+    one, *others = read_recording(d123.drive(tmp_path)).lanelets.values()
+    (light,) = one.lights_to.values()
+    assert list(one.lights_to) == ["3"]
+    assert [light.colour_at(step) for step in (0, 4, 5, 8)] == ["red", "red", "green", "green"]
+    assert not any(lane.lights_to for lane in others)
+
+
+def test_the_map_of_a_place_is_in_a_folder_of_its_own(tmp_path):
+    folder = tmp_path / "logs" / "nuplan_val" / "some"
+    folder.mkdir(parents=True)
+    file = d123.drive(folder)
+    (folder / "map.arrow").unlink()
+    about = {"dataset": "nuplan", "location": "sg-one-north"}
+    moments, ego = [0, 100_000], {0: d123.pose(5, 1.75), 100_000: d123.pose(6, 1.75)}
+    boxes = [[d123.box("car", 0, 30.0 + k, 1.75)] for k in range(2)]
+    labels = "py123d.parser.registry.NuPlanBoxDetectionLabel"
+    d123.write_log(folder, moments, boxes, ego, said=about, labels=labels)
+    with pytest.raises(RulecError, match="R0614"):
+        read_recording(file)
+    maps = tmp_path / "maps" / "nuplan"
+    maps.mkdir(parents=True)
+    d123.write_map(maps, d123.town(), "nuplan_sg-one-north.arrow", about)
+    recording = read_recording(folder)
+    assert (recording.side, recording.country, len(recording.lanelets)) == ("left", "SGP", 5)
+    assert recording.participants[1].type == "vehicle"
+    assert input_files([str(tmp_path)]).paths == (str(folder),)
+
+
+def test_what_it_tells(tmp_path):
+    file = d123.drive(tmp_path)
+    town = d123.town()
+    town[0][2]["lane_type"] = 1
+    d123.write_map(tmp_path, town)
+    told = told_words(selected_drives(read_recording(file), RequestedDrives(), "some", "right"))
+    # Where nobody has doors or rails these are told, too
+    assert told - {"boarding", "conflict_with_rail", "leaving_stop"} == TELLABLE_WORDS["123d"]
+
+
+@pytest.mark.parametrize(
+    ("labels", "label", "said"),
+    [
+        ("somewhere.Labels", 0, "its labels are those of `Labels`"),
+        (d123.AV2, 77, "a label is 77, which `AV2SensorBoxDetectionLabel` has not"),
+    ],
+)
+def test_labels_that_are_not_known(tmp_path, labels, label, said):
+    d123.drive(tmp_path)
+    boxes, ego = [[d123.box("car", label, 30.0, 1.75)]], {0: d123.pose(5, 1.75)}
+    with pytest.raises(RulecError) as refused:
+        read_recording(d123.write_log(tmp_path, [0], boxes, ego, labels=labels))
+    assert said in refused.value.diagnostics[0].message
+
+
+def test_parts_that_are_missing(tmp_path):
+    file = d123.drive(tmp_path)
+    for name in ("ego_state_se3.arrow", "box_detections_se3.arrow"):
+        (tmp_path / name).unlink()
+        with pytest.raises(RulecError, match=f"there is no `{name}` beside it"):
+            read_recording(file)
+
+
+@pytest.mark.parametrize(
+    ("value", "data"),
+    [
+        (5, b"\x05"),
+        (-1, b"\xff"),
+        (None, b"\xc0"),
+        ("ab", b"\xa2ab"),
+        (b"ab", b"\xc4\x02ab"),
+        ([1, [2]], b"\x92\x01\x91\x02"),
+        ({"a": 1.5}, b"\x81\xa1a\xcb\x3f\xf8\0\0\0\0\0\0"),
+        (40_000, b"\xcd\x9c\x40"),
+    ],
+)
+def test_message_pack(value, data):
+    """The short forms; tests' files have the long ones."""
+    assert unpacked(data) == value
+    assert unpacked(d123.packed(value)) == value
+
+
+@pytest.mark.parametrize(
+    "data",
+    [b"", b"\xc1", b"\x92\x01", b"\xdd\xff\xff\xff\xff", b"\x05\x05", b"\xd4\0\0", b"\xa1\xff"],
+)
+def test_what_is_no_message_pack(data):
+    with pytest.raises(OddPackError):
+        unpacked(data)
+
+
+def test_values_within_values_are_bounded():
+    with pytest.raises(OddPackError):
+        unpacked(b"\x91" * 100_000 + b"\x01")
