@@ -14,6 +14,7 @@ from rulec.monitoring.online.snapshot import SavedMonitor
 from rulec.report.findings.diagnostics_json import CodeData, FindingData
 from rulec.report.maneuvers.envelope_table import EnvelopeLine
 from rulec.report.maneuvers.maneuver_json import ManeuversDocument
+from rulec.report.rates.rates_json import RatesDocument
 from rulec.report.recordings.format_listing import FormatsDocument
 from rulec.report.rulebooks.audit_report import AuditDocument
 from rulec.report.rulebooks.diff_json import DiffDocument, TraceData
@@ -40,6 +41,7 @@ SCHEMAS: Mapping[str, tuple[Any, ...]] = {
     "maneuvers": (ManeuversDocument,),
     "matrix": (MatrixDocument,),
     "monitor": (SavedMonitor,),
+    "rates": (RatesDocument,),
     "show": (RulesDocument,),
     "state": (StateVerdict, StateRefused),
     "test": (ExamplesRun,),

@@ -31,6 +31,7 @@ VERBS = {
     "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
     "monitor": "Judge a running trace by a rulebook, state by state.",
     "new": "Write a rulebook to start from.",
+    "rates": "Say how often rules are violated: per hour, per 1000 km, per opportunity.",
     "show": "Show a rule in English, as a formula, as an automaton, by examples.",
     "test": "Run the examples of rulebooks.",
     "traces": "Write all maneuvers of a scenario as traces.",

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
+from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.files import opened
 from rulec.trace.formats.stream_lines import packed
 from rulec.trace.formats.table_reader import (
     TOLD,
@@ -117,6 +119,25 @@ def check_types(schema: Any, pyarrow: Any, file: str) -> None:
             message = f"the column `{name}` is of type {kind}"
             help_text = "types are bool, integers, double (float64), and string"
             raise problem(message, SourceLocation(file), help_text)
+
+
+def rows_of_columns(path: Path, columns: Sequence[str]) -> Iterator[Mapping[str, Any]]:
+    """The rows of any Parquet file, with those of some columns that it has.
+
+    Raises RulecError R0509 if it cannot be read, R0701, R0706.
+    """
+    pyarrow, parquet = arrow(str(path))
+    with opened(path) as stream:
+        refused = _no_parquet(stream, str(path))
+        if refused is not None:
+            raise refused
+        try:
+            source = parquet.ParquetFile(stream)
+            names = [name for name in source.schema_arrow.names if name in columns]
+            for batch in source.iter_batches(_ROWS_AT_ONCE, columns=names):
+                yield from batch.to_pylist()
+        except (pyarrow.ArrowException, OSError) as reason:
+            raise _unreadable("the file", reason, str(path)) from None
 
 
 def write_parquet(

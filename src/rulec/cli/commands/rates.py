@@ -1,0 +1,89 @@
+"""``rulec rates``: how often rules are violated, with intervals."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.output import output_stream, print_written, put_answer
+
+if TYPE_CHECKING:
+    from rulec.rates.drive_counts import GroupKey
+
+GROUPS = ("rulebook", "country", "road", "source", "file", "recording")
+PER = ("hour", "1000_km", "opportunity")
+PICTURES = ("svg", "png", "pdf", "html")
+
+
+def _confidence(_: click.Context, __: click.Parameter, value: float) -> float:
+    if not 0.5 <= value < 1:
+        raise click.BadParameter("it is a number from 0.5 to below 1, such as 0.95")
+    return value
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True, metavar="FINDINGS...")
+@click.option(
+    "--by",
+    multiple=True,
+    type=click.Choice(GROUPS),
+    help="Tell drives apart by this. May be given several times.",
+)
+@click.option(
+    "--confidence",
+    type=float,
+    default=0.95,
+    show_default=True,
+    callback=_confidence,
+    metavar="P",
+    help="The confidence of intervals.",
+)
+@shared.number_option("--seed", "seed", "Draw drives by this seed.", default=0, most=2**32 - 1)
+@click.option(
+    "--per",
+    type=click.Choice(PER),
+    default=PER[0],
+    show_default=True,
+    help="In a picture: the rate that it shows.",
+)
+@output_options(endings_of("text", "markdown", "csv", "json", *PICTURES), "the rates")
+def command(
+    files: tuple[str, ...],
+    by: tuple[GroupKey, ...],
+    confidence: float,
+    seed: int,
+    per: str,
+    to: Output,
+) -> None:
+    """Say how often rules are violated: per hour, per 1000 km, and per opportunity.
+
+    FINDINGS are what `rulec verify --exposure -o FILE` writes, as JSON Lines, CSV or Parquet, and
+    folders of `rulec fleet`. All drives have to be judged alike; with --by rulebook there may be
+    several rulebooks.
+
+    Each rate has two intervals: an exact one for independent opportunities, and one over drives.
+    Takes `pip install 'rulec[rates]'`.
+    """
+    # numpy, Arrow and what shows rates, 150 ms: not for --help.
+    from rulec.rates.rates_of_findings import rates_of_findings
+    from rulec.report.pictures.drawing.picture_formats import as_bytes
+    from rulec.report.rates import rates_json, rates_table
+    from rulec.report.rates.rates_picture import rates_drawing
+
+    found = rates_of_findings(files, by, confidence=confidence, seed=seed)
+    if to.form in PICTURES:
+        data = as_bytes(rates_drawing(found, f"per_{per}"), to.form, to.path)
+        with output_stream(to) as (stream, _):
+            stream.write(data)
+        print_written(to.path, to)
+        return
+    renderers = {
+        "json": rates_json.as_json,
+        "csv": rates_table.as_csv,
+        "markdown": rates_table.as_markdown,
+        "text": rates_table.as_text,
+    }
+    put_answer(renderers[to.form](found), to)

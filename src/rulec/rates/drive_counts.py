@@ -1,0 +1,147 @@
+"""What findings count, drive by drive."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from rulec.rates.finding_rows import FindingRow
+from rulec.rates.rates_messages import judged_otherwise, no_findings, twice
+
+GroupKey = Literal["rulebook", "country", "road", "source", "file", "recording"]
+"""What rates can be told apart by."""
+
+DriveKey = tuple[str, str, str, str]
+"""A rulebook's hash, and a drive's file, recording and name."""
+
+_ALIKE = {
+    "rulebook_hash": "rules",
+    "rulec": "versions of rulec",
+    "thresholds": "thresholds",
+    "assumptions": "assumptions",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RuleCounts:
+    """What a rule came to in a drive: opportunities, how long, and how many were taken.
+
+    Each at least and at most; lengths in s.
+    """
+
+    opportunities: tuple[int, int]
+    exposed_s: tuple[float, float]
+    violated: tuple[int, int]
+
+
+@dataclass(slots=True)
+class DriveCounts:
+    """A drive: how long it is and how far, and what each rule came to that was put to the test.
+
+    Those in ``not_judged`` could not be judged in it. ``group`` are the values of what rates are
+    told apart by.
+    """
+
+    group: tuple[str, ...]
+    duration_s: float
+    distance_m: float | None
+    rules: dict[str, RuleCounts] = field(default_factory=dict)
+    not_judged: set[str] = field(default_factory=set)
+
+
+@dataclass(frozen=True, slots=True)
+class RuleTitle:
+    """A rule's provision, and whether it is hard or soft."""
+
+    provision: str
+    strength: str
+
+
+@dataclass(slots=True)
+class Counted:
+    """The drives of files of findings; ``not_judged`` is the number of those without a verdict.
+
+    ``judged_by`` are the rulebooks, versions, thresholds and assumptions, in the order in which
+    they came. ``rules`` have for each group those that its drives were judged by.
+    """
+
+    by: tuple[GroupKey, ...]
+    drives: dict[DriveKey, DriveCounts] = field(default_factory=dict)
+    rules: dict[str, dict[str, RuleTitle]] = field(default_factory=dict)
+    judged_by: dict[str, FindingRow] = field(default_factory=dict)
+    not_judged: int = 0
+    _files: dict[DriveKey, str] = field(default_factory=dict)
+    _first: tuple[str, FindingRow] | None = None
+    _waiting: list[tuple[str, DriveKey, FindingRow]] = field(default_factory=list)
+
+    def add(self, file: str, rows: Iterable[FindingRow]) -> None:
+        """Take the rows of a file.
+
+        Raises RulecError R0715 if they were judged otherwise than those before, R0716 for a drive
+        that was there already.
+        """
+        for row in rows:
+            self._check(file, row)
+            key = row.rulebook_hash, row.file, row.recording, row.vehicle
+            if row.kind == "drive":
+                self._drive(file, key, row)
+            else:
+                self._waiting.append((file, key, row))
+        still_waiting = []
+        for where, key, row in self._waiting:
+            if key in self.drives:
+                self._rule(where, key, row)
+            else:
+                still_waiting.append((where, key, row))
+        self._waiting = still_waiting
+
+    def close(self, files: Sequence[str]) -> None:
+        """Check that all is there in these files. Raises RulecError R0716."""
+        for file, (_, _, _, drive), row in self._waiting:
+            raise no_findings(file, f"rule `{row.rule}` is of drive `{drive}`, which has no row")
+        if not self.drives and not self.not_judged:
+            raise no_findings(", ".join(files), "there are no rows of drives")
+
+    def _check(self, file: str, row: FindingRow) -> None:
+        if self._first is None:
+            self._first = file, row
+        first_file, first = self._first
+        apart: Collection[str] = ("rulebook_hash",) if "rulebook" in self.by else ()
+        for name, what in _ALIKE.items():
+            own, other = getattr(row, name), getattr(first, name)
+            if own != other and name not in apart:
+                values = own, other
+                if name == "rulebook_hash":
+                    values = (f"{row.rulebook} ({own[:8]})", f"{first.rulebook} ({other[:8]})")
+                raise judged_otherwise(file, first_file, what, values)
+        self.judged_by.setdefault(row.rulebook_hash, row)
+
+    def _drive(self, file: str, key: DriveKey, row: FindingRow) -> None:
+        if key in self._files:
+            raise twice(file, self._files[key], " ".join(part for part in key[1:] if part))
+        self._files[key] = file
+        if row.outcome == "not_judged" or row.duration_s is None:
+            self.not_judged += 1
+            return
+        group = tuple([str(getattr(row, name)) for name in self.by])
+        self.drives[key] = DriveCounts(group, row.duration_s, row.distance_m)
+
+    def _rule(self, file: str, key: DriveKey, row: FindingRow) -> None:
+        drive = self.drives[key]
+        self.rules.setdefault(row.rulebook_hash, {}).setdefault(
+            row.rule, RuleTitle(row.provision, row.strength)
+        )
+        if row.outcome == "not_judged" or row.opportunities is None:
+            drive.not_judged.add(row.rule)
+            return
+        counts = RuleCounts(
+            (row.opportunities, row.perhaps_opportunities or row.opportunities),
+            (row.opportunities_s or 0.0, row.perhaps_opportunities_s or row.opportunities_s or 0.0),
+            (row.violated or 0, row.perhaps_violated or row.violated or 0),
+        )
+        if counts.violated[0] > counts.opportunities[1]:
+            why = f"rule `{row.rule}` is violated more often than it had opportunities"
+            raise no_findings(file, f"{why}, in drive `{row.vehicle}`")
+        if counts.opportunities[1] or counts.violated[1]:
+            drive.rules[row.rule] = counts

@@ -1,0 +1,66 @@
+"""Messages about rates."""
+
+from __future__ import annotations
+
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.code import Code
+
+JUDGED_OTHERWISE = Code(
+    "R0715",
+    title="findings were judged differently and cannot be added up",
+    why="A rate says how often a rule is violated, so all drives have to be judged by the same "
+    "rules, by the same version of rulec, with the same thresholds and on the same assumptions. "
+    "Different rulebooks can be told apart by `--by rulebook`.",
+    kind="circumstance",
+)
+
+NO_FINDINGS = Code(
+    "R0716",
+    title="a file has no findings that rates can be made of",
+    why="Rates are made of the rows of drives and of rules that `rulec verify --exposure -o FILE` "
+    "writes, as JSON Lines, CSV or Parquet, and `rulec fleet`. Rows of violations alone do not say "
+    "how long anybody drove. And no drive may be there twice.",
+    kind="circumstance",
+)
+
+RATES_UNAVAILABLE = Code(
+    "R0717",
+    title="intervals take a package that is not installed",
+    why="Exact intervals take the package `scipy`, which is installed on request: `pip install "
+    "'rulec[rates]'`.",
+    kind="circumstance",
+)
+
+
+def no_findings(file: str, why: str) -> RulecError:
+    return NO_FINDINGS.error(
+        SourceLocation(file),
+        why,
+        help="write findings with `rulec verify --exposure -o FILE`, as .jsonl, .csv or .parquet",
+    )
+
+
+def judged_otherwise(file: str, first: str, what: str, values: tuple[str, str]) -> RulecError:
+    own, other = [value or "none" for value in values]
+    return JUDGED_OTHERWISE.error(
+        SourceLocation(file),
+        f"the {what} differ from those of {first}: {own} here, {other} there",
+        help="judge all drives alike" + (", or add `--by rulebook`" if what == "rules" else ""),
+    )
+
+
+def twice(file: str, first: str, drive: str) -> RulecError:
+    where = f"in {first}, too" if first != file else "twice in it"
+    return NO_FINDINGS.error(
+        SourceLocation(file),
+        f"drive `{drive}` is {where}",
+        help="give the findings of each drive once",
+    )
+
+
+def no_scipy() -> RulecError:
+    return RATES_UNAVAILABLE.error(
+        None,
+        "exact intervals take the package `scipy`, which is not installed",
+        help="`pip install 'rulec[rates]'`",
+    )

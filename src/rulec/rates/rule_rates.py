@@ -1,0 +1,297 @@
+"""Rates of violations by rule and group, with exact intervals and a bootstrap over drives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from rulec.rates.drive_bootstrap import (
+    DRIVES_TOGETHER,
+    REPLICATES,
+    Sums,
+    bootstrapped,
+    percentile_interval,
+)
+from rulec.rates.drive_counts import Counted, DriveCounts, GroupKey, RuleTitle
+from rulec.rates.exact_intervals import Interval, binomial_interval, poisson_interval
+from rulec.rates.finding_rows import FindingRow
+from rulec.value_display import Rows, short_repr
+
+S_PER_HOUR = 3600.0
+
+
+@dataclass(frozen=True, slots=True)
+class Rate:
+    """A rate between ``least`` and ``most``, which are apart where something is open.
+
+    ``exact`` is its interval if events are independent, ``bootstrap`` that over drives, None where
+    that knows nothing: of no violation, and of fewer than two drives.
+    """
+
+    least: float
+    most: float
+    exact: Interval
+    bootstrap: Interval | None
+
+
+@dataclass(frozen=True, slots=True)
+class RuleRates:
+    """How often a rule was put to the test in a group of drives, and violated.
+
+    ``drives`` are those in which it was judged, ``hours`` and ``km`` what they came to, ``km`` None
+    if nobody's distance is known. Opportunities and violated ones are those for sure and those at
+    most, ``exposed_h`` are the hours with an opportunity. A rate is None where there was nothing
+    that it could be a rate of.
+    """
+
+    __repr__ = short_repr
+
+    group: tuple[str, ...]
+    rulebook: str
+    rule: str
+    provision: str
+    strength: str
+    drives: int
+    hours: float
+    km: float | None
+    opportunities: int
+    perhaps_opportunities: int
+    exposed_h: float
+    perhaps_exposed_h: float
+    violated: int
+    perhaps_violated: int
+    per_hour: Rate | None
+    per_1000_km: Rate | None
+    per_opportunity: Rate | None
+
+
+@dataclass(frozen=True)
+class ViolationRates(Rows):
+    """Rates of all rules by what they are told apart ``by``.
+
+    ``drives`` and ``not_judged`` are how many drives have a verdict and have none, ``judged_by``
+    what they were judged by, ``confidence`` that of the intervals.
+    """
+
+    __repr__ = short_repr
+
+    by: tuple[GroupKey, ...]
+    drives: int
+    not_judged: int
+    judged_by: tuple[FindingRow, ...]
+    confidence: float
+    replicates: int
+    seed: int
+    rules: tuple[RuleRates, ...]
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a rule and group."""
+        return [_as_row(rule, self.by) for rule in self.rules]
+
+
+def violation_rates(
+    counted: Counted, *, confidence: float = 0.95, seed: int = 0, replicates: int = REPLICATES
+) -> ViolationRates:
+    """The rates of what was counted. Raises RulecError R0717 without scipy."""
+    groups: dict[tuple[str, tuple[str, ...]], list[DriveCounts]] = {}
+    for (rulebook, *_), drive in sorted(counted.drives.items()):
+        groups.setdefault((rulebook, drive.group), []).append(drive)
+    result = []
+    for (rulebook, group), drives in sorted(groups.items(), key=lambda item: item[0][1]):
+        rules = counted.rules.get(rulebook, {})
+        sums = _Sums(drives, list(rules))
+        drawn = sums.drawn(seed, replicates)
+        name = counted.judged_by[rulebook].rulebook
+        for number, (rule, title) in enumerate(rules.items()):
+            own = _RuleSums(sums, drawn, number, confidence)
+            result.append(_rule_rates(group, name, (rule, title), own))
+    return ViolationRates(
+        counted.by,
+        len(counted.drives),
+        counted.not_judged,
+        tuple(counted.judged_by.values()),
+        confidence,
+        replicates,
+        seed,
+        tuple(result),
+    )
+
+
+_COLUMNS = (
+    "drives",
+    "hours",
+    "far",
+    "km",
+    "opportunities",
+    "perhaps_opportunities",
+    "exposed_h",
+    "perhaps_exposed_h",
+    "violated",
+    "perhaps_violated",
+    "violated_far",
+    "perhaps_violated_far",
+    "most_opportunities",
+)
+"""What is added up of a drive for a rule; ``far`` counts drives whose distance is known.
+
+``most_opportunities`` are those for sure, or as many as may have been violated if these are more.
+"""
+
+_AT = {name: place for place, name in enumerate(_COLUMNS)}
+
+
+class _Sums:
+    """The numbers of some drives, a row of ``_COLUMNS`` for each rule."""
+
+    def __init__(self, drives: Sequence[DriveCounts], rules: Sequence[str]) -> None:
+        self._drives = drives
+        self._rules = rules
+        self.n_columns = len(rules) * len(_COLUMNS)
+        self.total = np.zeros(self.n_columns)
+        for block in self.blocks():
+            self.total += block.sum(axis=0)
+
+    def blocks(self) -> Iterator[Sums]:
+        """The numbers (drives x columns) of some drives at a time."""
+        for begin in range(0, len(self._drives), DRIVES_TOGETHER):
+            part = self._drives[begin : begin + DRIVES_TOGETHER]
+            block = np.array([_numbers(drive, self._rules) for drive in part], dtype=np.float64)
+            yield block.reshape(len(part), self.n_columns)
+
+    def drawn(self, seed: int, replicates: int) -> Sums | None:
+        """The sums of drives that are drawn again; None if there is nothing to draw."""
+        if len(self._drives) < 2:
+            return None
+        return bootstrapped(len(self._drives), self.n_columns, self.blocks(), seed, replicates)
+
+
+def _numbers(drive: DriveCounts, rules: Sequence[str]) -> list[float]:
+    hours = drive.duration_s / S_PER_HOUR
+    is_far = drive.distance_m is not None
+    km = (drive.distance_m or 0.0) / 1000
+    numbers: list[float] = []
+    for rule in rules:
+        if rule in drive.not_judged:
+            numbers += [0.0] * len(_COLUMNS)
+            continue
+        counts = drive.rules.get(rule)
+        numbers += (1.0, hours, is_far, km)
+        if counts is None:
+            numbers += [0.0] * (len(_COLUMNS) - 4)
+            continue
+        least, most = counts.violated
+        numbers += (
+            *counts.opportunities,
+            *(seconds / S_PER_HOUR for seconds in counts.exposed_s),
+            least,
+            most,
+            least * is_far,
+            most * is_far,
+            max(counts.opportunities[0], most),
+        )
+    return numbers
+
+
+class _RuleSums:
+    """The sums of one rule, and those of drives that are drawn again."""
+
+    def __init__(self, sums: _Sums, drawn: Sums | None, number: int, confidence: float) -> None:
+        self._begin = number * len(_COLUMNS)
+        self._total = sums.total
+        self._drawn = drawn
+        self._confidence = confidence
+
+    def __getitem__(self, name: str) -> float:
+        return float(self._total[self._begin + _AT[name]])
+
+    def count(self, name: str) -> int:
+        """A sum of whole numbers."""
+        return round(self[name])
+
+    def per_length(self, violated: tuple[str, str], length: str, scale: float) -> Rate | None:
+        """The rate per ``scale`` of a length."""
+        if not self[length]:
+            return None
+        least, most = (self.count(name) for name in violated)
+        factor = scale / self[length]
+        low, high = poisson_interval(least, most, self._confidence)
+        bootstrap = self._bootstrap(violated, (length, length))
+        if bootstrap is not None:
+            bootstrap = bootstrap[0] * scale, bootstrap[1] * scale
+        return Rate(least * factor, most * factor, (low * factor, high * factor), bootstrap)
+
+    def per_opportunity(self) -> Rate | None:
+        """The part of opportunities that are taken."""
+        if not self["most_opportunities"] and not self["perhaps_opportunities"]:
+            return None
+        violated, of = _VIOLATED, ("perhaps_opportunities", "most_opportunities")
+        least, most = ((self.count(v), self.count(n)) for v, n in zip(violated, of, strict=True))
+        return Rate(
+            least[0] / least[1] if least[1] else 0.0,
+            most[0] / most[1] if most[1] else 1.0,
+            binomial_interval(least, most, self._confidence),
+            self._bootstrap(violated, of),
+        )
+
+    def _bootstrap(self, violated: tuple[str, str], of: tuple[str, str]) -> Interval | None:
+        if self._drawn is None or not self[violated[1]]:
+            return None
+        least, most = (
+            (self._drawn[:, self._begin + _AT[v]], self._drawn[:, self._begin + _AT[n]])
+            for v, n in zip(violated, of, strict=True)
+        )
+        return percentile_interval(least, most, self._confidence)
+
+
+_VIOLATED = ("violated", "perhaps_violated")
+_VIOLATED_FAR = ("violated_far", "perhaps_violated_far")
+
+
+def _rule_rates(
+    group: tuple[str, ...], rulebook: str, named: tuple[str, RuleTitle], sums: _RuleSums
+) -> RuleRates:
+    rule, title = named
+    return RuleRates(
+        group,
+        rulebook,
+        rule,
+        title.provision,
+        title.strength,
+        drives=sums.count("drives"),
+        hours=sums["hours"],
+        km=sums["km"] if sums["far"] else None,
+        opportunities=sums.count("opportunities"),
+        perhaps_opportunities=sums.count("perhaps_opportunities"),
+        exposed_h=sums["exposed_h"],
+        perhaps_exposed_h=sums["perhaps_exposed_h"],
+        violated=sums.count("violated"),
+        perhaps_violated=sums.count("perhaps_violated"),
+        per_hour=sums.per_length(_VIOLATED, "hours", 1.0),
+        per_1000_km=sums.per_length(_VIOLATED_FAR, "km", 1000.0),
+        per_opportunity=sums.per_opportunity(),
+    )
+
+
+def _as_row(rates: RuleRates, by: Sequence[GroupKey]) -> dict[str, Any]:
+    row: dict[str, Any] = dict(zip(by, rates.group, strict=True))
+    row |= {field.name: getattr(rates, field.name) for field in _PLAIN}
+    for name in RATES:
+        rate: Rate | None = getattr(rates, name)
+        bootstrap = (None, None) if rate is None else rate.bootstrap or (None, None)
+        exact = (None, None) if rate is None else rate.exact
+        row |= {
+            name: None if rate is None else rate.least,
+            f"perhaps_{name}": None if rate is None else rate.most,
+            f"{name}_low": exact[0],
+            f"{name}_high": exact[1],
+            f"{name}_drives_low": bootstrap[0],
+            f"{name}_drives_high": bootstrap[1],
+        }
+    return row
+
+
+RATES = ("per_hour", "per_1000_km", "per_opportunity")
+_PLAIN = [field for field in fields(RuleRates) if field.name not in (*RATES, "group")]

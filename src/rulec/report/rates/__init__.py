@@ -1,0 +1,1 @@
+"""Rates of violations as text, Markdown, CSV, JSON and a picture."""

@@ -1,0 +1,87 @@
+"""Rates as JSON."""
+
+from __future__ import annotations
+
+from rulec.rates.drive_counts import GroupKey
+from rulec.rates.rule_rates import Rate, RuleRates, ViolationRates
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
+
+
+class JudgedByData(JsonPart, frozen=True, kw_only=True):
+    """What drives were judged by."""
+
+    rulebook: str
+    rulebook_hash: str
+    rulec: str
+    thresholds: str
+    assumptions: str
+
+
+class RateData(JsonPart, frozen=True, kw_only=True):
+    """A rate, at least and at most, with both of its intervals."""
+
+    least: float
+    most: float
+    exact: tuple[float, float]
+    bootstrap: tuple[float, float] | None
+
+
+class RuleRatesData(JsonPart, frozen=True, kw_only=True):
+    """The rates of a rule in a group; see docs/rates.md."""
+
+    group: dict[str, str]
+    rulebook: str
+    rule: str
+    provision: str
+    strength: str
+    drives: int
+    hours: float
+    km: float | None
+    opportunities: int
+    perhaps_opportunities: int
+    exposed_h: float
+    perhaps_exposed_h: float
+    violated: int
+    perhaps_violated: int
+    per_hour: RateData | None
+    per_1000_km: RateData | None
+    per_opportunity: RateData | None
+
+
+class RatesDocument(JsonDocument, frozen=True, kw_only=True):
+    """What ``rulec rates --json`` prints."""
+
+    by: tuple[GroupKey, ...]
+    drives: int
+    not_judged: int
+    judged_by: list[JudgedByData]
+    confidence: float
+    replicates: int
+    seed: int
+    rules: list[RuleRatesData]
+
+
+def as_json(rates: ViolationRates) -> str:
+    """Write rates over several lines."""
+    document = filled(
+        RatesDocument,
+        rates,
+        judged_by=[filled(JudgedByData, by) for by in rates.judged_by],
+        rules=[_rule(rule, rates) for rule in rates.rules],
+    )
+    return as_indented(document)
+
+
+def _rule(rule: RuleRates, rates: ViolationRates) -> RuleRatesData:
+    return filled(
+        RuleRatesData,
+        rule,
+        group=dict(zip(rates.by, rule.group, strict=True)),
+        per_hour=_rate(rule.per_hour),
+        per_1000_km=_rate(rule.per_1000_km),
+        per_opportunity=_rate(rule.per_opportunity),
+    )
+
+
+def _rate(rate: Rate | None) -> RateData | None:
+    return None if rate is None else filled(RateData, rate)

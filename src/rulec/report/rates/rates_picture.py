@@ -1,0 +1,122 @@
+"""A forest plot of rates: a row for each rule, a mark for its rate, lines for its intervals.
+
+Lewis and Clarke, "Forest plots: trying to see the wood and the trees" (2001). Rates are on a
+logarithmic axis, since they differ by orders of magnitude; what reaches down to none has an open
+end on the left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from math import ceil, floor, log10
+
+from rulec.rates.exact_intervals import Interval
+from rulec.rates.rule_rates import RATES, Rate, RuleRates, ViolationRates
+from rulec.report.pictures.drawing.canvas import (
+    MARGIN,
+    WIDTH,
+    LabelText,
+    Mark,
+    Picture,
+    Polyline,
+    centred,
+    filled,
+    text_width,
+)
+from rulec.report.pictures.drawing.picture_formats import Drawing
+from rulec.report.rates.rates_table import group_title, number
+
+PER = {"per_hour": "per hour", "per_1000_km": "per 1000 km", "per_opportunity": "per opportunity"}
+"""The rates that a picture may show, in words."""
+
+_ROW = 34.0
+_BESIDE = 5.0
+"""How far both intervals are from the middle of a row."""
+_HEAD = 30.0
+_FOOT = 26.0
+_LONGEST_NAME = 380.0
+_MOST_DECADES = 6
+
+
+def rates_drawing(rates: ViolationRates, per: str) -> Drawing:
+    """The forest plot of one of the rates (a name in ``PER``); its title says what is shown."""
+    assert per in RATES, "there are three rates"
+    shown = [
+        (rule, rate)
+        for rule in rates.rules
+        if (rate := getattr(rule, per)) is not None and rule.perhaps_opportunities
+    ]
+    books = ", ".join(by.rulebook for by in rates.judged_by)
+    percent = f"{100 * rates.confidence:g} %"
+    title = (
+        f"Violations {PER[per]} by {books}: {rates.drives:,} drives; {percent} intervals, "
+        "above for independent opportunities, below over drives"
+    )
+    return Drawing(title, [_forest(title, rates, shown)], None)
+
+
+def _forest(title: str, rates: ViolationRates, shown: Sequence[tuple[RuleRates, Rate]]) -> Picture:
+    height = _HEAD + _ROW * max(len(shown), 1) + _FOOT
+    names = [_name(rule, rates) for rule, _ in shown]
+    left = MARGIN + min(text_width(names), _LONGEST_NAME) + MARGIN
+    values = [value for _, rate in shown for value in _values(rate) if value > 0]
+    if not values:
+        nothing = LabelText("no rule was put to the test", (MARGIN, _HEAD))
+        return Picture(title, WIDTH, height, (nothing,))
+    low, high = _decades(values)
+    scale = (WIDTH - 2 * MARGIN - left) / (high - low)
+
+    def across(value: float) -> float:
+        return left + scale * (min(max(log10(value), low), high) - low if value > 0 else 0.0)
+
+    bottom = height - _FOOT
+    marks: list[Mark] = []
+    for decade in range(low, high + 1):
+        x = across(10.0**decade)
+        marks.append(Polyline(((x, _HEAD / 2), (x, bottom)), "unsaid"))
+        marks.append(LabelText(f"{10.0**decade:g}", (x, bottom + _FOOT / 2), "middle", "faint"))
+    for place, ((_, rate), name) in enumerate(zip(shown, names, strict=True)):
+        y = _HEAD + _ROW * (place + 0.5)
+        marks.append(LabelText(_shortened(name), (MARGIN, y)))
+        marks += _row(rate, y, across)
+    return Picture(title, WIDTH, height, tuple(marks))
+
+
+def _row(rate: Rate, y: float, place: Callable[[float], float]) -> Iterator[Mark]:
+    yield from _bar(rate.exact, y - _BESIDE, "satisfying", place, "independent opportunities")
+    if rate.bootstrap is not None:
+        yield from _bar(rate.bootstrap, y + _BESIDE, "rejected", place, "over drives")
+    for value in {rate.least, rate.most}:
+        if value > 0:
+            tip = f"{number(rate.least)} to {number(rate.most)}"
+            yield filled(centred((place(value), y), 3.0, 8.0), "own", tip)
+
+
+def _bar(
+    interval: Interval, y: float, style: str, place: Callable[[float], float], what: str
+) -> Iterator[Mark]:
+    low, high = interval
+    tip = f"{what}: {number(low)} to {number(high)}"
+    yield Polyline(((place(low), y), (place(high), y)), style, tip)
+    for end in (low, high):
+        if end > 0:
+            yield Polyline(((place(end), y - 3), (place(end), y + 3)), style)
+
+
+def _values(rate: Rate) -> Iterator[float]:
+    yield from (rate.least, rate.most, *rate.exact, *(rate.bootstrap or ()))
+
+
+def _decades(values: Sequence[float]) -> tuple[int, int]:
+    high = max(ceil(log10(max(values))), floor(log10(max(values))) + 1)
+    return max(floor(log10(min(values))), high - _MOST_DECADES), high
+
+
+def _name(rule: RuleRates, rates: ViolationRates) -> str:
+    group = group_title(rule.group, rates.by)
+    return f"{rule.rule} ({group})" if group else rule.rule
+
+
+def _shortened(name: str) -> str:
+    most = int(_LONGEST_NAME / text_width("x")) if name else 0
+    return name if len(name) <= most else f"{name[: most - 1]}…"

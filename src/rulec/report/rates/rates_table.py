@@ -1,0 +1,174 @@
+"""Rates as text, Markdown and CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from rulec.rates.exact_intervals import Interval
+from rulec.rates.rule_rates import Rate, RuleRates, ViolationRates
+from rulec.report.text import markdown
+from rulec.report.text.terminal_text import table_lines, visible
+
+_HEAD = ("rule", "opportunities", "violated", "per hour", "per 1000 km", "per opportunity")
+
+
+def as_text(rates: ViolationRates) -> str:
+    """A table for each group; below each rate the interval over drives, in braces."""
+    lines = [*_about(rates)]
+    for group, rules in _groups(rates):
+        tested = [rule for rule in rules if _is_tested(rule)]
+        lines += ["", *([f"{group}: {_size(rules)}"] if group else [_size(rules)])]
+        rows: list[tuple[str, ...]] = [_HEAD]
+        for rule in tested:
+            rows += [tuple(_cells(rule)), ("", "", "", *_below(rule))]
+        if tested:
+            lines += table_lines(rows, indent="  ", right=(1, 2))
+        lines += [f"  {line}" for line in _others(rules)]
+    return "\n".join(visible(line.rstrip()) for line in lines)
+
+
+def as_markdown(rates: ViolationRates) -> str:
+    """A table for each group."""
+    blocks: list[markdown.Block] = [
+        markdown.Heading(1, "How often rules are violated"),
+        *(markdown.escaped(line) for line in _about(rates)),
+    ]
+    for group, rules in _groups(rates):
+        if group:
+            blocks.append(markdown.Heading(2, group))
+        blocks.append(markdown.escaped(_size(rules)))
+        rows = [
+            [
+                markdown.escaped(cell) if not below else markdown.escaped(f"{cell} {below}")
+                for cell, below in zip(_cells(rule), ("", "", "", *_below(rule)), strict=True)
+            ]
+            for rule in rules
+            if _is_tested(rule)
+        ]
+        if rows:
+            blocks.append(markdown.table(_HEAD, rows))
+        blocks += [markdown.escaped(line) for line in _others(rules)]
+    return markdown.written(blocks)
+
+
+def as_csv(rates: ViolationRates) -> str:
+    """A row for each rule and group (RFC 4180), with a line of names."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\r\n")
+    rows = rates.rows()
+    if rows:
+        writer.writerow(rows[0])
+    for row in rows:
+        writer.writerow([_csv_cell(value) for value in row.values()])
+    return text.getvalue().rstrip("\r\n")
+
+
+def _csv_cell(value: object) -> str:
+    """A cell; a text that a spreadsheet would compute gets an apostrophe before it."""
+    if value is None:
+        return ""
+    if not isinstance(value, str):
+        return repr(value)
+    text = visible(value)
+    return f"'{text}" if text.startswith(("=", "+", "-", "@", "'")) else text
+
+
+def _about(rates: ViolationRates) -> Iterator[str]:
+    percent = f"{100 * rates.confidence:g} %"
+    for by in rates.judged_by:
+        chosen = [f"rulec {by.rulec}", *filter(None, (by.thresholds, by.assumptions))]
+        yield f"rulebook {by.rulebook} ({by.rulebook_hash[:8]}), {', '.join(chosen)}"
+    left_out = f"; {rates.not_judged:,} without a verdict" if rates.not_judged else ""
+    yield f"{_number(rates.drives, 'drive')}{left_out}"
+    yield (
+        f"In parentheses {percent} intervals for independent opportunities, in braces over drives: "
+        f"{rates.replicates:,} times drawn again, seed {rates.seed}."
+    )
+
+
+def _groups(rates: ViolationRates) -> Iterator[tuple[str, list[RuleRates]]]:
+    def group_of(rule: RuleRates) -> tuple[str, ...]:
+        return (*rule.group, rule.rulebook)
+
+    for _, own in groupby(rates.rules, key=group_of):
+        rules = list(own)
+        yield group_title(rules[0].group, rates.by), rules
+
+
+def group_title(group: Sequence[str], by: Sequence[str]) -> str:
+    """A group by the names and values of what it is told apart by."""
+    pairs = zip(by, group, strict=True)
+    return ", ".join(f"{name} {value or 'unknown'}" for name, value in pairs)
+
+
+def _size(rules: Sequence[RuleRates]) -> str:
+    most = max(rules, key=lambda rule: rule.drives)
+    far = "" if most.km is None else f", {number(most.km)} km"
+    return f"{_number(most.drives, 'drive')}, {number(most.hours)} h{far}"
+
+
+def _is_tested(rule: RuleRates) -> bool:
+    return bool(rule.perhaps_opportunities or rule.perhaps_violated)
+
+
+def _others(rules: Sequence[RuleRates]) -> Iterator[str]:
+    judged = [rule.rule for rule in rules if rule.drives and not _is_tested(rule)]
+    if judged:
+        yield f"no opportunity: {', '.join(judged)}"
+    not_judged = [rule.rule for rule in rules if not rule.drives]
+    if not_judged:
+        yield f"not judged: {', '.join(not_judged)}"
+
+
+def _cells(rule: RuleRates) -> list[str]:
+    title = f"{rule.rule} [{rule.provision}]" if rule.provision else rule.rule
+    return [
+        title,
+        _between(rule.opportunities, rule.perhaps_opportunities),
+        _between(rule.violated, rule.perhaps_violated),
+        *(_rate(rate) for rate in rates_of(rule)),
+    ]
+
+
+def rates_of(rule: RuleRates) -> tuple[Rate | None, ...]:
+    """The rates of a rule, in the order of the table."""
+    return rule.per_hour, rule.per_1000_km, rule.per_opportunity
+
+
+def _below(rule: RuleRates) -> list[str]:
+    return [
+        "" if rate is None or rate.bootstrap is None else f"{{{_interval(rate.bootstrap)}}}"
+        for rate in rates_of(rule)
+    ]
+
+
+def _rate(rate: Rate | None) -> str:
+    if rate is None:
+        return "-"
+    value = number(rate.least)
+    if number(rate.most) != value:
+        value = f"{value} to {number(rate.most)}"
+    return f"{value} ({_interval(rate.exact)})"
+
+
+def _interval(interval: Interval) -> str:
+    low, high = interval
+    return f"{number(low)} to {number(high)}"
+
+
+def _between(least: int, most: int) -> str:
+    return f"{least:,}" if least == most else f"{least:,} to {most:,}"
+
+
+def number(value: float) -> str:
+    """A number with three digits that count."""
+    if value >= 1000:
+        return f"{value:,.0f}"
+    return f"{value:.3g}" if value >= 0.001 or value == 0 else f"{value:.1e}"
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
