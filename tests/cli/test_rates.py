@@ -1,0 +1,98 @@
+"""``rulec rates``: formats, choices and refusals."""
+
+import csv
+import io
+import json
+from xml.etree import ElementTree
+
+import pytest
+
+from rulec.cli.main import main
+
+SHARED = {"rulebook": "de", "rulebook_hash": "abcdefgh1", "rulec": "1.0", "file": "a.xml"}
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    """Three drives of an hour; of 30 stop signs three were passed."""
+    rows = []
+    for vehicle, violated in (("v", 2), ("w", 1), ("x", 0)):
+        own = {**SHARED, "vehicle": vehicle, "country": "DEU" if vehicle == "v" else "USA"}
+        rows.append(
+            {**own, "kind": "drive", "outcome": "kept", "duration_s": 3600.0, "distance_m": 5e4}
+        )
+        rule = {**own, "kind": "rule", "strength": "hard", "outcome": "kept"}
+        own_counts = {"opportunities": 10, "violated": violated, "opportunities_s": 60.0}
+        rows.append({**rule, "rule": "stop_sign", "provision": "§ 41", **own_counts})
+        rows.append({**rule, "rule": "school_bus", "opportunities": 0, "violated": 0})
+        rows.append({**rule, "rule": "zipper", "outcome": "not_judged"})
+    path = tmp_path_factory.mktemp("rates") / "found.jsonl"
+    path.write_text("".join(f"{json.dumps(row)}\n" for row in rows))
+    return str(path)
+
+
+def test_a_table_as_text(found, capsys):
+    assert main(["rates", found]) == 0
+    printed = capsys.readouterr().out
+    lines = printed.splitlines()
+    assert lines[0] == "rulebook de (abcdefgh), rulec 1.0"
+    row = next(line for line in lines if "stop_sign" in line)
+    # Poisson's interval for 3 is 0.619 to 8.77, that of Clopper and Pearson for 3 of 30 2.11 to
+    # 26.5 %.
+    expected = "stop_sign [§ 41] 30 3 1 (0.206 to 2.92) 20 (4.12 to 58.4) 0.1 (0.0211 to 0.265)"
+    assert " ".join(row.split()) == expected
+    assert "no opportunity: school_bus" in printed
+    assert "not judged: zipper" in printed
+
+
+def test_the_same_as_json_and_csv(found, capsys):
+    assert main(["rates", found, "--json", "--by", "country"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert [rule["group"]["country"] for rule in document["rules"]] == ["DEU"] * 3 + ["USA"] * 3
+    assert main(["rates", found, "--output-format", "csv", "--by", "country"]) == 0
+    rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+    assert [row["rule"] for row in rows] == [rule["rule"] for rule in document["rules"]]
+    for row, rule in zip(rows, document["rules"], strict=True):
+        if rule["per_hour"] is not None:
+            assert float(row["per_hour_high"]) == rule["per_hour"]["exact"][1]
+
+
+@pytest.mark.parametrize("ending", ["md", "txt", "csv", "json", "svg", "html", "png"])
+def test_every_ending(found, tmp_path, ending):
+    path = tmp_path / f"rates.{ending}"
+    assert main(["rates", found, "-o", str(path), "--per", "opportunity"]) == 0
+    data = path.read_bytes()
+    if ending == "png":
+        assert data.startswith(b"\x89PNG")
+    else:
+        assert b"stop_sign" in data.replace(b"\\", b"")
+    if ending == "svg":
+        assert ElementTree.fromstring(data).tag.endswith("svg")
+
+
+def test_a_picture_of_nothing_says_so(tmp_path):
+    row = {**SHARED, "kind": "drive", "vehicle": "v", "outcome": "kept", "duration_s": 1.0}
+    path = tmp_path / "found.jsonl"
+    path.write_text(json.dumps(row))
+    assert main(["rates", str(path), "-o", str(tmp_path / "rates.svg")]) == 0
+    assert "no rule was put to the test" in (tmp_path / "rates.svg").read_text()
+
+
+def test_a_seed_draws_other_drives(found, capsys):
+    printed = []
+    for seed in ("0", "0", "1"):
+        assert main(["rates", found, "--json", "--seed", seed]) == 0
+        rules = json.loads(capsys.readouterr().out)["rules"]
+        printed.append(rules)
+    assert printed[0] == printed[1]
+
+
+@pytest.mark.parametrize("confidence", ["0.4", "1", "nan", "much"])
+def test_confidence_is_a_probability(found, confidence, capsys):
+    assert main(["rates", found, "--confidence", confidence]) == 2
+    assert "--confidence" in capsys.readouterr().err
+
+
+def test_a_file_that_is_not_there(capsys):
+    assert main(["rates", "nowhere.jsonl"]) == 2
+    assert "R0701" in capsys.readouterr().err
