@@ -1,8 +1,11 @@
 """Intervals: numbers from the literature, and coverage in simulation."""
 
+import sys
+
 import numpy as np
 import pytest
 
+from rulec.diagnostics import RulecError
 from rulec.rates.drive_bootstrap import DRIVES_TOGETHER, bootstrapped, percentile_interval
 from rulec.rates.exact_intervals import binomial_interval, poisson_interval
 
@@ -28,6 +31,15 @@ def test_what_is_open_widens_an_interval():
     low, high = poisson_interval(1, 10, 0.95)
     assert (low, high) == (poisson_interval(1, 1, 0.95)[0], poisson_interval(10, 10, 0.95)[1])
     assert binomial_interval((0, 12), (5, 10), 0.95) == pytest.approx((0.0, 0.8129), abs=6e-5)
+
+
+def test_without_the_package_its_name_is_said(monkeypatch):
+    monkeypatch.setitem(sys.modules, "scipy", None)
+    with pytest.raises(RulecError) as refused:
+        poisson_interval(1, 1, 0.95)
+    (told,) = refused.value.diagnostics
+    assert told.code == "R0717"
+    assert "pip install 'rulec[rates]'" in told.help
 
 
 def test_without_trials_nothing_is_known():

@@ -11,7 +11,15 @@ JUDGED_OTHERWISE = Code(
     why="A rate says how often a rule is violated, so all drives have to be judged by the same "
     "rules, by the same version of rulec, with the same thresholds and on the same assumptions. "
     "Different rulebooks can be told apart by `--by rulebook`.",
-    kind="circumstance",
+    bad="""\
+echo '{"kind": "drive", "vehicle": "v", "rulec": "1.0", "duration_s": 60}' > found.jsonl
+echo '{"kind": "drive", "vehicle": "w", "rulec": "2.0", "duration_s": 60}' >> found.jsonl
+rulec rates found.jsonl""",
+    good="""\
+echo '{"kind": "drive", "vehicle": "v", "rulec": "2.0", "duration_s": 60}' > found.jsonl
+echo '{"kind": "drive", "vehicle": "w", "rulec": "2.0", "duration_s": 60}' >> found.jsonl
+rulec rates found.jsonl""",
+    kind="command",
 )
 
 NO_FINDINGS = Code(
@@ -20,7 +28,13 @@ NO_FINDINGS = Code(
     why="Rates are made of the rows of drives and of rules that `rulec verify --exposure -o FILE` "
     "writes, as JSON Lines, CSV or Parquet, and `rulec fleet`. Rows of violations alone do not say "
     "how long anybody drove. And no drive may be there twice.",
-    kind="circumstance",
+    bad="""\
+echo '{"rule": "stop_sign", "outcome": "violated"}' > found.jsonl
+rulec rates found.jsonl""",
+    good="""\
+echo '{"kind": "drive", "vehicle": "v", "outcome": "kept", "duration_s": 60}' > found.jsonl
+rulec rates found.jsonl""",
+    kind="command",
 )
 
 RATES_UNAVAILABLE = Code(

@@ -109,14 +109,14 @@ def violation_rates(
             own = _RuleSums(sums, drawn, number, confidence)
             result.append(_rule_rates(group, name, (rule, title), own))
     return ViolationRates(
-        counted.by,
-        len(counted.drives),
-        counted.not_judged,
-        tuple(counted.judged_by.values()),
-        confidence,
-        replicates,
-        seed,
-        tuple(result),
+        by=counted.by,
+        drives=len(counted.drives),
+        not_judged=counted.not_judged,
+        judged_by=tuple(counted.judged_by.values()),
+        confidence=confidence,
+        replicates=replicates,
+        seed=seed,
+        rules=tuple(result),
     )
 
 
