@@ -13,7 +13,6 @@ from functools import cached_property
 from typing import Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.value_display import short_repr
@@ -33,7 +32,8 @@ class OutcomeMachine:
 
     ``reads`` and ``letters`` are as a ``MealyMonitor``'s; ``outputs[state][class]`` is the outcome
     of a word that ends with such a letter. A run begins in any of ``starts``: several where what
-    was before the word is not known.
+    was before the word is not known. ``order`` is ``above``, where it is known already: a row of
+    bits for each state, in whole bytes, the lowest first.
     """
 
     __repr__ = short_repr
@@ -43,6 +43,7 @@ class OutcomeMachine:
     successors: Sequence[Sequence[int]]
     outputs: Sequence[Sequence[int]]
     starts: frozenset[int]
+    order: bytes | None = None
 
     @property
     def n_classes(self) -> int:
@@ -68,15 +69,27 @@ class OutcomeMachine:
         return frozenset(np.flatnonzero(safe).tolist())
 
     @cached_property
-    def _order(self) -> NDArray[np.bool_]:
-        """``[a, b]``: no word comes to more from ``a`` than from ``b``."""
+    def above(self) -> tuple[int, ...]:
+        """For each state those, as bits, from which no word comes to less."""
+        if self.order is None:
+            return self._found_order
+        width = (len(self.successors) + 7) // 8
+        return tuple(
+            [
+                int.from_bytes(self.order[start : start + width], "little")
+                for start in range(0, len(self.order), width)
+            ]
+        )
+
+    @property
+    def _found_order(self) -> tuple[int, ...]:
         size = len(self.successors)
         if size > MOST_COMPARED:
-            return np.eye(size, dtype=bool)
+            return tuple([1 << state for state in range(size)])
         successors, outputs = np.array(self.successors), np.array(self.outputs, dtype=np.int8)
         order = np.ones((size, size), dtype=bool)
-        for symbol in range(self.n_classes):
-            order &= outputs[:, None, symbol] <= outputs[None, :, symbol]
+        for column in {column.tobytes(): column for column in outputs.T}.values():
+            order &= column[:, None] <= column[None, :]
         targets = list({column.tobytes(): column for column in successors.T}.values())
         while True:
             before = order.sum()
@@ -84,20 +97,40 @@ class OutcomeMachine:
                 # Two takes are several times as fast as one index of two arrays.
                 order &= order.take(target, axis=0).take(target, axis=1)
             if order.sum() == before:
-                return order
+                rows = np.packbits(order, axis=1, bitorder="little")
+                return tuple([int.from_bytes(row.tobytes(), "little") for row in rows])
+
+    @cached_property
+    def _below(self) -> tuple[int, ...]:
+        below = [0] * len(self.above)
+        for state, above in enumerate(self.above):
+            while above:
+                lowest = above & -above
+                below[lowest.bit_length() - 1] |= 1 << state
+                above ^= lowest
+        return tuple(below)
 
     def extremes(self, states: Iterable[int]) -> frozenset[int]:
-        """The least and the greatest of these states."""
+        """The least and the greatest of these states; of equivalent ones the first."""
         members = frozenset(states)
         if len(members) < 3:
             return members
-        places = np.array(sorted(members))
-        below = self._order[np.ix_(places, places)]
-        # Of equivalent states, which a product may have, the first stands for all.
-        strictly = below & ~(below.T & (np.arange(len(places))[:, None] >= np.arange(len(places))))
-        np.fill_diagonal(strictly, val=False)
-        least, greatest = ~strictly.any(axis=0), ~strictly.any(axis=1)
-        return frozenset(places[least | greatest].tolist())
+        above, below = self.above, self._below
+        bits = sum(1 << state for state in members)
+        # A product may have equivalent states.
+        first = [
+            state
+            for state in members
+            if not above[state] & below[state] & bits & ((1 << state) - 1)
+        ]
+        bits = sum(1 << state for state in first)
+        return frozenset(
+            [
+                state
+                for state in first
+                if above[state] & bits == 1 << state or below[state] & bits == 1 << state
+            ]
+        )
 
 
 def of_complete_words(machine: MealyMonitor) -> OutcomeMachine:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags
-from rulec.partition.cell_graph import PAPER_SURFACE
+from rulec.scenario.paper_words import PAPER_SURFACE
 from rulec.trace import Value
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import smallest_unsigned

@@ -13,6 +13,7 @@ from rulec.partition.cells.cell_model import Cell, Layer
 from rulec.partition.cells.occupancy import Predicted
 from rulec.partition.cells.regions import LATERAL_OF, STATION_OF, ExtentName, PartitionName
 from rulec.scenario import Obstacle, Scenario
+from rulec.scenario.paper_words import PAPER_SURFACE
 from rulec.trace import State, TraceGraph
 from rulec.value_display import short_repr
 from rulec.vocabulary.partial_values import PartialValue
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 
 Edges = tuple[tuple[int, ...], ...]
 Margins = tuple[tuple[int | None, ...], ...]
-
-PAPER_SURFACE = {"carriageway": "R_cw", "crossing": "R_pc"}
 
 
 @dataclass(frozen=True)

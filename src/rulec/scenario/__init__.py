@@ -1,7 +1,11 @@
-"""Scenarios: the road, ego, obstacles and their prediction; reading them from files."""
+"""Scenarios: the road, ego, obstacles and their prediction; reading them from files.
+
+The readers of files are imported when they are asked for: recordings take the model alone.
+"""
+
+from typing import TYPE_CHECKING, Any
 
 from rulec.scenario.geometry import Box
-from rulec.scenario.scenario_files import available_scenarios, load_scenario
 from rulec.scenario.scenario_model import (
     Account,
     Alternative,
@@ -16,6 +20,9 @@ from rulec.scenario.scenario_model import (
     Stretch,
     Trajectory,
 )
+
+if TYPE_CHECKING:
+    from rulec.scenario.scenario_files import available_scenarios, load_scenario
 
 __all__ = [
     "Account",
@@ -34,3 +41,12 @@ __all__ = [
     "available_scenarios",
     "load_scenario",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in ("available_scenarios", "load_scenario"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    # Readers of files, 10 ms: not for the scene of a recording.
+    from rulec.scenario import scenario_files
+
+    return getattr(scenario_files, name)

@@ -12,6 +12,7 @@ from rulec.automata.bundle.bundle_check import rulebook_of
 from rulec.automata.bundle.bundle_file import entry_of
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.bundle.mapped_tables import MappedTables, RowPlace, TableWriter
+from rulec.automata.bundle.stored_prefixes import StoredPrefixes
 from rulec.diagnostics import SourceLocation
 
 
@@ -28,12 +29,14 @@ class MappedRulebook(msgspec.Struct):
     """The text of a compiled rulebook whose tables are beside it.
 
     ``rulebook`` is as in its file, but for empty tables; ``machines`` and ``cut`` have theirs, a
-    rule each. ``places`` say where the axioms are written.
+    rule each, ``orders`` those of the latter's states, by rule. ``places`` say where the axioms are
+    written.
     """
 
     rulebook: schema.BundleFile
     machines: list[TablePlaces]
     cut: list[TablePlaces | None]
+    orders: dict[str, RowPlace]
     places: list[SourceLocation | None]
 
 
@@ -49,7 +52,10 @@ def placed(rulebook: CompiledRulebook, tables: TableWriter) -> MappedRulebook:
         if rule.cut is not None:
             cut[-1] = _placed(rule.cut, tables)
             rule.cut.letters = rule.cut.successors = rule.cut.outputs = ()
-    return MappedRulebook(entry, machines, cut, [axiom.place for axiom in rulebook.axioms])
+    prefixes = rulebook.prefixes
+    known = prefixes.orders if isinstance(prefixes, StoredPrefixes) else {}
+    orders = {name: tables.place(order) for name, order in known.items()}
+    return MappedRulebook(entry, machines, cut, orders, [axiom.place for axiom in rulebook.axioms])
 
 
 def _placed(
@@ -82,4 +88,8 @@ def rulebook_from(text: MappedRulebook, tables: MappedTables) -> CompiledRuleboo
         replace(axiom, place=place)
         for axiom, place in zip(compiled.axioms, text.places, strict=True)
     ]
-    return replace(compiled, axioms=tuple(axioms))
+    prefixes = compiled.prefixes
+    if isinstance(prefixes, StoredPrefixes):
+        orders = {name: bytes(tables.row(place)) for name, place in text.orders.items()}
+        prefixes = replace(prefixes, orders=orders)
+    return replace(compiled, axioms=tuple(axioms), prefixes=prefixes)

@@ -24,8 +24,8 @@ _Entry = TypeVar("_Entry", int, bool)
 _HEAD = Struct("<16s32sQ")
 _KIND = f"rulec tables 1 {sys.byteorder[0]}".encode()
 _ALIGNED = 8
-Width: TypeAlias = Literal["b", "h", "i", "q"]
-"""Type codes of ``array``: signed integers of 1, 2, 4 and 8 bytes."""
+Width: TypeAlias = Literal["B", "b", "h", "i", "q"]
+"""Type codes of ``array``: unsigned bytes, and signed integers of 1, 2, 4 and 8 bytes."""
 
 _WIDTHS: tuple[Width, ...] = get_args(Width)
 
@@ -68,6 +68,8 @@ def _digest(length: int, rest: bytes | memoryview[int]) -> bytes:
 
 
 def _holds(code: Width, number: int) -> bool:
+    if code == "B":
+        return 0 <= number < 1 << 8
     bits = 8 * array(code).itemsize - 1
     return -(1 << bits) <= number < 1 << bits
 

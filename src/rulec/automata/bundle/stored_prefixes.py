@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rulec.automata.bundle.bundle_schema import CutMachineEntry
@@ -18,9 +18,13 @@ _MOST_MADE = 1 << 10
 
 @dataclass(frozen=True, slots=True)
 class StoredPrefixes:
-    """A ``PrefixCompiler`` of machines that have been stored, by the rule's name."""
+    """A ``PrefixCompiler`` of machines that have been stored, by the rule's name.
+
+    ``orders`` are those of their states, as far as they have been stored, too.
+    """
 
     entries: Mapping[str, CutMachineEntry | None]
+    orders: Mapping[str, bytes] = field(default_factory=dict)
 
     def __call__(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
         """The machines of the rulebook's rules; None where one would have got too large."""
@@ -42,6 +46,7 @@ class StoredPrefixes:
                         entry.successors,
                         entry.outputs,
                         frozenset(entry.starts),
+                        self.orders.get(rule.name),
                     )
                     known = _MADE[id(entry)] = entry, machine
                 found[rule.name] = known[1]
@@ -56,7 +61,14 @@ def stored(rulebook: CompiledRulebook) -> StoredPrefixes | None:
     if rulebook.prefixes is None or isinstance(rulebook.prefixes, StoredPrefixes):
         return rulebook.prefixes
     machines = rulebook.prefixes(rulebook)
-    return StoredPrefixes({name: _entry(machine) for name, machine in machines.items()})
+    entries = {name: _entry(machine) for name, machine in machines.items()}
+    orders = {name: _order(machine) for name, machine in machines.items() if machine is not None}
+    return StoredPrefixes(entries, orders)
+
+
+def _order(machine: OutcomeMachine) -> bytes:
+    width = (len(machine.successors) + 7) // 8
+    return b"".join([above.to_bytes(width, "little") for above in machine.above])
 
 
 def _entry(machine: OutcomeMachine | None) -> CutMachineEntry | None:

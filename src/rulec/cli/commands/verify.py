@@ -125,12 +125,8 @@ def command(
         found = counted(searched.recordings, "recording")
         more = f", {counted(searched.others, 'other file')} passed over" if searched.others else ""
         print_aside(f"rulec: {found} in {searched.path}{more}")
-    # Tables of automata, 160 ms: not for --help.
-    from rulec.cli.trace_run import TraceRun
-
     with verdict_outputs(to, rules) as outputs:
         complaints = Complaints()
-        traced = TraceRun(rules, outputs, complaints, to_explain, every_part)
         violated, judged, complete = False, False, True
         if recordings or inputs.problems:
             # numpy and shapely, 250 ms: only for recordings.
@@ -156,12 +152,17 @@ def command(
             violated = bool(recorded.total.violated) or (strict and recorded.open_hard)
             judged, complete = recorded.judged, recorded.complete
         if traces:
+            # Formats of traces, 30 ms: not for recordings.
+            from rulec.cli.trace_run import TraceRun
+
             assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
+            traced = TraceRun(rules, outputs, complaints, to_explain, every_part)
             traced.files(traces, form, assumed)
+            violated |= bool(traced.counts[False]) or (strict and traced.open_hard)
+            judged |= traced.judged
+            complete &= not traced.not_judged
     complaints.close()
-    violated |= bool(traced.counts[False]) or (strict and traced.open_hard)
-    answered = (judged or traced.judged) and complete and not traced.not_judged
-    return ExitStatus.after(answered=answered, failed=violated)
+    return ExitStatus.after(answered=judged and complete, failed=violated)
 
 
 def _recordings(inputs: InputFiles, form: Format | None, *, named: bool) -> list[str]:

@@ -26,7 +26,7 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.partition.cells.regions import LATERALS, STATIONS
+from rulec.scenario.paper_words import LATERALS, STATIONS
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
 

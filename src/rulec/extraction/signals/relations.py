@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.partition.cells.regions import LATERALS, PAPER_TABLES, STATIONS
 from rulec.scenario.motion import Facing
+from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 
 Codes = NDArray[intp]
 BEHIND, BESIDE, IN_FRONT_OF = range(3)

@@ -14,7 +14,8 @@ from typing import Literal
 
 from rulec.partition.cells.roadway import Roadway
 from rulec.scenario import Box, Obstacle
-from rulec.scenario.motion import Facing, facing
+from rulec.scenario.motion import facing
+from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 
 PartitionName = Literal["paper", "fine"]
 
@@ -23,20 +24,7 @@ ExtentName = Literal["lane", "body"]
 
 OCCUPIED = ord("o")
 
-# The paper's figure 3, turned with the direction in which a pedestrian walks.
-PAPER_TABLES: Mapping[Facing, bytes] = MappingProxyType(
-    {
-        "along": b"rrrboflll",
-        "against": b"lllfobrrr",
-        "left": b"lbrlorlfr",
-        "right": b"rflrolrbl",
-    }
-)
 _FINE = b"0123o5678"
-
-STATIONS = ("behind", "beside", "in_front_of")
-LATERALS = ("right_of", "same_lane", "left_of")
-
 
 STATION_OF: Mapping[int, str] = MappingProxyType(
     {code: STATIONS[i % 3] for i, code in enumerate(_FINE) if code != OCCUPIED}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from itertools import product
 from typing import TypeVar
 
@@ -23,10 +24,15 @@ class LetterClasses:
     """The classes of possible letters of a machine, as bit sets."""
 
     def __init__(self, machine: OutcomeMachine) -> None:
-        self.diagram = LetterDiagram(machine)
+        self._machine = machine
         self._known: dict[Letters, int] = {}
         self._groups: dict[tuple[Letters, tuple[int, ...]], Mapping[Cube, int]] = {}
         self._rules: dict[str, RuleLetters] = {}
+
+    @cached_property
+    def diagram(self) -> LetterDiagram:
+        """The machine's letters, made when they are first asked for: not all rules are judged."""
+        return LetterDiagram(self._machine)
 
     def of(self, letters: Letters) -> int:
         """The classes of letters; 0 if facts exclude them all."""

@@ -39,9 +39,9 @@ class LetterDiagram:
         below: NDArray[Any] = np.array(machine.letters) + 1
         self._children: list[list[list[int]]] = []
         for read in machine.reads:
-            rows, below = np.unique(below.reshape(-1, read.size), axis=0, return_inverse=True)
+            rows, below = _distinct_rows(below.reshape(-1, read.size))
             self._children.append(rows.tolist())
-        self.start = 1 << int(below.ravel()[0])
+        self.start = 1 << int(below[0])
         self._steps: dict[tuple[int, int, int], int] = {}
 
     def classes(self, cube: Sequence[int]) -> int:
@@ -65,6 +65,24 @@ class LetterDiagram:
                     known |= 1 << children[node][digit]
             self._steps[key] = known
         return known
+
+
+def _distinct_rows(rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """The rows that there are, in ascending order, and the place of each among them.
+
+    Their numbers are natural ones. Rows are mostly few and narrow, and each is one number then.
+    """
+    base, width = int(rows.max()) + 1, rows.shape[1]
+    if base**width > MOST_STEPS:
+        found, places = np.unique(rows, axis=0, return_inverse=True)
+        return found, places.ravel()
+    weights = np.array([base**n for n in range(width)][::-1])
+    numbers = rows @ weights
+    is_there = np.zeros(base**width, dtype=bool)
+    is_there[numbers] = True
+    found = np.flatnonzero(is_there)
+    place_of = np.cumsum(is_there) - 1
+    return found[:, None] // weights % base, place_of[numbers]
 
 
 class LetterSets:
