@@ -112,6 +112,10 @@ def test_another_step_is_compiled_once(folder, no_worker):
     assert {name: table(machine) for name, machine in recalled.items()} == {
         name: table(machine) for name, machine in cut.items()
     }
+    assert all(machine.order is not None for machine in recalled.values())
+    assert [machine.above for machine in recalled.values()] == [
+        machine.above for machine in cut.values()
+    ]
     # One rule asks what was before the first state.
     assert max(len(machine.starts) for machine in recalled.values()) > 1
 

@@ -5,6 +5,7 @@ import sys
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.main import VERBS
+from support.builders.sumo_files import body, data, moment, written
 
 HEAVY = {
     "lark",
@@ -40,3 +41,41 @@ def test_what_was_not_answered_outweighs_what_failed():
     assert ExitStatus.after(failed=True) is ExitStatus.FOUND
     assert ExitStatus.after(answered=False, failed=True) is ExitStatus.NOT_ANSWERED
     assert ExitStatus.after(answered=False, failed=False) is ExitStatus.NOT_ANSWERED
+
+
+NOT_FOR_A_RECORDING = {
+    "lark",
+    "matplotlib",
+    "networkx",
+    "pyarrow",
+    "spot",
+    "rulec.automata.compiler",
+    "rulec.cli.trace_run",
+    "rulec.partition",
+    "rulec.scenario.scenario_files",
+    "rulec.syntax",
+    "rulec.trace.formats.json_lines",
+}
+
+
+def test_a_recording_is_judged_with_what_has_been_compiled(tmp_path, monkeypatch):
+    monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "cache"))
+    written(tmp_path, data(*(moment(k / 2, body(x=20 + 5 * k, lane="in_1")) for k in range(9))))
+    source = tmp_path / "soon.rules"
+    source.write_text(
+        "rulebook soon\nuse road\nhard rule slow { require eventually[<= 1 s] speed < 90 km/h }\n"
+    )
+    program = (
+        "import sys; from rulec.cli.main import main\n"
+        f"status = main(['verify', {str(tmp_path / 'fcd.xml')!r}, '-r', {str(source)!r},"
+        f" '--map', {str(tmp_path / 'road.net.xml')!r}])\n"
+        "print(status, *sys.modules)"
+    )
+    runs = []
+    for _ in range(2):
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
+        *shown, last = done.stdout.decode().splitlines()
+        runs.append((shown, set(last.split())))
+    assert runs[0][0] == runs[1][0]
+    assert "lark" in runs[0][1]
+    assert runs[1][1] & (NOT_FOR_A_RECORDING | {"0"}) == {"0"}
