@@ -24,7 +24,7 @@ from rulec.report.rulebooks.rule_json import RulesDocument
 from rulec.report.tests.example_json import ExamplesRun
 from rulec.report.text.listing import ListingDocument
 from rulec.report.verdict_findings.verdict_finding import FindingLine
-from rulec.report.verdicts.recording_table import NotDriven, RecordedNotJudged, RecordedVerdict
+from rulec.report.verdicts.recording_json import NotDriven, RecordedNotJudged, RecordedVerdict
 from rulec.report.verdicts.running_verdicts import StateRefused, StateVerdict
 from rulec.report.verdicts.verdict_json import TraceNotJudged, TraceVerdict
 

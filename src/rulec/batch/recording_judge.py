@@ -5,20 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
 from rulec.extraction.selection import RequestedDrives
-from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged
 from rulec.recordings.recording import Recording
 from rulec.recordings.recording_files import read_recordings
 from rulec.recordings.recording_format import RecordingSource
 from rulec.report.text.terminal_text import visible
-from rulec.report.verdict_findings.found_in_drives import DriveFindings
-from rulec.report.verdict_findings.verdict_finding import FoundInRecording
 from rulec.report.verdicts import recording_table, verdict_report
+
+if TYPE_CHECKING:
+    from rulec.monitoring.explain.explanation import Explanation
+    from rulec.report.verdict_findings.found_in_drives import DriveFindings
+    from rulec.report.verdict_findings.verdict_finding import FoundInRecording
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +117,7 @@ class _RecordingJudge:
         self._verdicts = RecordingVerdicts(recording, settings.rules, settings.request, file)
         self._tally = ViolationTally()
         self._blocks: list[str] = []
-        self._findings = DriveFindings(self._verdicts, file) if settings.findings else None
+        self._findings = _findings(self._verdicts, file) if settings.findings else None
         self.left = left
 
     def pieces(self, tell: Callable[[int, int], object]) -> Iterator[Piece]:
@@ -133,7 +136,10 @@ class _RecordingJudge:
             if self._findings is not None:
                 self._findings.add(answer, explained)
             if self._settings.lines:
-                yield recording_table.as_json(answer, verdicts, explained)
+                # JSON of explanations and evidence, 30 ms: only where it is wanted.
+                from rulec.report.verdicts import recording_json
+
+                yield recording_json.as_json(answer, verdicts, explained)
         table = recording_table.as_text(verdicts, tally) if self._settings.text else ""
         found = None if self._findings is None else self._findings.whole()
         name = verdicts.recording.name
@@ -147,11 +153,16 @@ class _RecordingJudge:
         verdict, drive, rules = result.answer, result.drive, self._verdicts.rules
         assert not isinstance(verdict, NotJudged), "it has been judged"
         chosen = verdict.violations[: self.left]
+        if not chosen:
+            return []
+        # Explanations, 20 ms: only where something is violated.
+        from rulec.monitoring.explain.explanation import explain
+
         self.left -= len(chosen)
         explained = [
             explain(violation, drive.trace, rules, drive.decided_by) for violation in chosen
         ]
-        if explained and self._settings.text:
+        if self._settings.text:
             details = verdict_report.as_text(
                 verdict,
                 rules,
@@ -162,6 +173,13 @@ class _RecordingJudge:
             )
             self._blocks.append(f"\n{details}")
         return explained
+
+
+def _findings(verdicts: RecordingVerdicts, file: str) -> DriveFindings:
+    # Evidence and its findings, 20 ms: only where they are wanted.
+    from rulec.report.verdict_findings.found_in_drives import DriveFindings
+
+    return DriveFindings(verdicts, file)
 
 
 def in_a_line(judged: JudgedRecording) -> str:

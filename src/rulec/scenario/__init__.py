@@ -1,28 +1,30 @@
 """Scenarios: the road, ego, obstacles and their prediction; reading them from files.
 
-The readers of files are imported when they are asked for: recordings take the model alone.
+Names are imported when they are asked for: a recorded drive takes little of all this.
 """
 
+from __future__ import annotations
+
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from rulec.scenario.geometry import Box
-from rulec.scenario.scenario_model import (
-    Account,
-    Alternative,
-    Choice,
-    ConstantAcceleration,
-    Ego,
-    Footprints,
-    MissingLane,
-    Obstacle,
-    Road,
-    Scenario,
-    Stretch,
-    Trajectory,
-)
-
 if TYPE_CHECKING:
+    from rulec.scenario.geometry import Box
     from rulec.scenario.scenario_files import available_scenarios, load_scenario
+    from rulec.scenario.scenario_model import (
+        Account,
+        Alternative,
+        Choice,
+        ConstantAcceleration,
+        Ego,
+        Footprints,
+        MissingLane,
+        Obstacle,
+        Road,
+        Scenario,
+        Stretch,
+        Trajectory,
+    )
 
 __all__ = [
     "Account",
@@ -42,11 +44,15 @@ __all__ = [
     "load_scenario",
 ]
 
+_HOME = {
+    "Box": "geometry",
+    "available_scenarios": "scenario_files",
+    "load_scenario": "scenario_files",
+}
+"""The modules of names that are not in the model."""
+
 
 def __getattr__(name: str) -> Any:
-    if name not in ("available_scenarios", "load_scenario"):
+    if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    # Readers of files, 10 ms: not for the scene of a recording.
-    from rulec.scenario import scenario_files
-
-    return getattr(scenario_files, name)
+    return getattr(import_module(f"{__name__}.{_HOME.get(name, 'scenario_model')}"), name)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
-from rulec.scenario.motion import Facing
+if TYPE_CHECKING:
+    from rulec.scenario.motion import Facing
 
 # The paper's figure 3, turned with the direction in which a pedestrian walks.
 PAPER_TABLES: Mapping[Facing, bytes] = MappingProxyType(

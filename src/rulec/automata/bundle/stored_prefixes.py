@@ -46,7 +46,7 @@ class StoredPrefixes:
                         entry.successors,
                         entry.outputs,
                         frozenset(entry.starts),
-                        self.orders.get(rule.name),
+                        order=self.orders.get(rule.name),
                     )
                     known = _MADE[id(entry)] = entry, machine
                 found[rule.name] = known[1]

@@ -8,6 +8,7 @@ within a lane is in that lane. For the paper's ``position`` see ``docs/scenarios
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy import intp
@@ -16,8 +17,10 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.scenario.motion import Facing
 from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
+
+if TYPE_CHECKING:
+    from rulec.scenario.motion import Facing
 
 Codes = NDArray[intp]
 BEHIND, BESIDE, IN_FRONT_OF = range(3)

@@ -1,23 +1,14 @@
-"""Verdicts on recorded vehicles: a table of rules and vehicles, and JSON, a line for each."""
+"""Verdicts on recorded vehicles: a table of rules and vehicles."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import zip_longest
 from textwrap import shorten
-from typing import Any
-
-from msgspec import UNSET, UnsetType
-from msgspec.structs import replace
 
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
-from rulec.extraction.violation_evidence import ViolationEvidence, evidence_of
-from rulec.monitoring.explain.explanation import Explanation
-from rulec.monitoring.verdict import NotJudged
-from rulec.report.json_document import JsonDocument, as_line, filled
+from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
 from rulec.report.text.terminal_text import first_of, table_lines, visible
-from rulec.report.verdicts import verdict_json, verdict_report
+from rulec.report.verdicts import verdict_report
 
 MOST_DEFAULTS = 4
 """So many words that are taken by default are named for a rule; JSON has them all."""
@@ -123,89 +114,3 @@ def summary(tally: ViolationTally) -> str:
     counts = {True: len(tally.satisfied), False: len(tally.violated), None: len(tally.doubtful)}
     line = verdict_report.summary(counts, len(tally.not_judged))
     return line.replace("traces", "drives").replace("trace", "drive")
-
-
-class RecordedVerdict(verdict_json.TraceVerdict, frozen=True, kw_only=True):
-    """The verdict on the drive of vehicle ``trace``, in the recording's times."""
-
-    recording: str
-    mirrored: bool
-    remarks: Sequence[str] | UnsetType = UNSET
-    start_s: float
-    step_s: float
-    by_default: Sequence[str]
-
-
-class RecordedNotJudged(verdict_json.TraceNotJudged, frozen=True, kw_only=True):
-    """A drive that could not be judged."""
-
-    recording: str
-    mirrored: bool
-    remarks: Sequence[str] | UnsetType = UNSET
-    start_s: float
-    step_s: float
-    by_default: Sequence[str]
-
-
-class NotDriven(JsonDocument, frozen=True, kw_only=True):
-    """A vehicle without a drive to judge, and ``why_not``."""
-
-    trace: str
-    recording: str
-    mirrored: bool
-    remarks: Sequence[str] | UnsetType = UNSET
-    why_not: str
-
-
-def _evidence_data(evidence: ViolationEvidence) -> verdict_json.EvidenceData:
-    place = evidence.place
-    return filled(
-        verdict_json.EvidenceData,
-        evidence,
-        margins=[filled(verdict_json.MarginData, margin) for margin in evidence.margins],
-        place=None if place is None else filled(verdict_json.DrivePlaceData, place),
-    )
-
-
-def as_json(
-    result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
-) -> str:
-    """Write a vehicle's verdict with explanations of its first violations."""
-    recorded: dict[str, Any] = {
-        "recording": verdicts.recording.name,
-        "mirrored": verdicts.mirrored,
-        "remarks": verdicts.recording.remarks or UNSET,
-    }
-    if isinstance(result, NoDrive):
-        return as_line(NotDriven(trace=result.ego, why_not=result.why, **recorded))
-    drive, answer = result.drive, result.answer
-    recorded |= {
-        "start_s": drive.start_s,
-        "step_s": drive.arrays.step_s,
-        "by_default": defaulted_names(verdicts, drive.words),
-    }
-    if isinstance(answer, NotJudged):
-        error = verdict_json.error_data(answer.error)
-        return as_line(RecordedNotJudged(trace=answer.trace, error=error, **recorded))
-    by_rule = verdicts.by_default(drive.words)
-    data = verdict_json.violations_data(answer, verdicts.rules, explained)
-    violations = [
-        replace(
-            written,
-            time_s=drive.time_s(violation.step),
-            by_default=by_rule[violation.rule],
-            evidence=_evidence_data(
-                evidence_of(violation, drive, verdicts.rules, verdicts.request.assumed, explanation)
-            ),
-        )
-        for violation, written, explanation in zip_longest(answer.violations, data, explained)
-    ]
-    return as_line(
-        filled(
-            RecordedVerdict,
-            answer,
-            violations=violations,
-            **verdict_json.doubts(answer),
-            **recorded,
-        )
-    )

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.logic.printing import number_in_words
-from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
+from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.terminal_text import styled, visible
-from rulec.report.verdicts import violation_table
+
+if TYPE_CHECKING:
+    from rulec.monitoring.explain.explanation import Explanation
 
 MOST_CASES = 4
 """So many values of unknown names are shown with their outcome."""
@@ -24,7 +27,7 @@ def as_text(
     explained: Sequence[Explanation] = (),
     *,
     every_part: bool = False,
-    width: int = violation_table.WIDTH,
+    width: int = PAGE_WIDTH,
     doubts: bool = True,
 ) -> str:
     """Write a trace's violations, a line each, below its name; with what is open and not judged.
@@ -44,6 +47,9 @@ def as_text(
         line = in_a_line(violation, rules[violation.rule], rulebook.name)
         lines.append(f"  {visible(line)}")
         if number < len(explained):
+            # Explanations, 20 ms: only where there are some.
+            from rulec.report.verdicts import violation_table
+
             lines.append(
                 violation_table.as_text(explained[number], every_part=every_part, width=width)
             )

@@ -13,13 +13,13 @@ from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.explain.explanation import Explanation, Observation
 from rulec.monitoring.explain.margins import Margin, number_with_error
+from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.guard_text import GuardWording, runs
 from rulec.report.text.terminal_text import styled, table_lines, visible
 from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
 from rulec.trace import Value
 from rulec.vocabulary.partial_values import Interval
 
-WIDTH = 100
 """A wider table is folded, a longer sentence broken, where no terminal says how wide it is."""
 
 WIDEST = 0.6
@@ -43,7 +43,7 @@ MOST_OF_NAMES = 16
 INDENT = "    "
 
 
-def as_text(explanation: Explanation, *, every_part: bool = False, width: int = WIDTH) -> str:
+def as_text(explanation: Explanation, *, every_part: bool = False, width: int = PAGE_WIDTH) -> str:
     """The rule's sentence and table, ``*`` marking changes at the decisive state.
 
     A table that is large or wider than ``width`` is folded, unless ``every_part`` is wanted.

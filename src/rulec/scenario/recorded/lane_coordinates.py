@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 from operator import itemgetter
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy import float64
@@ -22,7 +23,9 @@ from rulec.recordings.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at
 from rulec.scenario.recorded.route import lanelet_length, lanes_beside
-from rulec.scenario.scenario_model import MissingLane
+
+if TYPE_CHECKING:
+    from rulec.scenario.scenario_model import MissingLane
 
 NARROWEST_LANE_M = 1.0
 """Where a lane is narrower it has not begun yet, or has ended."""
@@ -82,6 +85,9 @@ class Lanes:
 
     def missing(self, start: float, end: float, shift: float) -> tuple[MissingLane, ...]:
         """The gaps of lanes between two places, ``shift`` subtracted from each ``s``."""
+        # Scenarios' model, 10 ms: not for recorded drives.
+        from rulec.scenario.scenario_model import MissingLane
+
         missing = []
         for lane, column in enumerate(self.there.T, 1):
             pieces = zip(column.tolist(), pairwise(self.s.tolist()), strict=True)
