@@ -101,6 +101,28 @@ def test_time_headway_and_speed_are_of_the_same_speed():
     assert about["time_headway"][0, 0] == pytest.approx(about["gap"][0, 0] / 10, abs=0.01)
 
 
+@pytest.mark.parametrize(
+    ("name", "x", "station", "known"),
+    [
+        # Both are 4 m long: ego's front is level with the other's rear at x = 4
+        ("ZAM", 4.1, "behind", True),
+        ("ZAM", 4.04, "behind", False),
+        ("ZAM", 3.96, "beside", False),
+        ("ZAM", 3.9, "beside", True),
+        ("ZAM", -3.96, "beside", False),
+        ("ZAM", -4.04, "in_front_of", False),
+        ("ZAM", -4.1, "in_front_of", True),
+        ("USA_US101", 4.29, "behind", False),
+        ("USA_US101", 4.31, "behind", True),
+    ],
+)
+def test_who_is_level_to_within_a_tolerance_has_no_station(name, x, station, known):
+    bodies = steady(7, 0, 0), steady(8, x, 4)
+    found = participant_signals(context_of(of_source(name, *bodies)))
+    assert found.about["station"][0, 0] == station
+    assert found.unknown["station"][0, 0] == (not known)
+
+
 def test_overtaking_that_hangs_on_a_tolerance_is_unknown():
     # 96 m behind at 9.55 m/s more is 10.05 s; at 9 m/s more it is clearly longer
     for mps, known in ((10.45, False), (11.0, True), (10.0, True)):

@@ -41,7 +41,11 @@ def _position(context: DriveContext) -> SignalColumns:
 
 
 def _station(context: DriveContext) -> SignalColumns:
-    return SignalColumns(about={"station": named_values(relations.station(context), STATIONS)})
+    station, others = relations.station(context), relations.possible_stations(context)
+    return SignalColumns(
+        about={"station": named_values(station, STATIONS)},
+        unknown={"station": np.logical_or.reduce([station != codes for codes in others])},
+    )
 
 
 def _lateral(context: DriveContext) -> SignalColumns:

@@ -38,6 +38,17 @@ def station(context: DriveContext) -> Codes:
     return _along(context.ego_extents, context.extents.s_min, context.extents.s_max)
 
 
+@once
+def possible_stations(context: DriveContext) -> tuple[Codes, Codes]:
+    """The same with others so much longer and shorter at both ends as places may be wrong."""
+    ends, place = context.extents, context.tolerances.place_m
+    longer, shorter = (
+        _along(context.ego_extents, ends.s_min - more, ends.s_max + more)
+        for more in (place, -place)
+    )
+    return longer, shorter
+
+
 def _along(ego: RoadExtents, s_min: Floats, s_max: Floats) -> Codes:
     return np.where(ego.s_max <= s_min, BEHIND, np.where(ego.s_min >= s_max, IN_FRONT_OF, BESIDE))
 
