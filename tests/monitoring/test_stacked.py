@@ -78,6 +78,7 @@ def test_arrays_say_what_the_states_say():
 BOOK = """\
 rulebook many
 type car
+type truck is car
 signal clear default true
 light is one of red, green default green
 quantity speed in m/s default 0
@@ -90,12 +91,14 @@ hard rule slow { require always (speed <= limit) }
 hard rule between (c: car) { require always (far(c) - reach <= 3 m or clear) }
 hard rule one_parked { require always (count c: car (parked(c)) <= 1) }
 hard rule other_parked (v: car) { require always not some c: car (c = v and parked(c)) }
+hard rule one_away { require always (count c: car (far(c) - reach > 5 m) <= 1) }
+hard rule no_truck (v: car) { require always (clear or not some t: truck (t = v)) }
 hard rule in_turn (v: car, w: car) { require always (parked(v) implies not ahead(w)) }
 hard rule once_only (v: car) { require always (ahead(v) implies next always not ahead(v)) }
 """
 """What is read: the world, one object, both, two of them, whom a rule is about, and others."""
 
-FOUR = {"a": "car", "b": "car", "c": "car", "d": "car"}
+FOUR = {"a": "car", "b": "car", "c": "car", "d": "truck"}
 
 
 def found(answer):
@@ -110,13 +113,17 @@ def found(answer):
         ({"speed": 10}, [], []),
         ({"speed": Interval(10.01, 12)}, [("slow", 1)], []),
         ({"speed": UNKNOWN}, [], [("slow",)]),
-        ({"clear": False, "far": {"b": 13.0, "c": 13.01}}, [("between", "c", 1)], []),
-        ({"clear": UNKNOWN, "far": {"c": 13.01}}, [], [("between", "c")]),
+        ({"clear": False, "far": {"b": 13.0, "c": 13.01}}, [("between", "c", 1), ("no_truck", "d", 1)], []),
+        ({"clear": UNKNOWN, "far": {"c": 13.01}}, [], [("between", "c"), ("no_truck", "d")]),
         (
             {"parked": {"a": True, "c": True}},
             [("one_parked", 1), ("other_parked", "a", 1), ("other_parked", "c", 1)],
             [],
         ),
+        ({"far": {"a": 16, "b": Interval(15.01, 17)}}, [("one_away", 1)], []),
+        ({"far": {"a": 16, "b": Interval(14, 17)}}, [], [("one_away",)]),
+        ({"far": {"a": 16, "b": Interval(14, 15)}}, [], []),
+        ({"clear": False}, [("no_truck", "d", 1)], []),
         ({"ahead": {"a": True, "b": True}}, [], []),
         (
             {"parked": {"b": True}, "ahead": {"a": True, "b": True}},

@@ -81,7 +81,8 @@ def _nearest(number: Fraction) -> float:
         return float("inf")
 
 
-_SIDES = {"<": (0,), "<=": (0, 1), "=": (1,), "!=": (0, 2), ">=": (1, 2), ">": (2,)}
+SIDES = {"<": (0,), "<=": (0, 1), "=": (1,), "!=": (0, 2), ">=": (1, 2), ">": (2,)}
+"""The sides of a limit on which comparisons hold: 0 below it, 1 at it, 2 above it."""
 
 
 Mask = NDArray[np.bool_] | np.bool_
@@ -257,9 +258,8 @@ class ColumnReader:
         """Truth of a comparison in each state. Raises NotGivenError."""
         at = Threshold(comparison.limit, inclusive=True)
         above = Threshold(comparison.limit, inclusive=False)
-        # 0 below the limit, 1 at it, 2 above it.
         side = self.digits(NumberRead(comparison.terms, (at, above)), bound)
-        return np.isin(side, _SIDES[comparison.relation])
+        return np.isin(side, SIDES[comparison.relation])
 
     def atom(self, name: str, items: tuple[str, ...], expected: str | None) -> Truth:
         """Three-valued truth of an atom in each state."""

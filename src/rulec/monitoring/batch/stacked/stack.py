@@ -118,17 +118,18 @@ class Stack:
             column = self.column(name)
             assert column is not None, "it is said"
             if column.missing is not None:
-                odd.update(self._traces_at(name, np.flatnonzero(column.missing)))
+                odd.update(self.traces_at(name, np.flatnonzero(column.missing)))
             if self.vocabulary.declarations[name].constant:
                 starts = self.starts if name in self.traces[0].about else self.begins
                 lengths = np.diff(starts)
                 for values in (column.values, column.unknown):
                     if values is not None:
                         changed = values != np.repeat(values[starts[:-1]], lengths)
-                        odd.update(self._traces_at(name, np.flatnonzero(changed)))
+                        odd.update(self.traces_at(name, np.flatnonzero(changed)))
         return odd
 
-    def _traces_at(self, name: str, places: Places) -> list[int]:
+    def traces_at(self, name: str, places: Places) -> list[int]:
+        """The traces of a name's values at some places."""
         if name in self.traces[0].about:
             places = self.state_of[places]
         found: list[int] = np.unique(

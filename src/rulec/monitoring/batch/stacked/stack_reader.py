@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
 from rulec.logic.fold import fold
 from rulec.monitoring.batch.columns.column_reader import (
     KLEENE_COLUMNS,
+    SIDES,
     UNKNOWN,
     Mask,
     Summand,
@@ -172,7 +173,8 @@ class StackReader:
         """Where an object counts, and where it does not; any variable names the one counted."""
 
         def proposition(part: ltl.Proposition) -> Truth:
-            assert isinstance(part, ltl.Atom), "it compares nothing"
+            if isinstance(part, ltl.Comparison):
+                return self._compared(part, spots, counted)
             arguments = [counted] * len(part.arguments)
             return self._atom(replace(part, arguments=tuple(arguments)), spots)
 
@@ -180,6 +182,25 @@ class StackReader:
             return known(np.True_)
 
         return fold(count.body, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
+
+    def _compared(self, comparison: ltl.Comparison, spots: Spots, counted: str) -> Truth:
+        terms = []
+        for factor, term in comparison.terms:
+            assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
+            own = (counted,) * len(term.arguments)
+            terms.append((factor, ltl.QuantityTerm(term.name, own)))
+        at, above = (Threshold(comparison.limit, inclusive) for inclusive in (True, False))
+        read = NumberRead(tuple(terms), (at, above))
+        numbers = self._between(read, spots)
+        sides = SIDES[comparison.relation]
+        every = [
+            {side in sides for side in range(low, high + 1)}
+            for low in range(read.size)
+            for high in range(read.size)
+        ]
+        true = np.array([own == {True} for own in every]).take(numbers)
+        false = np.array([own == {False} for own in every]).take(numbers)
+        return Truth(true, false)
 
     def _atom(self, atom: ltl.Atom, spots: Spots) -> Truth:
         declaration = self.stack.vocabulary.declarations[atom.name]

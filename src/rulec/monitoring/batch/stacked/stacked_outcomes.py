@@ -136,7 +136,8 @@ def _of_group(
     """The words of choices of which the same constants are ``unknown``, places of reads."""
     instances, bounds, spots, numbers = told
     vocabulary, n_spots = reader.stack.vocabulary, len(spots.states)
-    entangled, odd = np.zeros((2, n_spots), dtype=bool)
+    entangled = np.zeros(n_spots, dtype=bool)
+    odd = _hides_constants(rule, reader, spots)
     supposed: Sequence[Mapping[Subject, Value]] = [{}]
     is_exact = True
     if unknown:
@@ -181,6 +182,22 @@ def _of_group(
         entangled=entangled,
         odd=odd,
     )
+
+
+def _hides_constants(rule: StackedRule, reader: StackReader, spots: Spots) -> NDArray[np.bool_]:
+    """Where constants are unknown that sums and counts read, and that nothing is supposed of."""
+    stack = reader.stack
+    found = np.zeros(len(spots.states), dtype=bool)
+    for name in rule.hidden:
+        column = stack.column(name)
+        if column is None:
+            found |= stack.default(name) is UNKNOWN
+        elif column.unknown is not None:
+            traces = stack.traces_at(name, np.flatnonzero(column.unknown))
+            first, end = stack.begins[traces], stack.begins[np.array(traces, dtype=np.intp) + 1]
+            for begin, last in zip(first.tolist(), end.tolist(), strict=True):
+                found |= (begin <= spots.states) & (spots.states < last)
+    return found
 
 
 def _subject(rule: StackedRule, place: int) -> Subject:

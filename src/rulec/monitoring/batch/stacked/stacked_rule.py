@@ -13,14 +13,19 @@ from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
 from rulec.automata.outcome_machine import KEPT, VIOLATED
 from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
+from rulec.logic.kleene import holds
 from rulec.monitoring.batch.uncertain.partial_reader import meanings_of
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
+    NothingKnown,
     local_reads,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterSets
 from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
 from rulec.vocabulary import Enumeration, Vocabulary
+
+NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
+"""Nothing is known of anybody."""
 
 MOST_SETS = 1 << 14
 """Sets of letters, and words, that are kept before all are forgotten."""
@@ -54,7 +59,7 @@ class StackedRule:
 
     ``entangled`` are its entangled reads, if its own objects alone decide what these may be, and
     ``related`` the places of all reads that may have to do with each other. ``constants`` are those
-    of reads of what never changes.
+    of reads of what never changes, ``hidden`` the names of such in sums and counts.
     """
 
     def __init__(
@@ -72,12 +77,17 @@ class StackedRule:
         self.names = frozenset(name for read in self.reads for name in read.names)
         self.entangled: EntangledReads | None = local_reads(rule, rulebook)
         self.related = _related(self.reads) if self.entangled is None else self.entangled.numbers
+        constants = frozenset(vocabulary.constants)
         self.constants = tuple(
-            [
-                n
-                for n, read in enumerate(self.reads)
-                if not set(vocabulary.constants).isdisjoint(read.names)
-            ]
+            [n for n, x in enumerate(self.reads) if _is_value(x) and x.names[0] in constants]
+        )
+        self.hidden = tuple(
+            dict.fromkeys(
+                name
+                for read in self.reads
+                for name in read.names
+                if name in constants and not _is_value(read)
+            )
         )
         self.is_simple = _is_simple(self)
         self.idle = IdleLetters(machine)
@@ -204,7 +214,6 @@ def _is_simple(rule: StackedRule) -> bool:
         len(rule.variables) <= 2
         and IMPOSSIBLE not in rule.machine.machine.letters
         and all(_is_simple_read(read, rule) for read in rule.reads)
-        and all(_is_value(rule.reads[place]) for place in rule.constants)
         and len({rule.reads[place].names for place in rule.constants}) == len(rule.constants)
     )
 
@@ -219,8 +228,22 @@ def _is_simple_read(read: StackedRead, rule: StackedRule) -> bool:
         return True
     if read.count is None:
         return not any(isinstance(term, ltl.Count) for _, term in read.read.terms)
-    if any(isinstance(part, ltl.Comparison) for part in ltl.atoms_of(read.count.body)):
+    if any(map(counts, ltl.atoms_of(read.count.body))):
         return False
-    if not read.variables:
-        return True
-    return len(rule.variables) == 1 and rule.entangled is not None
+    return not read.variables or (
+        len(rule.variables) == 1 and _counts_no_stranger(read.count, rule.variables[0])
+    )
+
+
+def counts(part: ltl.Proposition) -> bool:
+    """Whether a proposition compares a number of objects."""
+    return isinstance(part, ltl.Comparison) and any(
+        isinstance(term, ltl.Count) for _, term in part.terms
+    )
+
+
+def _counts_no_stranger(count: ltl.Count, variable: str) -> bool:
+    """Whether nobody counts but the object that the variable stands for."""
+    # No name of a variable has a blank.
+    binding = {variable: variable, count.variable: "a stranger"}
+    return holds(count.body, binding, NOBODY) is False
