@@ -113,7 +113,11 @@ def found(answer):
         ({"speed": 10}, [], []),
         ({"speed": Interval(10.01, 12)}, [("slow", 1)], []),
         ({"speed": UNKNOWN}, [], [("slow",)]),
-        ({"clear": False, "far": {"b": 13.0, "c": 13.01}}, [("between", "c", 1), ("no_truck", "d", 1)], []),
+        (
+            {"clear": False, "far": {"b": 13.0, "c": 13.01}},
+            [("between", "c", 1), ("no_truck", "d", 1)],
+            [],
+        ),
         ({"clear": UNKNOWN, "far": {"c": 13.01}}, [], [("between", "c"), ("no_truck", "d")]),
         (
             {"parked": {"a": True, "c": True}},

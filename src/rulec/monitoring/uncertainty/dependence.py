@@ -8,6 +8,7 @@ from itertools import chain, combinations, groupby, product
 from typing import TypeAlias
 
 from rulec.automata.outcome_machine import KEPT, OutcomeRange, SetMonitor
+from rulec.monitoring.uncertainty.prospects import Prospects, agreement
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 
@@ -16,6 +17,9 @@ MOST_WAYS = 1 << 12
 
 MOST_REMEMBERED = 1 << 14
 """Steps that are kept before all are forgotten."""
+
+MOST_WORDS = 1 << 9
+"""Words whose prospects are kept before all is forgotten."""
 
 BEFORE = ""
 """Stands among names for what was before the first state."""
@@ -47,6 +51,7 @@ class Ways:
     def __init__(self, monitor: SetMonitor, classes: LetterClasses) -> None:
         self.monitor = monitor
         self._classes = classes
+        self._prospects = Prospects(monitor.machine)
         self._forget()
 
     def _forget(self) -> None:
@@ -57,10 +62,12 @@ class Ways:
         self._sets: list[frozenset[tuple[int, ...]]] = []
         self._after: dict[tuple[frozenset[_Way], int], frozenset[_Way]] = {}
         self._onward: dict[tuple[_Way, int], list[_Way]] = {}
+        self._along: dict[_Word, list[bytes]] = {}
 
     def forget_many(self) -> None:
         """Forget what has been met, if it is much; numbers mean nothing any more."""
-        if max(len(self._after), len(self._onward), len(self._choices)) > MOST_REMEMBERED:
+        most = max(len(self._after), len(self._onward), len(self._choices))
+        if most > MOST_REMEMBERED or len(self._along) > MOST_WORDS:
             self._forget()
 
     def word(self, states: Sequence[Letters]) -> _Word:
@@ -70,6 +77,15 @@ class Ways:
             if numbers.setdefault(letters, len(self._letters)) == len(self._letters):
                 self._letters.append(letters)
         return tuple([numbers[letters] for letters in states])
+
+    def prospects(self, word: _Word) -> list[bytes]:
+        """For each letter of a word what may come of each state: see ``Prospects``."""
+        found = self._along.get(word)
+        if found is None:
+            classes = {number: self._classes.of(self._letters[number]) for number in set(word)}
+            found = self._prospects.along([classes[number] for number in word])
+            self._along[word] = found
+        return found
 
     def choices(self, letters: _Word, fixed: tuple[int, ...]) -> int:
         """The number of the choices of digits of fixed reads that some word has."""
@@ -170,19 +186,44 @@ class Dependence:
         """Whether words that have the same digits of fixed reads come to the same."""
         ways: frozenset[_Way] = frozenset([(start,) * len(group) for start in starts])
         most = MOST_WAYS * len(starts)
-        known = {
-            letters: self._ways.choices(letters, fixed) for letters in set(zip(*group, strict=True))
-        }
-        *before, last = [known[letters] for letters in zip(*group, strict=True)]
+        word = list(zip(*group, strict=True))
+        prospects = self._ways.prospects(group[0]) if len(group) == 1 else None
+        known = {letters: self._ways.choices(letters, fixed) for letters in set(word)}
+        *before, last = [known[letters] for letters in word]
+        begin = 0
         for choices, alike in groupby(before):
-            for _ in alike:
+            length, look = len(list(alike)), 0
+            for place in range(length):
+                if place == look and prospects is not None:
+                    # To look is worth while now and then
+                    look = 2 * look + 1
+                    ways, is_split = self._undecided(ways, prospects[begin + place])
+                    if is_split or not ways:
+                        return not is_split
                 after = self._ways.after(ways, choices)
                 if len(after) > most:
                     return False
                 if after == ways:
                     break  # the same again, however often
                 ways = after
+            begin += length
         return all(_is_one(row) for row in self._ways.steps(ways, last))
+
+    def _undecided(self, ways: frozenset[_Way], outcomes: bytes) -> tuple[frozenset[_Way], bool]:
+        """The ways that may come to one outcome or several, and whether some surely comes to more.
+
+        They are of one word each.
+        """
+        found = []
+        for way in ways:
+            (number,) = way
+            assert number is not None, "a word can be"
+            agree = agreement(outcomes, self._monitor.states(number))
+            if agree is None:
+                found.append(way)
+            elif not agree:
+                return ways, True
+        return frozenset(found), False
 
 
 def _is_one(steps: Sequence[OutcomeRange | None]) -> bool:

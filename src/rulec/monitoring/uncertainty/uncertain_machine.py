@@ -209,8 +209,8 @@ class UncertainMachine:
 
     def _narrowed(self, word: _Word, allowed: Mapping[int, int]) -> _Word | None:
         """The word with no other digits than these of some reads, where they are not known."""
-        narrowed: list[Letters] = []
-        for letters in word:
+        narrowed: dict[Letters, Letters] = {}
+        for letters in dict.fromkeys(word):
             cubes = []
             for cube in letters:
                 masks = [
@@ -221,8 +221,8 @@ class UncertainMachine:
                     cubes.append(tuple(masks))
             if not cubes or not self.classes.of(tuple(cubes)):
                 return None
-            narrowed.append(tuple(cubes))
-        return narrowed
+            narrowed[letters] = tuple(cubes)
+        return [narrowed[letters] for letters in word]
 
     def untold(self, untold: frozenset[str]) -> tuple[str, ...]:
         """Names of these for want of which no word can be known to violate the rule.

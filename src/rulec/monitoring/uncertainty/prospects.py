@@ -1,0 +1,80 @@
+"""What may still come of each state of a machine, before a word of sets of letter classes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.outcome_machine import OutcomeMachine
+
+MOST_TABLES = 1 << 12
+"""Tables of outcomes that are kept before all are forgotten."""
+
+SINGLE = frozenset({1, 2, 4})
+"""Outcomes, as bits, of which there is one."""
+
+
+class Prospects:
+    """The outcomes, as bits, that words from each state may have, in numbered tables.
+
+    They are worked out from a word's end on, and remembered: ends of words are often alike.
+    """
+
+    def __init__(self, machine: OutcomeMachine) -> None:
+        self._successors = np.array(machine.successors, dtype=np.intp)
+        self._outcomes = (1 << np.array(machine.outputs)).astype(np.uint8)
+        self._forget()
+
+    def _forget(self) -> None:
+        self._tables: list[bytes] = []
+        self._numbers: dict[bytes, int] = {}
+        self._before: dict[tuple[int, int], int] = {}
+
+    def along(self, word: Sequence[int]) -> list[bytes]:
+        """For each letter of a word the outcomes of what begins with it, by state.
+
+        Letters are sets of classes, as bits.
+        """
+        if len(self._tables) > MOST_TABLES:
+            self._forget()
+        found: list[bytes] = []
+        here = -1
+        for classes in reversed(word):
+            key = here, classes
+            known = self._before.get(key)
+            if known is None:
+                known = self._before[key] = self._number(here, classes)
+            here = known
+            found.append(self._tables[here])
+        return found[::-1]
+
+    def _number(self, after: int, classes: int) -> int:
+        symbols = [n for n in range(classes.bit_length()) if classes >> n & 1]
+        outcomes: NDArray[np.uint8]
+        if after < 0:
+            outcomes = self._outcomes[:, symbols]
+        else:
+            table = np.frombuffer(self._tables[after], dtype=np.uint8)
+            outcomes = table[self._successors[:, symbols]]
+        joined = np.bitwise_or.reduce(outcomes, axis=1).tobytes()
+        number = self._numbers.setdefault(joined, len(self._tables))
+        if number == len(self._tables):
+            self._tables.append(joined)
+        return number
+
+
+def agreement(outcomes: bytes, states: Iterable[int]) -> bool | None:
+    """Whether all words from these states have one outcome; None if that depends on the word.
+
+    ``outcomes`` are those that words may have, by state. There are two for sure if all from one
+    state have one, and some from another state another.
+    """
+    own = {outcomes[state] for state in states}
+    every = 0
+    for each in own:
+        every |= each
+    if every in SINGLE:
+        return True
+    return None if SINGLE.isdisjoint(own) else False
