@@ -59,7 +59,9 @@ def written(
     """
     if vocabulary is None:
         return _all(signals)
-    own_types = [known_type(row, vocabulary) for row in types]
+    # Of many objects there are few types
+    known = {own: known_type(own, vocabulary) for own in {tuple(row) for row in types}}
+    own_types = [known[tuple(row)] for row in types]
     world, about, only = {}, {}, dict(signals.only)
     texts: dict[str, tuple[str, ...]] = {}
     for name, declaration in vocabulary.declarations.items():
@@ -75,8 +77,9 @@ def written(
             numbers = _numbers(name, signals.about[name], unknown, declaration)
             if numbers is not None:
                 about[name] = numbers
-                suits = [is_about(declaration, own, vocabulary) for own in own_types]
-                only[name] = np.array(suits, dtype=bool) & only.get(name, True)
+                about_it = {own: is_about(declaration, own, vocabulary) for own in set(own_types)}
+                suits = np.array([about_it[own] for own in own_types], dtype=bool)
+                only[name] = suits & only.get(name, True)
         if isinstance(declaration, Enumeration) and (name in world or name in about):
             texts[name] = declaration.values
     return WrittenSignals(replace(signals, world=world, about=about, only=only), texts)

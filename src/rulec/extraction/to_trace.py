@@ -20,6 +20,7 @@ from rulec.extraction.signal_arrays import (
     written,
 )
 from rulec.extraction.signals.clearance_signals import clearance_signals
+from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
 from rulec.extraction.signals.following_signals import following_signals
@@ -247,8 +248,6 @@ def _wanted(writer: TraceWriter) -> Wanted:
 
 
 def _places(context: DriveContext) -> Iterator[Place]:
-    pieces = context.road.piece(context.ego_extents.s[0]).tolist()
-    lanes = context.ego_lane.tolist()
-    rows = zip(context.ego.x[0].tolist(), context.ego.y[0].tolist(), pieces, lanes, strict=True)
-    for x, y, piece, lane in rows:
-        yield Place(round(x, 2), round(y, 2), context.road.lanelet(piece, lane).id)
+    ids = own_lanelets(context).values(lambda lanelet: lanelet.id)
+    x, y = ([round(m, 2) for m in values[0].tolist()] for values in (context.ego.x, context.ego.y))
+    return map(Place, x, y, ids)

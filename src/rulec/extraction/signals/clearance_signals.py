@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
@@ -57,7 +59,7 @@ def _on_near_side(context: DriveContext) -> SignalColumns:
     )
 
 
-def _next_lane(context: DriveContext, side: Side) -> tuple[relations.Codes, Flags]:
+def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]:
     """The lane at a side of ego, and where there is one that goes ego's way."""
     lane = context.ego_lane + (1 if side == "left" else -1)
     count = context.existing_lanes.shape[1]
@@ -117,7 +119,7 @@ def _beyond_own_lanes(context: DriveContext) -> Flags:
     return beyond
 
 
-def _edges(context: DriveContext) -> tuple[relations.Codes, relations.Codes]:
+def _edges(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
     """The first and the last bound of the lanes beside ego, by state."""
     there = context.existing_lanes
     return there.argmax(axis=1), there.shape[1] - there[:, ::-1].argmax(axis=1)

@@ -76,11 +76,10 @@ def _stopping(context: DriveContext) -> SignalColumns:
 
 
 def _lane(context: DriveContext) -> SignalColumns:
-    lane = _from_kerb(context, context.steady_lane)
-    return SignalColumns(
-        {"lane": named_values(lane, _LANES)},
-        unknown={"lane": lane != _from_kerb(context, context.ego_lane)},
-    )
+    lane, moves = _from_kerb(context, context.steady_lane), context.steady_lane != context.ego_lane
+    if moves.any():
+        moves = lane != _from_kerb(context, context.ego_lane)
+    return SignalColumns({"lane": named_values(lane, _LANES)}, unknown={"lane": moves})
 
 
 def _lane_count(context: DriveContext) -> SignalColumns:

@@ -174,10 +174,10 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
             (near | found[:, 0], _across(context, middle - half, middle + half, other))
             for other in [(0.0, unmoved), *others]
         ]
-    for where, crossed in tried:
-        states = np.flatnonzero(where)
-        other = _under(context, crossed[states], states)
-        not_told[states] |= (other[:, :-1] != found[states, :-1]).any(axis=1)
+    states = np.concatenate([np.flatnonzero(where) for where, _ in tried])
+    others_found = _under(context, np.concatenate([lines[where] for where, lines in tried]), states)
+    differs = (others_found[:, :-1] != found[states, :-1]).any(axis=1)
+    not_told[states[differs]] = True
     names = ("on_solid_line", "broken_on_own_side", "single_line")
     return SignalColumns(
         dict(zip(names, found.T, strict=False)), unknown=dict.fromkeys(names, not_told)

@@ -167,8 +167,9 @@ def _goes_across(context: DriveContext) -> SignalColumns:
     along, across = np.abs(context.extents.along), np.abs(context.extents.across)
     goes: Flags = (across >= least) & (across > along)
     users = np.flatnonzero(context.tracks.of_type("vulnerable_user"))
-    off = _mostly_along(context, users) | ~context.tracks.on_lane[users]
-    goes[users] |= latest(goes[users]) > latest(off)
+    if len(users):
+        off = _mostly_along(context, users) | ~context.tracks.on_lane[users]
+        goes[users] |= latest(goes[users]) > latest(off)
     return SignalColumns(about={"goes_across": goes})
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 _BODY_M = 5.0
@@ -41,31 +42,36 @@ def lanes_that_decide(context: DriveContext) -> Flags:
     """Flags of lanes (second axis) that go on, and on which a queue would show.
 
     A lane that is a short acceleration lane here, or of which the map ends soon, has no room for
-    ``fewest`` vehicles at the largest distances of a queue.
+    ``fewest`` vehicles at the largest distances of a queue. One that begins or ends near ego while
+    others go on is for who joins or leaves, as between two ramps.
     """
-    room = _length_near(context, context.road.lanes.there, _reach(context))
-    return (room >= _shortest_queue(context)[:, None] - _HAIR_M) & _goes_on(context)
+    there, only_others = _lane_lengths(context)
+    room = _length_near(context, there, _reach(context))
+    without = _length_near(context, only_others, np.full(context.states, _SIDE_LANE_M))
+    enough = room >= _shortest_queue(context)[:, None] - _HAIR_M
+    return enough & (without <= _UNEVEN_M)
 
 
-def _length_near(context: DriveContext, where: Flags, reach_m: Floats | float) -> Floats:
-    """How much (m) of each lane (second axis) is ``where``, up to so far from ego, by state."""
-    s, own = context.road.lanes.s, context.ego_extents.s[0]
-    sums = np.cumsum(where * np.diff(s)[:, None], axis=0)
-    columns = np.concatenate((np.zeros((1, sums.shape[1])), sums)).T
-    reach: Floats = np.broadcast_to(reach_m, own.shape)
-    near, far = own - reach, own + reach
-    return np.stack([np.interp(far, s, up) - np.interp(near, s, up) for up in columns], axis=1)
+@once_a_road
+def _lane_lengths(context: DriveContext) -> tuple[Floats, Floats]:
+    """How much (m) of each lane there is up to each place of the lanes, and of others only.
 
-
-def _goes_on(context: DriveContext) -> Flags:
-    """Flags of lanes (second axis) that neither begin nor end near ego while others go on.
-
-    An acceleration lane does, and one between two ramps: who is on it is about to leave it.
+    A row for each lane.
     """
     lanes = context.road.lanes
     only_others = np.any(lanes.there, axis=1, keepdims=True) & ~lanes.there
-    goes_on: Flags = _length_near(context, only_others, _SIDE_LANE_M) <= _UNEVEN_M
-    return goes_on
+    parts = np.diff(lanes.s)
+    sums = (np.cumsum(where.T * parts, axis=1) for where in (lanes.there, only_others))
+    there, without = (np.pad(rows, ((0, 0), (1, 0))) for rows in sums)
+    return there, without
+
+
+def _length_near(context: DriveContext, lengths: Floats, reach_m: Floats) -> Floats:
+    """How much (m) of each lane (second axis) is near ego, up to so far from it, by state."""
+    s, own = context.road.lanes.s, context.ego_extents.s[0]
+    places = np.concatenate((own + reach_m, own - reach_m))
+    up_to: Floats = np.stack([np.interp(places, s, up) for up in lengths], axis=1)
+    return up_to[: len(own)] - up_to[len(own) :]
 
 
 def _shortest_queue(context: DriveContext) -> Floats:

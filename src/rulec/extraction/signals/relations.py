@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy import intp
+from numpy import int8, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
@@ -22,9 +22,9 @@ from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 if TYPE_CHECKING:
     from rulec.scenario.motion import Facing
 
-Codes = NDArray[intp]
-BEHIND, BESIDE, IN_FRONT_OF = range(3)
-RIGHT_OF, SAME_LANE, LEFT_OF = range(3)
+Codes = NDArray[int8]
+BEHIND, BESIDE, IN_FRONT_OF = int8(0), int8(1), int8(2)
+RIGHT_OF, SAME_LANE, LEFT_OF = int8(0), int8(1), int8(2)
 assert STATIONS == ("behind", "beside", "in_front_of")
 assert LATERALS == ("right_of", "same_lane", "left_of")
 
@@ -50,7 +50,8 @@ def possible_stations(context: DriveContext) -> tuple[Codes, Codes]:
 
 
 def _along(ego: RoadExtents, s_min: Floats, s_max: Floats) -> Codes:
-    return np.where(ego.s_max <= s_min, BEHIND, np.where(ego.s_min >= s_max, IN_FRONT_OF, BESIDE))
+    level: Codes = np.where(ego.s_min >= s_max, IN_FRONT_OF, BESIDE)
+    return np.where(ego.s_max <= s_min, BEHIND, level)
 
 
 @once
@@ -112,7 +113,8 @@ def _clear(context: DriveContext) -> Floats:
 def _ego_at(context: DriveContext) -> Codes:
     """On which side of others ego is."""
     on_left, on_right = _aside(context)
-    return np.where(on_left > on_right, RIGHT_OF, LEFT_OF)
+    side: Codes = np.where(on_left > on_right, RIGHT_OF, LEFT_OF)
+    return side
 
 
 @once
@@ -188,11 +190,9 @@ def _across(own: RoadExtents, lanes: Flags, low: Floats, high: Floats) -> Codes:
     not_right_of = (by_lane & (left_of[:-1] > 0)).any(axis=0)
     not_left_of = (by_lane & (left_of[1:] < 0)).any(axis=0)
     right_of = np.where(inside, ~not_right_of, middle <= low)
-    return np.where(
-        right_of,
-        RIGHT_OF,
-        np.where(np.where(inside, ~not_left_of, middle >= high), LEFT_OF, SAME_LANE),
-    )
+    left_of_all = np.where(inside, ~not_left_of, middle >= high)
+    in_or_left: Codes = np.where(left_of_all, LEFT_OF, SAME_LANE)
+    return np.where(right_of, RIGHT_OF, in_or_left)
 
 
 @once
@@ -254,7 +254,7 @@ def position(context: DriveContext) -> NDArray[np.str_]:
     return letters
 
 
-def _facing(others: RoadExtents) -> Codes:
+def _facing(others: RoadExtents) -> NDArray[intp]:
     """The direction of motion, or heading at rest, by right angles to the road.
 
     Indices into ``_FACING``; half-way counts as across the road.

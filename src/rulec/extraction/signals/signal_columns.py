@@ -43,12 +43,10 @@ def together(parts: Sequence[SignalColumns], wanted: Wanted = None) -> SignalCol
     """The signals of all these, only those of the names that are wanted."""
 
     def columns(kind: str) -> dict[str, Any]:
-        return {
-            name: column
-            for part in parts
-            for name, column in getattr(part, kind).items()
-            if wanted is None or name in wanted
-        }
+        found: dict[str, Any] = {}
+        for part in parts:
+            found |= getattr(part, kind)
+        return found if wanted is None else {x: found[x] for x in found if x in wanted}
 
     return SignalColumns(*map(columns, ("world", "about", "unknown", "only", "bounds")))
 
