@@ -99,6 +99,14 @@ def test_net(tmp_path, before, after, says):
     assert says in found.message
 
 
+def test_a_name_is_said_in_few_letters(tmp_path):
+    long = "in_" + "9" * 5000
+    net = ROAD_NET.replace('"in_1"', f'"{long}"').replace('"in_2"', f'"{long}"')
+    found = problem_with(written(tmp_path, GOOD, net=net))
+    assert "there are two lanes `in_999" in found.message
+    assert len(found.message) < 200
+
+
 def test_types(tmp_path):
     types = TYPES.replace('length="10.0"', 'length="long"')
     found = problem_with(written(tmp_path, GOOD, types=types))

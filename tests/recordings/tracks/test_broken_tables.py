@@ -5,6 +5,7 @@ import gzip
 import pytest
 
 from rulec import RulecError, read_recording
+from support.builders.argoverse_files import parquet_bytes
 from support.builders.track_tables import LANES, driving, table
 
 HEAD = "track,t,x,y,type,heading,speed,length,brake_light,ego"
@@ -28,5 +29,14 @@ def test_parquet_that_is_none(tmp_path):
     (tmp_path / "lanes.csv").write_text(LANES)
     file = tmp_path / "cars.parquet"
     file.write_bytes(b"PAR1" + b"x" * 90)
+    with pytest.raises(RulecError, match="it is no Parquet"):
+        read_recording(file, form="tracks")
+
+
+def test_parquet_whose_names_are_no_text(tmp_path):
+    (tmp_path / "lanes.csv").write_text(LANES)
+    rows = [{"track": "a", "t": k / 10, "x": float(k), "y": 0.0} for k in range(9)]
+    file = tmp_path / "cars.parquet"
+    file.write_bytes(parquet_bytes(rows).replace(b"track", b"tr\xffck"))
     with pytest.raises(RulecError, match="it is no Parquet"):
         read_recording(file, form="tracks")

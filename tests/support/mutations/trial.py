@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import time
 import traceback
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -108,7 +109,9 @@ def _try_one(trial: Trial, seed: int, folder: Path, read: Callable[[], None]) ->
     trial.inputs += 1
     started = time.process_time()
     try:
-        with _not_for_ever():
+        # A warning, too, would be on somebody's screen
+        with _not_for_ever(), warnings.catch_warnings():
+            warnings.simplefilter("error")
             read()
     except RulecError as error:
         trial.refused += 1

@@ -56,12 +56,12 @@ _MARKS: Mapping[int, LaneMark] = {
 
 @dataclass(frozen=True, slots=True)
 class _Thing:
-    """A row: its number, what is said of it, and its geometry."""
+    """A row: its number, what is said of it, and its geometry as bytes."""
 
     row: int
     id: int
     said: Mapping[Any, Any]
-    shape: shapely.Geometry
+    shape: bytes
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,12 +116,11 @@ def _layers(path: Path) -> _Layers:
             continue
         try:
             said = unpacked(packed[row])
-            shape = shapely.from_wkb(shapes[row])
-        except (OddPackError, shapely.errors.ShapelyError):
-            raise table.refused(row, "its `features` or its `wkb` are damaged") from None
+        except OddPackError:
+            raise table.refused(row, "its `features` are damaged") from None
         if not isinstance(said, dict):
             raise table.refused(row, "its `features` are no table of names and values")
-        found[layer].append(_Thing(row, key, said, shape))
+        found[layer].append(_Thing(row, key, said, shapes[row]))
     return _Layers(table, found)
 
 
@@ -235,9 +234,9 @@ class _Paint:
     """The lines of a map."""
 
     def __init__(self, layers: _Layers) -> None:
-        lines = [x for x in layers.of(_ROAD_LINE) if isinstance(x.shape, shapely.LineString)]
-        self._lines = [shapely.force_2d(x.shape) for x in lines]
-        self._kinds = [x.said.get("road_line_type") for x in lines]
+        things = layers.of(_ROAD_LINE)
+        self._lines = [_shape(layers, one) for one in things]
+        self._kinds = [one.said.get("road_line_type") for one in things]
         self._tree = shapely.STRtree(self._lines)
 
     def along(self, bound: Points) -> LaneMark | None:
@@ -245,16 +244,28 @@ class _Paint:
 
         Which of the two lanes beside it a line is said for the map does not tell.
         """
-        line = shapely.LineString(bound)
-        near = self._tree.query(line, predicate="dwithin", distance=_ALONG_M).tolist()
-        places = shapely.points(bound)
-        kinds = {
-            self._kinds[k]
-            for k in near
-            if (shapely.distance(self._lines[k], places) <= _ALONG_M).all()
-        }
+        line, places = shapely.LineString(bound), shapely.points(bound)
+        # Lines that are next to nothing long make GEOS divide by that
+        with np.errstate(all="ignore"):
+            near = self._tree.query(line, predicate="dwithin", distance=_ALONG_M).tolist()
+            away = [shapely.distance(self._lines[k], places).max() for k in near]
+        kinds = {self._kinds[k] for k, most in zip(near, away, strict=True) if most <= _ALONG_M}
         marks = {_MARKS.get(kind) if isinstance(kind, int) else None for kind in kinds}
         return marks.pop() if len(marks) == 1 else None
+
+
+def _shape(layers: _Layers, line: _Thing) -> shapely.LineString:
+    """A line of the map without heights."""
+    try:
+        # Of places that are no numbers there is more to say than a warning
+        with np.errstate(all="ignore"):
+            shape = shapely.force_2d(shapely.from_wkb(line.shape))
+    except shapely.errors.ShapelyError:
+        raise layers.wrong(line, "its `wkb` is damaged") from None
+    places = shapely.get_coordinates(shape)
+    if not isinstance(shape, shapely.LineString) or not (np.abs(places) < LARGEST).all():
+        raise layers.wrong(line, "its `wkb` is no line on earth")
+    return shape
 
 
 def _crosswalks(layers: _Layers) -> Iterator[Lanelet]:

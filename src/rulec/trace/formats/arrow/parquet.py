@@ -54,13 +54,14 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     except RulecError as error:
         yield [error]
         return
-    except (pyarrow.ArrowException, OSError) as reason:
+    except (pyarrow.ArrowException, OSError, ValueError) as reason:
+        # Names of columns that are no UTF-8 are a ValueError
         yield [_unreadable("the file", reason, file)]
         return
     from rulec.trace.formats.arrow.arrow_blocks import cut  # loads Arrow, 0.1 s
 
     table = Table(tuple(schema.names), lambda value: value, lambda row: SourceLocation(file, row))
-    problems = (pyarrow.ArrowException, OSError)
+    problems = (pyarrow.ArrowException, OSError, ValueError)
     yield from cut(_pieces(source, problems, file), table, 1, SourceLocation(file))
 
 

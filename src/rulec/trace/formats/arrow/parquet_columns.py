@@ -25,7 +25,8 @@ def parquet_names(path: Path, refused: Refused) -> tuple[str, ...]:
     with opened(path) as stream:
         try:
             return tuple(parquet.ParquetFile(stream).schema_arrow.names)
-        except (pyarrow.ArrowException, OSError) as reason:
+        except (pyarrow.ArrowException, OSError, ValueError) as reason:
+            # Names of columns that are no UTF-8 are a ValueError
             raise refused(f"it is no Parquet ({_first(reason)})") from None
 
 
