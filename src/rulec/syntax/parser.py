@@ -14,7 +14,7 @@ from rulec.syntax.building import formulas, items
 from rulec.syntax.building.formulas import NodeValues
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.grammar import Mismatch, ParseNode, Start, TooDeep, parse_piece
-from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, RESERVED
+from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, HEADER_WORDS, RESERVED
 from rulec.syntax.messages import structure
 from rulec.syntax.scanner import Token, checked, scan
 from rulec.syntax.split_file import FileSplitter
@@ -60,6 +60,21 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     file, order_mistakes = assemble_file(source, parts)
     mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes)
     return file, tuple(sorted(mistakes, key=_position))
+
+
+def parse_head(source: Source) -> tree.File:
+    """The tree of a file's header lines; rules and declarations are passed over.
+
+    Raises RulecError: the file is no text.
+    """
+    tokens = scan(checked(source))
+    reader = _Reader(source, tokens)
+    lines = [
+        reader.item(piece)
+        for piece in FileSplitter(source, tokens).split()
+        if isinstance(piece, Piece) and tokens[piece.first].text in HEADER_WORDS
+    ]
+    return assemble_file(source, lines)[0] if lines else _NOTHING
 
 
 def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:

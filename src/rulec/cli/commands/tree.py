@@ -34,7 +34,7 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, to: Output, at: str
     from rulec.analysis.lineage.book_lineage import book_header
     from rulec.analysis.lineage.rule_lineage import extension_forest
     from rulec.report.rulebooks import lineage_tree
-    from rulec.rulebook.files.catalogue import rulebook_trees
+    from rulec.rulebook.files.catalogue import rulebook_heads
 
     shared.only_sources(rulebooks, "cannot be taken apart")
     width, color = width_of(to), wants_color(sys.stdout)
@@ -52,7 +52,7 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, to: Output, at: str
         if rulebooks:
             books = [book for name in rulebooks for book in session.tree(name).books]
         else:
-            books = [book_header(tree) for tree in rulebook_trees(search_path())]
+            books = [book_header(tree) for tree in rulebook_heads(search_path())]
         branches = extension_forest(books)
         shown = lineage_tree.forest_as_json(branches)
         if to.form == "text":

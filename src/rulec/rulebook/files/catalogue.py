@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError
 from rulec.rulebook.files import search_path as search
-from rulec.syntax import decode, parse, tree
+from rulec.syntax import decode, parse, parse_head, tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,13 +26,13 @@ def list_rulebooks(search_path: Sequence[Path] = ()) -> list[Entry]:
     return [
         Entry(path.stem, file.title.text.value if file and file.title else "", path)
         for path in _rulebooks(search_path)
-        for file in [_tree(path)]
+        for file in [_head(path)]
     ]
 
 
-def rulebook_trees(search_path: Sequence[Path] = ()) -> list[tree.File]:
-    """Syntax trees of all readable rulebooks, by name, in alphabetical order."""
-    files = map(_tree, _rulebooks(search_path))
+def rulebook_heads(search_path: Sequence[Path] = ()) -> list[tree.File]:
+    """The header lines of all readable rulebooks, by name, in alphabetical order."""
+    files = map(_head, _rulebooks(search_path))
     return [file for file in files if file is not None and file.name is not None]
 
 
@@ -47,6 +47,13 @@ def list_vocabularies(search_path: Sequence[Path] = ()) -> list[Entry]:
 def _rulebooks(search_path: Sequence[Path]) -> list[Path]:
     names = search.available_rulebooks(search_path)
     return [search.find_rulebook(name, search_path) for name in names]
+
+
+def _head(path: Path) -> tree.File | None:
+    try:
+        return parse_head(decode(str(path), search.read_bytes(path)))
+    except RulecError:
+        return None
 
 
 def _tree(path: Path) -> tree.File | None:
