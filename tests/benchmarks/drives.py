@@ -1,7 +1,8 @@
 """How long recordings take from the command line: what vehicles did, and what they could do.
 
 All of CommonRoad's recordings, if RULEC_RECORDINGS names the folder that they are in, and SUMO's in
-the folder `sumo` beside it. Whole processes, the rulebook's compilation in each of them.
+the folder `sumo` beside it. Whole processes, of which the first compiles and the others find what
+it has kept.
 """
 
 from __future__ import annotations

@@ -21,11 +21,13 @@ from timing import children_ms, in_turns
 
 from rulec.rulebook.files.search_path import available_rulebooks, find_rulebook
 from rulec.rulebook.loader import diagnose
+from support.builders.sumo_files import body, data, moment, written
 
 ROOT = Path(__file__).resolve().parents[2]
 LAUNCHED = Path(sys.prefix) == ROOT / ".venv"
 RULEC = [str(ROOT / "rulec")] if LAUNCHED else [sys.executable, "-m", "rulec"]
 BARE = "python -c pass"
+JUDGED = "verify -r {}"
 MANEUVERS = "maneuvers s2 --step 0.5 --rulebook esterle2019"
 
 
@@ -37,10 +39,14 @@ def measure(rounds: int) -> Iterator[Result]:
         MANEUVERS: 450,
         f"check {name}": 150,
         f"check {name} --no-cache": None,
+        JUDGED.format(name): 300,
     }
     commands = {BARE: [sys.executable, "-c", "pass"]}
     commands |= {command: [*RULEC, *command.split()] for command in wanted}
-    with tempfile.TemporaryDirectory() as cache:
+    with tempfile.TemporaryDirectory() as cache, tempfile.TemporaryDirectory() as drive:
+        written(Path(drive), data(*(moment(k / 2, body(x=20 + 5 * k)) for k in range(4))))
+        net = str(Path(drive, "road.net.xml"))
+        commands[JUDGED.format(name)] += [str(Path(drive, "fcd.xml")), "--map", net]
         environment = {**os.environ, "RULEC_CACHE_DIR": cache}
         # Where somebody keeps Python from writing bytecode, every process would compile anew.
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -58,7 +64,8 @@ def measure(rounds: int) -> Iterator[Result]:
     yield Result(
         "Whole processes",
         "each started anew, after a first run that has filled the cache; the largest rulebook is "
-        f"{name}, {size:,} bytes in {files} files with all it builds upon",
+        f"{name}, {size:,} bytes in {files} files with all it builds upon; what is verified is one "
+        "drive of four states",
         [*figures, taken[BARE].figure(BARE, "ms")],
         [
             "From start to end one waits, in the same rounds, "
