@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from html import escape
 from importlib import import_module
 from typing import Any
 
@@ -89,6 +88,9 @@ class Rows:
 
     def _repr_html_(self) -> str:
         rows = self.rows()
+        # Names of characters, 1 ms: only in notebooks.
+        from html import escape
+
         text = f"<p><code>{escape(repr(self))}</code></p>"
         if not rows:
             return text
@@ -100,6 +102,9 @@ class Rows:
 
 
 def _line(tag: str, cells: Any) -> str:
+    # Names of characters, 1 ms: only in notebooks.
+    from html import escape
+
     return "<tr>" + "".join(f"<{tag}>{escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"
 
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from rulec.batch.jobs import Jobs
 from rulec.batch.recording_judge import (
@@ -112,6 +110,10 @@ def _without_standard_input(
     if STANDARD_INPUT not in paths:
         yield list(paths), {}
         return
+    # Archives and random names, 4 ms: not for files.
+    import shutil
+    from tempfile import TemporaryDirectory
+
     # Recordings are read more than once, and from the middle.
     with TemporaryDirectory(prefix="rulec-") as folder:
         file = Path(folder, "standard input")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from shutil import get_terminal_size
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -27,6 +26,9 @@ def page_width() -> int:
     """Width of a text on standard output, in characters."""
     if not sys.stdout.isatty():
         return PAGE_WIDTH
+    # Archives and their packing, 3 ms: only for a terminal.
+    from shutil import get_terminal_size
+
     return max(40, get_terminal_size((PAGE_WIDTH, 24)).columns)
 
 
