@@ -40,6 +40,10 @@ class Surroundings:
     _rings: dict[Side, frozenset[str]] = field(default_factory=dict)
     _opposite_m: dict[str, float] = field(default_factory=dict)
 
+    def __reduce__(self) -> tuple[type[Surroundings], tuple[Recording, Tracks]]:
+        # What has been found is found again: functions that say for what cannot be pickled.
+        return Surroundings, (self.recording, self.tracks)
+
     @cached_property
     def tolerances(self) -> Tolerances:
         """How well the source knows places and speeds."""
