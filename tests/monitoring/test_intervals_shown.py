@@ -66,7 +66,7 @@ def test_an_open_verdict_says_that_the_limit_is_within_the_tolerance(rules):
     assert (result.depends_on, result.because) == (("speed",), ("tolerance",))
     assert open_in_words(result) == (
         "open, depends on speed and a limit is within the tolerance of what was measured: "
-        "kept if speed <= 50, violated if speed > 50"
+        "violated if speed > 50, kept if speed <= 50"
     )
 
 

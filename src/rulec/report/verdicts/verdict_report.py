@@ -10,6 +10,7 @@ from rulec.logic.printing import number_in_words
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.terminal_text import styled, visible
+from rulec.report.verdicts.outcome_cases import fewest_cases
 
 if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
@@ -88,10 +89,13 @@ def open_in_words(result: OpenVerdict) -> str:
         parts.append("not over when the trace is cut" if not parts else "not over")
     if "step" in result.because:
         parts.append("hangs on a bound that is no multiple of the step")
+    fewest = fewest_cases(result.outcomes)
     cases = [
         f"{case.outcome} if {' and '.join(_condition(*pair) for pair in case.when.items())}"
-        for case in result.outcomes[:MOST_CASES]
+        for case in fewest[:MOST_CASES]
     ]
+    if len(fewest) > MOST_CASES:
+        cases.append(f"and {len(fewest) - MOST_CASES} more; --json has them all")
     text = f"open, {' and '.join(parts)}"
     return f"{text}: {', '.join(cases)}" if cases else text
 

@@ -1,0 +1,60 @@
+"""How an open verdict comes out, in as few cases as say the same.
+
+Cases that differ in one name alone, and have all the values that it can have, are one without it
+(Quine and McCluskey's prime implicants, of more values than two); of these enough are taken to cover
+all, those that cover most first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence, Set
+
+from rulec.monitoring.verdict import ConditionalOutcome, OutcomeName
+
+Case = frozenset[tuple[str, bool | str]]
+
+
+def fewest_cases(outcomes: Sequence[ConditionalOutcome]) -> list[ConditionalOutcome]:
+    """Cases that cover the given ones with their outcomes; what breaks the rule comes first."""
+    by_outcome: dict[OutcomeName, list[Case]] = {}
+    for one in outcomes:
+        by_outcome.setdefault(one.outcome, []).append(frozenset(one.when.items()))
+    order = sorted(by_outcome, key=lambda name: name != "violated")
+    names = {name: place for place, name in enumerate(outcomes[0].when)} if outcomes else {}
+    values = {name: {one.when[name] for one in outcomes} for name in names}
+    return [
+        ConditionalOutcome(dict(sorted(case, key=lambda pair: names[pair[0]])), name)
+        for name in order
+        for case in _cover(by_outcome[name], values)
+    ]
+
+
+def _cover(cases: Sequence[Case], values: Mapping[str, Set[bool | str]]) -> list[Case]:
+    primes, left, chosen = _primes(set(cases), values), set(cases), []
+    while left:
+        best = max(primes, key=lambda prime: (len(_within(prime, left)), -len(prime)))
+        chosen.append(best)
+        left -= _within(best, left)
+    return chosen
+
+
+def _within(prime: Case, cases: Set[Case]) -> set[Case]:
+    return {case for case in cases if prime <= case}
+
+
+def _primes(cases: Set[Case], values: Mapping[str, Set[bool | str]]) -> list[Case]:
+    """The cases with as few conditions as can be, in an order that is always the same."""
+    found: set[Case] = set()
+    while cases:
+        merged: set[Case] = set()
+        used: set[Case] = set()
+        for case in cases:
+            for name, value in case:
+                without = case - {(name, value)}
+                alike = {without | {(name, other)} for other in values[name]}
+                if alike <= cases:
+                    merged.add(without)
+                    used |= alike
+        found |= cases - used
+        cases = merged
+    return sorted(found, key=lambda case: sorted((name, str(value)) for name, value in case))
