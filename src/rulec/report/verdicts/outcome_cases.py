@@ -1,8 +1,8 @@
 """How an open verdict comes out, in as few cases as say the same.
 
 Cases that differ in one name alone, and have all the values that it can have, are one without it
-(Quine and McCluskey's prime implicants, of more values than two); of these enough are taken to cover
-all, those that cover most first.
+(Quine and McCluskey's prime implicants, of more values than two); of these enough are taken to
+cover all, those that cover most first.
 """
 
 from __future__ import annotations
