@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from rulec.diagnostics import RulecError
 from rulec.recordings.commonroad import commonroad_file
 from rulec.recordings.commonroad.commonroad_file import read_commonroad
+from rulec.recordings.encodings import xml_tree
 from support.builders.recordings import ROAD_XML, SAMPLES
 from support.oracles.same_recording import assert_same
 
@@ -90,6 +91,55 @@ def test_small_files_are_read_in_one_go(tmp_path, monkeypatch):
 def test_states_of_other_kinds(tmp_path, before, after):
     assert before in STATE
     check(with_state(tmp_path, STATE.replace(before, after, 1) + STATE.replace(">1<", ">2<")))
+
+
+SECOND = STATE.replace(">1<", ">2<")
+HIDDEN = "<!-- <trajectory>" + STATE + "</trajectory> -->"
+BOUND = "<leftBound> <point><x>1</x><y>2</y></point> </leftBound>"
+
+
+@pytest.mark.parametrize(
+    "states",
+    [
+        STATE + "<!-- </trajectory> -->" + SECOND,
+        STATE + "<!-- </state> -->" + SECOND,
+        STATE + SECOND + "<!-- <state> -->",
+        "<!-- <state> -->" + STATE + SECOND,
+        HIDDEN + STATE + SECOND,
+        "<![CDATA[<state>]]>" + STATE,
+        STATE + "some words" + SECOND,
+        STATE.replace("<x>1", "<x>&#49;") + SECOND,
+        STATE.replace("<x>1", "<x>\N{ARABIC-INDIC DIGIT ONE}") + SECOND,
+        STATE.replace("<x>", "<x >") + SECOND,
+        STATE.replace("<state>", '<state id="1">') + SECOND,
+        STATE + SECOND.replace("</state>", BOUND + "</state>"),
+        STATE.replace("</state>", BOUND + "</state>") * 2,
+        STATE.replace("<y>2</y>", "<y>2</y><z>3</z>") + SECOND,
+        STATE.replace("<x>1</x>", "<z>3</z><x>1</x>") + SECOND,
+        STATE.replace("<point>", "<point><z>3</z></point><point>"),
+        STATE.replace("</point>", "</point><point><x>5</x><y>6</y></point>"),
+        STATE + "</trajectory><trajectory>" + SECOND,
+        "<trajectory>" + STATE + "</trajectory>" + SECOND,
+        "<trajectory>" + STATE,
+        "",
+    ],
+)
+def test_trajectories_of_other_kinds(tmp_path, states):
+    check(with_state(tmp_path, f"\n  {states}\n"))
+
+
+def test_an_attribute_cannot_stand_for_what_is_alike(tmp_path):
+    file = with_state(tmp_path, f"\n {STATE}\n")
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("<position>", '<position rulec-alike="0">'), encoding="utf-8")
+    assert check(file) is not None
+
+
+def test_what_begins_and_never_ends_is_looked_at_once(tmp_path, monkeypatch):
+    looked_at = []
+    monkeypatch.setattr(xml_tree, "_shape", lambda *_: looked_at.append(1))
+    check(with_state(tmp_path, ("\n <trajectory>\n" + STATE) * 500))
+    assert len(looked_at) == 1
 
 
 @given(st.integers(0, 2**32))

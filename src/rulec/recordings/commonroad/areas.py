@@ -8,18 +8,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, copysign, pi
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import shapely
 from shapely import affinity
 
-from rulec.recordings.encodings.tree import LONGEST_TEXT, SMALLEST, Tree
+from rulec.recordings.encodings.tree import LONGEST_TEXT, SMALLEST, Texts, Tree
 from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.encodings.xml_tree import Way
 from rulec.recordings.recording import Points
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 NOT_USUAL = "it takes a closer look"
 """Said of what is then read anew with its lines, and by nobody else."""
@@ -138,35 +136,34 @@ def read_point(tree: Tree) -> tuple[float, float]:
 
 def read_points(tree: Tree) -> Points:
     """The places of all points in an element."""
-    if tree.raw:
-        places = _usual_points(tree.raw)
-        if places is None:
+    if tree.alike is not None:
+        if tree.first("point") is not None:
             raise tree.wrong(NOT_USUAL)
+        columns = [usual_numbers(texts) for texts in tree.alike.columns]
+        if None in columns:
+            raise tree.wrong(NOT_USUAL)
+        places: Points = np.stack([np.array(column) for column in columns], axis=1)
         return places
     return np.array(list(map(read_point, tree.all("point"))), dtype=float).reshape(-1, 2)
 
 
-def _usual_points(points: Sequence[Element]) -> Points | None:
-    """The places of points that have `x` and `y` first, and nothing wrong; else None."""
-    leaves = [leaf for point in points for leaf in point[:2]]
-    if [leaf.tag for leaf in leaves] != ["x", "y"] * len(points) or any(map(len, leaves)):
-        return None
-    numbers = usual_numbers([leaf.text for leaf in leaves])
-    return None if numbers is None else np.array(numbers).reshape(-1, 2)
+def wanted_of_point(ways: Sequence[Way]) -> Sequence[int] | None:
+    """Which texts in a point are its place; None if they are not the first ones."""
+    return (0, 1) if tuple(ways[:2]) == (("x",), ("y",)) else None
 
 
-def usual_numbers(texts: Sequence[str | None]) -> list[float] | None:
+def usual_numbers(texts: Texts) -> list[float] | None:
     """The numbers that texts spell, as ``Tree.number`` reads them; None if anything is wrong."""
     try:
         # What is -0 becomes 0.
-        numbers = [float(text) + 0.0 for text in texts]  # type: ignore[arg-type]
-    except (TypeError, ValueError):
+        numbers = [float(text) + 0.0 for text in texts]
+    except ValueError:
         return None
     # A sum is not small where one of them is not, or is no number.
     is_usual = (
         sum(map(abs, numbers)) < LARGEST
         and min(filter(None, map(abs, numbers)), default=1.0) > SMALLEST
-        and max(map(len, filter(None, texts)), default=0) < LONGEST_TEXT
+        and max(map(len, texts), default=0) < LONGEST_TEXT
     )
     return numbers if is_usual else None
 

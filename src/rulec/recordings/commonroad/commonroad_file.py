@@ -6,11 +6,13 @@ from contextlib import suppress
 from pathlib import Path
 
 from rulec.diagnostics import RulecError
+from rulec.recordings.commonroad.areas import wanted_of_point
 from rulec.recordings.commonroad.countries import country_in
 from rulec.recordings.commonroad.scenario_content import Content, add, add_step, to_recording
+from rulec.recordings.commonroad.states import wanted_of_state
 from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.encodings.xml_element import XmlFormat, short
-from rulec.recordings.encodings.xml_tree import no_collection, scan_trees, whole_tree
+from rulec.recordings.encodings.xml_tree import Alike, no_collection, scan_trees, whole_tree
 from rulec.recordings.recording import Recording
 from rulec.recordings.road_map import RoadMap
 
@@ -23,8 +25,11 @@ VERSIONS = ("2018b", "2020a")
 
 _SAME_STEP_S = 1e-6
 
-_ALIKE = {"trajectory": "state", "leftBound": "point", "rightBound": "point"}
-"""Elements with very many others in them."""
+_ALIKE = (
+    Alike("trajectory", "state", wanted_of_state),
+    Alike("leftBound", "point", wanted_of_point),
+    Alike("rightBound", "point", wanted_of_point),
+)
 
 
 def read_commonroad(path: Path) -> Recording:

@@ -58,6 +58,8 @@ def read_body(tree: Tree, extent: TimeExtent, *, standing: bool) -> recorded.Par
 
 def _stated_error(states: Sequence[State]) -> recorded.StatedError | None:
     """The median of what states say themselves; None if most of them are exact."""
+    if not any(state.area or state.speed_error for state in states):
+        return None
     places = [shapely.minimum_bounding_radius(geometry(x.area)) if x.area else 0 for x in states]
     place, speed = np.median(places), np.median([state.speed_error for state in states])
     return recorded.StatedError(float(place), float(speed)) if place or speed else None

@@ -6,12 +6,12 @@ Places may be areas, and numbers intervals.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import pi
-from operator import itemgetter
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple
 
 from rulec.recordings.commonroad.areas import (
+    NOT_USUAL,
     Area,
     is_area,
     read_area,
@@ -19,13 +19,10 @@ from rulec.recordings.commonroad.areas import (
     turned_once,
     usual_numbers,
 )
-from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.xml_tree import tree_of
+from rulec.recordings.encodings.tree import AlikeElements, Tree
+from rulec.recordings.encodings.xml_tree import Way
 
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
-
-_STEP = re.compile("[0-9]{1,8}")
+_STEP = re.compile(rb"[0-9]{1,8}")
 
 
 class Bounds(NamedTuple):
@@ -85,13 +82,11 @@ def read_state(tree: Tree, *, initial: bool = False) -> State:
 
 def read_states(trajectory: Tree) -> list[State]:
     """The states of a trajectory."""
-    if not trajectory.raw:
+    if trajectory.alike is None:
         return [read_state(state) for state in trajectory.all("state")]
-    states = _usual_states(trajectory.raw)
-    if states is not None:
-        return states
-    path, form = trajectory.path, trajectory.form
-    return [read_state(tree_of(element, path, form)) for element in trajectory.raw]
+    if trajectory.first("state") is not None:
+        raise trajectory.wrong(NOT_USUAL)
+    return _usual_states(trajectory, trajectory.alike)
 
 
 _TEXTS = (
@@ -104,56 +99,37 @@ _TEXTS = (
 )
 """Where a state's numbers stand; the last may be left out, and is 0 then."""
 
-_Pick: TypeAlias = "Callable[[Sequence[Element]], tuple[Element, ...]]"
+
+_HEIGHT = ("position", "point", "z")
 
 
-def _usual_states(elements: Sequence[Element]) -> list[State] | None:
-    """The states in elements that spell all numbers exactly; None if in some there is more."""
-    picks: dict[tuple[str, ...], _Pick | None] = {}
-    steps: list[str | None] = []
-    texts: list[str | None] = []
-    for element in elements:
-        parts = list(element.iter())
-        names = tuple([part.tag for part in parts])
-        if names not in picks:
-            picks[names] = _pick(parts)
-        pick = picks[names]
-        if pick is None:
+def wanted_of_state(ways: Sequence[Way]) -> Sequence[int] | None:
+    """Which texts in a state are its numbers; None if not all are exact, or said once."""
+    by_field: dict[str, list[Way]] = {}
+    for way in ways:
+        by_field.setdefault(way[0], []).append(way)
+    texts = _TEXTS if "acceleration" in by_field else _TEXTS[:-1]
+    for names in texts:
+        own = by_field.get(names[0], [])
+        expected = [text for text in texts if text[0] == names[0]]
+        # A place may have a height, too
+        if own[: len(expected)] != expected or set(own[len(expected) :]) - {_HEIGHT}:
             return None
-        step, *others = [part.text for part in pick(parts)]
-        steps.append(step)
-        texts += others
-        texts += ["0"] * (len(_TEXTS) - 1 - len(others))
-    numbers = usual_numbers(texts)
-    if numbers is None or not all(step and _STEP.fullmatch(step) for step in steps):
-        return None
-    rows = zip(*[iter(numbers)] * (len(_TEXTS) - 1), strict=True)
-    return [
-        State._make((int(step or ""), x, y, (), Bounds(heading, heading), speed, acceleration, 0.0))
-        for step, (x, y, heading, speed, acceleration) in zip(steps, rows, strict=True)
-    ]
+    return [ways.index(names) for names in texts]
 
 
-def _pick(parts: Sequence[Element]) -> _Pick | None:
-    """What picks the elements with texts from states of this structure; None if there is more."""
-    state, places = parts[0], {id(part): place for place, part in enumerate(parts)}
-    picked = []
-    for names in _TEXTS:
-        found = _only(state, *names)
-        if found is not None:
-            picked.append(places[id(found)])
-        elif names[0] != "acceleration" or state.find(names[0]) is not None:
-            return None
-    return itemgetter(*picked)
-
-
-def _only(element: Element, *names: str) -> Element | None:
-    """The element behind some names if it, and each before, is the only one of its name."""
-    here: Element | None = element
-    for name in names:
-        found = [] if here is None else here.findall(name)
-        here = found[0] if len(found) == 1 else None
-    return here
+def _usual_states(trajectory: Tree, states: AlikeElements) -> list[State]:
+    """The states that spell all numbers exactly."""
+    steps, *texts = states.columns
+    columns = [usual_numbers(column) for column in texts]
+    if None in columns or not all(map(_STEP.fullmatch, steps)):
+        raise trajectory.wrong(NOT_USUAL)
+    x, y, heading, speed, *more = (column or [] for column in columns)
+    acceleration = more[0] if more else [0.0] * states.count
+    bounds = map(Bounds, heading, heading)
+    none, exact = [()] * states.count, [0.0] * states.count
+    rows = zip(map(int, steps), x, y, none, bounds, speed, acceleration, exact, strict=True)
+    return list(map(State._make, rows))
 
 
 def read_step(tree: Tree) -> int:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.xml_element import LARGEST, short
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 MOST_ELEMENTS = 1_000_000
 """In one child of the root, some 300 MB of memory."""
@@ -42,12 +39,26 @@ class FileFormat(Protocol):
         """The error (R0610) for a place in a file: its line, or its byte."""
 
 
+Texts = tuple[bytes, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class AlikeElements:
+    """Elements one after the other that hold the same ones: how many, and what they say.
+
+    ``columns``: for each of the elements in them that somebody wants, its text in all of them.
+    """
+
+    count: int
+    columns: tuple[Texts, ...]
+
+
 @dataclass(slots=True)
 class Tree:
     """An element with its text, and those in it. Its methods raise RulecError R0610.
 
-    ``place`` is the line or byte that it begins in, as its format counts; ``raw`` are children that
-    no trees have been made of, since there are very many alike.
+    ``place`` is the line or byte that it begins in, as its format counts; ``alike`` are children
+    that no trees have been made of, since there are very many.
     """
 
     # Not frozen: a recording has millions, whose text and children come later
@@ -58,7 +69,7 @@ class Tree:
     form: FileFormat
     text: str = ""
     children: list[Tree] = field(default_factory=list)
-    raw: Sequence[Element] = ()
+    alike: AlikeElements | None = None
 
     def first(self, name: str) -> Tree | None:
         """The first child of a name."""

@@ -1,21 +1,31 @@
 """XML files as trees.
 
 Small ones that are as they should be are made in one go by the standard library's builder, which
-takes a third of the time. Of others the root's children come one after the other, with the line of
-every element; only one of them is in memory at a time, so a file may be larger than that.
+takes a third of the time; elements that are all alike are taken out before. Of others the root's
+children come one after the other, with the line of every element; only one of them is in memory at
+a time, so a file may be larger than that.
 """
 
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
+from operator import itemgetter
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.parsers.expat import ExpatError, ParserCreate
 
 from rulec.recordings.encodings.safe_xml import blocks_of, scan_names
-from rulec.recordings.encodings.tree import LONGEST_TEXT, MOST_ELEMENTS, FileFormat, Tree
+from rulec.recordings.encodings.tree import (
+    LONGEST_TEXT,
+    MOST_ELEMENTS,
+    AlikeElements,
+    FileFormat,
+    Tree,
+)
 from rulec.recordings.encodings.xml_element import XmlFormat, short
 
 LARGEST_BYTES = 4_000_000
@@ -27,6 +37,11 @@ MOST_TAGS = 600_000
 DEEPEST = 20
 
 _HEAD_BYTES = 4096
+
+_ATTRIBUTE = "rulec-alike"
+_MARK = b"rulec-alike="
+_MOST_TAGS_ALIKE, _MOST_SHAPES = 60, 8
+_TAG = re.compile(rb"<(/?)([A-Za-z]+)>([^<]*)")
 
 
 def scan_trees(
@@ -76,34 +91,145 @@ def scan_trees(
     scan_names(path, form, begin, end=end, text=text)
 
 
-def whole_tree(path: Path, form: XmlFormat, raw: Mapping[str, str]) -> Tree | None:
+Way = tuple[str, ...]
+"""The names of elements, each in the one before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Alike:
+    """Elements ``child``, of which there are very many in each ``parent``.
+
+    ``wanted``: of the names on the way to each text in one, which texts are wanted; None if such
+    elements have to be looked at one by one.
+    """
+
+    parent: str
+    child: str
+    wanted: Callable[[Sequence[Way]], Sequence[int] | None]
+
+
+def whole_tree(path: Path, form: XmlFormat, alike: Sequence[Alike]) -> Tree | None:
     """The root of an XML file with all in it, without lines; None if it takes a closer look.
 
-    ``raw``: of elements with these names the children with that one are left as the library has
-    them. Raises RulecError R0610 for what is packed and damaged, R0701 for a file that cannot be
-    read.
+    Of what is ``alike`` no trees are made. Raises RulecError R0610 for what is packed and damaged,
+    R0701 for a file that cannot be read.
     """
     data = bytearray()
     for block in blocks_of(path):
         data += block
         if len(data) > min(LARGEST_BYTES, form.largest_bytes):
             return None
-    is_plain = b"\0" not in data and b"xmlns" not in data and data.count(b"<") <= MOST_TAGS
-    if not is_plain or not _begins_well(bytes(data[:_HEAD_BYTES]), form):
+    is_plain = not any(sign in data for sign in (b"\0", b"xmlns", _MARK))
+    if not is_plain or data.count(b"<") > MOST_TAGS:
         return None
+    if not _begins_well(bytes(data[:_HEAD_BYTES]), form):
+        return None
+    rest, found = without_alike(bytes(data), alike)
     try:
         # The prolog, in which alone entities can be defined, has been looked at.
-        return _tree(ElementTree.fromstring(bytes(data)), path, form, raw)
+        return _tree(ElementTree.fromstring(rest), path, form, found)
     except (ElementTree.ParseError, LookupError, ValueError):
         return None
 
 
-def tree_of(element: ElementTree.Element, path: Path, form: FileFormat) -> Tree:
-    """An element that was left raw as a tree. Raises RulecError R0610 if it is too deep."""
-    try:
-        return _tree(element, path, form, {})
-    except ValueError:
-        raise form.refused(path, f"an element `{short(element.tag)}` is too deep") from None
+def without_alike(data: bytes, alike: Sequence[Alike]) -> tuple[bytes, list[AlikeElements]]:
+    """A document without runs of elements that are alike, and these.
+
+    Where one was its parent has its number, in an attribute. Nothing else is left out than elements
+    without attributes, with blanks and texts without markup in them, so that what is not
+    well-formed stays so.
+    """
+    parts: list[bytes] = []
+    found: list[AlikeElements] = []
+    at = 0
+    for begin, first, last, elements in sorted(
+        (cut for one in alike for cut in _cuts(data, one)), key=itemgetter(0)
+    ):
+        # Nothing is taken out of what has been taken out
+        if begin > at:
+            parts += (data[at : begin - 1], b' %s"%d">' % (_MARK, len(found)), data[begin:first])
+            found.append(elements)
+            at = last
+    return b"".join((*parts, data[at:])), found
+
+
+_Cut = tuple[int, int, int, AlikeElements]
+"""Where the parent's tag ends, where its children begin and end, and what they say."""
+
+
+def _cuts(data: bytes, alike: Alike) -> Iterator[_Cut]:
+    opening, closing = b"<%s>" % alike.parent.encode(), b"</%s>" % alike.parent.encode()
+    child, end_of_child = b"<%s>" % alike.child.encode(), b"</%s>" % alike.child.encode()
+    shapes: list[_Shape] = []
+    at = data.find(opening)
+    while at >= 0 and (end := data.find(closing, at)) >= 0:
+        begin = at + len(opening)
+        first = data.find(child, begin, end)
+        last = data.rfind(end_of_child, begin, end) + len(end_of_child)
+        if begin <= first < last and data[begin:first].isspace():
+            run = data[first:last]
+            elements = _elements(run, shapes)
+            if elements is None and len(shapes) < _MOST_SHAPES:
+                shapes += [shape for shape in (_shape(run, end_of_child, alike),) if shape]
+                elements = _elements(run, shapes[-1:])
+            if elements is not None:
+                yield begin, first, last, elements
+        at = data.find(opening, end)
+
+
+@dataclass(frozen=True, slots=True)
+class _Shape:
+    """What finds elements that hold the same ones, and how many tags each has.
+
+    ``order`` are the wanted ones' places among those that are found.
+    """
+
+    pattern: re.Pattern[bytes]
+    tags: int
+    order: tuple[int, ...]
+
+
+def _elements(run: bytes, shapes: Sequence[_Shape]) -> AlikeElements | None:
+    """The elements of a run, if all are of one of the shapes, and there is no other tag in it."""
+    tags = run.count(b"<")
+    for shape in shapes:
+        found = shape.pattern.findall(run)
+        if len(found) * shape.tags == tags:
+            columns = tuple(zip(*found, strict=True))
+            return AlikeElements(len(found), tuple(columns[place] for place in shape.order))
+    return None
+
+
+def _shape(run: bytes, end_of_child: bytes, alike: Alike) -> _Shape | None:
+    """The shape of the first element of a run; None if it has to be looked at by itself."""
+    whole = run[: run.find(end_of_child) + len(end_of_child)]
+    tags = _TAG.findall(whole)
+    if len(tags) > _MOST_TAGS_ALIKE or b"".join(b"<%s%s>%s" % tag for tag in tags) != whole:
+        return None
+    ways: list[Way] = []
+    leaves: list[int] = []
+    here: list[str] = []
+    for place, (closes, name, _) in enumerate(tags):
+        if not closes:
+            here.append(name.decode())
+            if place + 1 < len(tags) and tags[place + 1][:2] == (b"/", name):
+                leaves.append(place)
+                ways.append(tuple(here[1:]))
+        elif not here or here.pop().encode() != name:
+            return None
+    wanted = None if here else alike.wanted(ways)
+    if wanted is None:
+        return None
+    groups = {leaves[number]: number for number in wanted}
+    pattern = [
+        b"<%s%s>" % (closes, name)
+        + (b"([^<]*)" if place in groups else b"[^<]*" if place in leaves else rb"\s*")
+        for place, (closes, name, _) in enumerate(tags)
+    ]
+    order = sorted(wanted)
+    return _Shape(
+        re.compile(b"".join(pattern)), len(tags), tuple(order.index(number) for number in wanted)
+    )
 
 
 def _begins_well(head: bytes, form: XmlFormat) -> bool:
@@ -143,23 +269,20 @@ def _tree(
     element: ElementTree.Element,
     path: Path,
     form: FileFormat,
-    raw: Mapping[str, str],
+    alike: Sequence[AlikeElements],
     depth: int = 0,
 ) -> Tree:
     if depth > DEEPEST:
         raise ValueError
     text = element.text
     tree = Tree(element.tag, element.attrib, 0, path, form)
-    alike = raw.get(element.tag)
-    left: list[ElementTree.Element] = []
+    number = element.attrib.pop(_ATTRIBUTE, None)
+    if number is not None:
+        tree.alike = alike[int(number)]
     for child in element:
-        if child.tag == alike:
-            left.append(child)
-        else:
-            tree.children.append(_tree(child, path, form, raw, depth + 1))
+        tree.children.append(_tree(child, path, form, alike, depth + 1))
         if child.tail is not None and not child.tail.isspace():
             text = (text or "") + child.tail
-    tree.raw = left or ()
     if text is not None and not text.isspace():
         tree.text = text[:LONGEST_TEXT]
     return tree
