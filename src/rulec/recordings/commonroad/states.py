@@ -126,9 +126,10 @@ def _usual_states(trajectory: Tree, states: AlikeElements) -> list[State]:
         raise trajectory.wrong(NOT_USUAL)
     x, y, heading, speed, *more = (column or [] for column in columns)
     acceleration = more[0] if more else [0.0] * states.count
-    bounds = map(Bounds, heading, heading)
     none, exact = [()] * states.count, [0.0] * states.count
-    rows = zip(map(int, steps), x, y, none, bounds, speed, acceleration, exact, strict=True)
+    place = (map(int, steps), x, y, none)
+    motion = (map(Bounds, heading, heading), speed, acceleration, exact)
+    rows = zip(*place, *motion, strict=True)
     return list(map(State._make, rows))
 
 

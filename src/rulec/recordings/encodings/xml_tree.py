@@ -166,7 +166,7 @@ def _cuts(data: bytes, alike: Alike) -> Iterator[_Cut]:
         begin = at + len(opening)
         first = data.find(child, begin, end)
         last = data.rfind(end_of_child, begin, end) + len(end_of_child)
-        if begin <= first < last and data[begin:first].isspace():
+        if begin <= first < last and not data[begin:first].strip():
             run = data[first:last]
             elements = _elements(run, shapes)
             if elements is None and len(shapes) < _MOST_SHAPES:
