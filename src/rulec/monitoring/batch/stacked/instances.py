@@ -78,7 +78,9 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     ]
     objects: tuple[Places, ...]
     if len(chosen) == 1:
-        objects = (np.unique(stack.object_of[chosen[0]]),)
+        is_busy = np.zeros(len(stack.types), dtype=bool)
+        is_busy[stack.object_of[chosen[0]]] = True
+        objects = (np.flatnonzero(is_busy),)
     else:
         objects = _pairs(rule, reader, chosen[0], chosen[1])
     firsts = np.max([stack.firsts[own] for own in objects], axis=0)

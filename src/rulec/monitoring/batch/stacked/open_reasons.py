@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TypeVar
 
@@ -13,12 +13,13 @@ from rulec.automata.mealy_monitor import Read
 from rulec.logic import formula as ltl
 from rulec.monitoring.batch.stacked.stack_reader import StackReader, is_partial
 from rulec.monitoring.batch.stacked.stacked_outcomes import StackedWords, digits_at
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleWord
 from rulec.monitoring.uncertainty.within_tolerance import told_within_bounds
 from rulec.monitoring.verdict import OpenReasons
 from rulec.trace.trace_arrays import Flags
 
-_Any = TypeVar("_Any")
+_Value = TypeVar("_Value")
 
 
 class StackedReasons:
@@ -39,7 +40,9 @@ class StackedReasons:
             words.supposed, words.numbers, words.letters, strict=True
         ):
             rule = words.rule
-            digits = [digits_at(rule, n, numbers[n], own) for n in range(len(rule.reads))]
+            starts, lengths = _runs([_part(column, own) for column in numbers])
+            places = starts + own.start
+            digits = [digits_at(rule, n, numbers[n], places) for n in range(len(rule.reads))]
             unknown = []
             for n, column in enumerate(digits):
                 names = self._unknown_names(words, n, column, own)
@@ -47,11 +50,13 @@ class StackedReasons:
                     return None
                 unknown.append(names)
             sets = rule.letters.sets
-            classes = tuple([sets[number] for number in letters[own].tolist()])
-            states = tuple([(cube,) for cube in zip(*digits, strict=True)])
-            names_of_reads = tuple(unknown)
+            classes = [sets[number] for number in letters[places].tolist()]
+            states = [(cube,) for cube in zip(*digits, strict=True)]
             word = PossibleWord(
-                classes, True, partial(_self, states), partial(_self, names_of_reads)
+                tuple(_repeated(classes, lengths)),
+                exact=True,
+                find_states=partial(tuple, _repeated(states, lengths)),
+                find_unknown=partial(tuple, unknown),
             )
             possible.append(word)
             constants.append(_by_name(supposed))
@@ -116,8 +121,29 @@ class StackedReasons:
         return found
 
 
-def _self(value: _Any) -> _Any:
-    return value
+def _part(column: Numbers, own: slice) -> NDArray[np.intp]:
+    if isinstance(column, np.ndarray):
+        return column[own]
+    return np.broadcast_to(np.intp(column), (own.stop - own.start,))
+
+
+def _runs(columns: Sequence[NDArray[np.intp]]) -> tuple[NDArray[np.intp], list[int]]:
+    """Where states begin in which all columns stay the same, and how many each time."""
+    length = len(columns[0])
+    changes = np.zeros(length, dtype=bool)
+    changes[0] = True
+    for column in columns:
+        changes[1:] |= column[1:] != column[:-1]
+    starts = np.flatnonzero(changes)
+    return starts, np.diff(starts, append=length).tolist()
+
+
+def _repeated(values: Sequence[_Value], lengths: Sequence[int]) -> list[_Value]:
+    """Each value as often as it stays."""
+    found: list[_Value] = []
+    for value, length in zip(values, lengths, strict=True):
+        found += [value] * length
+    return found
 
 
 def _by_name(supposed: Mapping[tuple[str, tuple[str, ...]], object]) -> dict[str, object]:

@@ -27,7 +27,7 @@ from rulec.monitoring.batch.stacked.stack import Places, Stack, StackColumn
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
 from rulec.trace.trace_arrays import Flags
-from rulec.trace.trace_columns import Array
+from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Enumeration, Signal
 from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
 from rulec.vocabulary.partial_values import Interval, PartialValue
@@ -126,8 +126,12 @@ class StackReader:
         low_digits = _digits(read, lows, n_spots, unknown)
         same = all(low is high for (_, low), (_, high) in zip(lows, highs, strict=True))
         high_digits = low_digits if same else _digits(read, highs, n_spots, unknown)
-        numbers = low_digits * read.size + high_digits
-        return np.where(unknown, read.size - 1, numbers) if np.any(unknown) else numbers
+        dtype = smallest_unsigned(read.size**2)
+        numbers: Array = low_digits.astype(dtype) * dtype.type(read.size)
+        numbers += high_digits.astype(dtype)
+        if np.any(unknown):
+            numbers[unknown] = read.size - 1
+        return numbers
 
     def _bounds(
         self, term: ltl.QuantityTerm, spots: Spots
@@ -151,22 +155,27 @@ class StackReader:
         count, stack = read.count, self.stack
         assert count is not None
         factor = number.terms[0][0]
+        least: Array
+        most: Array
         if read.counts_itself:
             truth = self._truth(count, spots, read.variables[0])
             suits = stack.of_type(count.type)[stack.object_of]
-            least = (suits & truth.true).astype(np.intp)
-            most = (suits & ~truth.false).astype(np.intp)
+            least = (suits & truth.true).astype(np.uint8)
+            most = (suits & ~truth.false).astype(np.uint8)
         else:
-            cells = np.flatnonzero(stack.of_type(count.type)[stack.object_of])
+            cells = stack.cells_of_type(count.type)
             states = stack.state_of[cells]
             own_spots = Spots(states, {count.variable: cells})
             truth = self._truth(count, own_spots, count.variable)
             there = np.ones(len(states), dtype=bool)
             least = np.bincount(states[there & truth.true], minlength=stack.n_states)
             most = np.bincount(states[there & ~truth.false], minlength=stack.n_states)
-        every = range(int(most.max(initial=0)) + 1)
-        digits = np.array([number.digit(factor * Fraction(n)) for n in every], dtype=np.intp)
-        numbers: Array = digits.take(least) * number.size + digits.take(most)
+        n_counts = int(most.max(initial=0)) + 1
+        digits = np.array([number.digit(factor * Fraction(n)) for n in range(n_counts)])
+        pairs = (digits[:, None] * number.size + digits).astype(smallest_unsigned(number.size**2))
+        if n_counts == 1:
+            return int(pairs[0, 0])
+        numbers: Array = pairs.take(least * least.dtype.type(n_counts) + most)
         return numbers
 
     def _truth(self, count: ltl.Count, spots: Spots, counted: str) -> Truth:
@@ -256,11 +265,11 @@ def is_partial(column: StackColumn) -> Flags | None:
 def _digits(read: NumberRead, summands: Sequence[Summand], n_spots: int, ignored: Mask) -> Array:
     ready = scale(read)
     if ready.quantity is None:
-        return digits_of_sum(read, summands, n_spots, ignored).astype(np.intp)
+        return digits_of_sum(read, summands, n_spots, ignored)
     ((_, numbers),) = summands
     if not isinstance(numbers, np.ndarray):
-        return np.full(n_spots, ready.digit(numbers), dtype=np.intp)
-    digits = np.zeros(n_spots, dtype=np.intp)
+        return np.full(n_spots, ready.digit(numbers), dtype=np.uint8)
+    digits = np.zeros(n_spots, dtype=smallest_unsigned(read.size))
     for floor in ready.floors:
         digits += numbers >= floor
     return digits

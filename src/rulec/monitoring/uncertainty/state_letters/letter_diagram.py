@@ -136,7 +136,10 @@ class LetterSets:
         unmet = np.asarray(result) < 0
         if not unmet.any():
             return result
-        missing = np.unique(np.asarray(entry)[unmet])
+        # The entries may be very many, and the table is small.
+        is_missing = np.zeros(table.size, dtype=bool)
+        is_missing[np.asarray(entry)[unmet]] = True
+        missing = np.flatnonzero(is_missing)
         before, places = list(self._places[read + 1]), self._places[read]
         for number in missing.tolist():
             nodes = self._diagram.step(
