@@ -15,7 +15,6 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.outcome_machine import VIOLATED
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.batch_verify import Answer, verify_chunk
 from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
 from rulec.monitoring.batch.stacked.stack import Stack
@@ -31,9 +30,11 @@ from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
-from rulec.monitoring.verdict import OpenReasons, OpenVerdict, Verdict, Violation
+from rulec.monitoring.verdict import NotJudged, OpenReasons, OpenVerdict, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, verify_or_reason
 from rulec.trace.trace_arrays import TraceArrays
+
+Answer: TypeAlias = Verdict | NotJudged
 
 Found: TypeAlias = Violation | OpenVerdict
 
@@ -54,10 +55,17 @@ def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> 
         try:
             verdicts = _StackedRun(together, rulebook).verdicts()
         except (UnencodableError, RulecError):
-            verdicts = list(verify_chunk([trace.trace() for trace in together], rulebook))
+            verdicts = _by_states(together, rulebook)
         for place, verdict in zip(places, verdicts, strict=True):
             answers[place] = verdict
     return [answer for answer in answers if answer is not None]
+
+
+def _by_states(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
+    # The engines for states, which few recordings need, take long to load.
+    from rulec.monitoring.batch.batch_verify import verify_chunk
+
+    return list(verify_chunk([trace.trace() for trace in traces], rulebook))
 
 
 class _StackedRun:
