@@ -28,7 +28,10 @@ NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
 """Nothing is known of anybody."""
 
 MOST_SETS = 1 << 14
-"""Sets of letters, and words, that are kept before all are forgotten."""
+"""Sets of letters that are kept before all are forgotten."""
+
+MOST_BYTES = 1 << 22
+"""Words of so many bytes, whose answers are known, are kept before all are forgotten."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,6 +96,7 @@ class StackedRule:
         self.idle = IdleLetters(machine)
         self.letters = self._no_letters()
         self._answers: dict[bytes, Answer] = {}
+        self._bytes = 0
 
     def _no_letters(self) -> LetterSets:
         return LetterSets(self.machine.classes.diagram, [read.meanings for read in self.reads])
@@ -108,8 +112,10 @@ class StackedRule:
         key = word.tobytes()
         found = self._answers.get(key)
         if found is None:
-            if len(self._answers) >= MOST_SETS:
+            self._bytes += len(key)
+            if self._bytes > MOST_BYTES:
                 self._answers.clear()
+                self._bytes = len(key)
             found = self._answers[key] = self._run(word)
         return found
 
