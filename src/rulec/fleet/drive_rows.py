@@ -88,7 +88,7 @@ class DriveRows:
         self, result: DriveVerdict, verdicts: RecordingVerdicts, own: Row
     ) -> Iterator[Row]:
         drive, verdict = result.drive, result.answer
-        own = {**own, "vehicle": drive.trace.id, "ego": drive.ego}
+        own = {**own, "vehicle": drive.arrays.id, "ego": drive.ego}
         if isinstance(verdict, NotJudged):
             yield self.of_nothing(own, verdict.error.diagnostics[0].message)
             return
