@@ -135,13 +135,14 @@ class DriveContext:
         lane = extents.lane
         away = np.add(*extents.from_middle(lane)) / 2
         away = np.where(self.driving_along[rows], away, np.nan)
-        offsets = np.full(self.road.lanes.there.shape[1], _telling(away, _ENOUGH_TRACKS))
-        for number in range(len(offsets)):
+        by_state = np.zeros(self.states)
+        for number in np.unique(self.ego_lane).tolist():
             inside = np.where(lane == number, away, np.nan)
             inside = inside[~np.isnan(inside).all(axis=1)]
-            if len(inside) >= _ENOUGH_IN_LANE:
-                offsets[number] = _telling(inside, _ENOUGH_IN_LANE)
-        by_state: Floats = offsets[self.ego_lane]
+            enough = len(inside) >= _ENOUGH_IN_LANE
+            by_state[self.ego_lane == number] = (
+                _telling(inside, _ENOUGH_IN_LANE) if enough else _telling(away, _ENOUGH_TRACKS)
+            )
         return by_state
 
     def zero_if_standing(self, speed_kmh: Floats) -> Floats:
