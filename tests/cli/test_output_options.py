@@ -63,6 +63,7 @@ def test_an_ending_that_says_nothing_is_refused_with_those_that_do(file):
 
 WITHOUT = {
     "compile": "writes a folder of files whose formats are given",
+    "fleet": "writes a folder of files in one format, which engines add to",
     "new": "writes a rulebook that is called as it is named",
     "fmt": "changes files in place",
     "completion": "prints a script for the shell that is named",

@@ -28,6 +28,9 @@ class FleetJudge:
     lacks rows is refused (R0709); where tables are ``grouped`` by drives, it is reported instead.
     """
 
+    __name__ = "FleetJudge"
+    """Ray calls what it maps by the name that functions have."""
+
     def __init__(
         self,
         rules: CompiledRules,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from rulec.diagnostics import RulecError, named
+from pathlib import Path
+
+from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.diagnostics.code import Code
 from rulec.recordings.recording_messages import NET_MISSING
 
@@ -69,4 +71,48 @@ def no_map(name: str, why: str) -> RulecError:
         None,
         f"recording `{name}`: {why}",
         help="give a map with `road_map` (--map), or its path in a column `map`",
+    )
+
+
+def no_fleet_input(path: str, why: str = "") -> RulecError:
+    return NO_DRIVES_TABLE.error(
+        SourceLocation(path),
+        "the file is neither a table of drives in Parquet nor recorded traffic"
+        + (f": {why}" if why else ""),
+        help="write traces as Parquet, with the columns that docs/traces.md has, or give a "
+        "recording; `rulec formats` lists what is read",
+    )
+
+
+OTHER_FLEET = Code(
+    "R0712",
+    title="a folder has findings of another fleet",
+    why="Findings in one folder are added up, so they are of one rulebook, one version of rulec, "
+    "the same thresholds, assumptions and map. A run in a folder that is there already goes on "
+    "with what was begun: its inputs may be more than before, not fewer.",
+    kind="circumstance",
+)
+
+ENGINE_MISSING = Code(
+    "R0713",
+    title="an engine is not installed",
+    why="Ray and Spark are installed on request: `pip install 'rulec[ray]'`, `pip install "
+    "'rulec[spark]'`, which takes Java 17 as well. `--engine local` needs neither.",
+    kind="circumstance",
+)
+
+
+def other_fleet(folder: Path, why: str) -> RulecError:
+    return OTHER_FLEET.error(
+        SourceLocation(str(folder)),
+        f"the folder has findings of another fleet: {why}",
+        help="give another folder with -o, or the inputs and options of before",
+    )
+
+
+def engine_missing(extra: str, name: str) -> RulecError:
+    return ENGINE_MISSING.error(
+        None,
+        f"{name} is not installed",
+        help=f"`pip install 'rulec[{extra}]'`, or use `--engine local`",
     )

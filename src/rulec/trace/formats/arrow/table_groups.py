@@ -138,3 +138,30 @@ def extent(table: Any) -> tuple[object, ...]:
             least, greatest = compute.min_max(column).values()
             found.append((name, least.as_py(), greatest.as_py()))
     return tuple(found)
+
+
+def key_texts(table: Any, keys: Sequence[str], between: str) -> tuple[NDArray[np.int64], list[str]]:
+    """For each row which of some texts its key is, and these texts; without keys the empty one."""
+    if not keys:
+        return np.zeros(len(table), dtype=np.int64), [""]
+    columns = [_without_nulls(_as_text(_plain(table.column(name)))) for name in keys]
+    whole = columns[0] if len(keys) == 1 else compute.binary_join_element_wise(*columns, between)
+    if not len(whole):
+        return np.zeros(0, dtype=np.int64), []
+    encoded = whole.combine_chunks().dictionary_encode()
+    encoded = encoded.chunk(0) if isinstance(encoded, pyarrow.ChunkedArray) else encoded
+    return encoded.indices.to_numpy().astype(np.int64), encoded.dictionary.to_pylist()
+
+
+def rows_where(table: Any, codes: NDArray[np.int64], kept: Sequence[bool]) -> Any:
+    """The rows whose codes are those of what is kept."""
+    return table.filter(pyarrow.array(np.array(kept, dtype=bool)[codes]))
+
+
+def joined(tables: Sequence[Any]) -> Any:
+    """Tables one after the other; a column that one of them does not have is missing there."""
+    return (
+        tables[0]
+        if len(tables) == 1
+        else pyarrow.concat_tables(tables, promote_options="permissive")
+    )

@@ -1,0 +1,122 @@
+"""The folder of a fleet's findings: what is in it, by what it was judged, and what is done."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from rulec.diagnostics import RulecError
+from rulec.files import make_folder, opened, written_whole
+from rulec.fleet.fleet_messages import other_fleet
+from rulec.fleet.judged_by import JudgedBy
+from rulec.fleet.runs.work_units import WorkUnit
+from rulec.trace.formats.arrow.parquet import arrow
+
+MANIFEST = "manifest.json"
+VERSION = 1
+
+STATE = b"rulec.unit"
+"""The key of a file's metadata whose value says what its unit read."""
+
+_SHORT = 12
+
+
+@dataclass(frozen=True, slots=True)
+class FleetFolder:
+    """A folder with a manifest, and a file of findings for each unit of work that is done."""
+
+    path: Path
+    by: JudgedBy
+
+    @property
+    def findings(self) -> Path:
+        """The folder of the files, named as engines name parts of tables."""
+        return self.path / f"rulebook={self.by.rulebook_hash[:_SHORT]}"
+
+    def part(self, unit: WorkUnit) -> Path:
+        """The file of a unit's findings."""
+        return self.findings / f"part-{unit.digest}.parquet"
+
+    def is_done(self, unit: WorkUnit) -> bool:
+        """True if a unit's file is there, whole, and made of what is there now."""
+        path = self.part(unit)
+        if not path.is_file():
+            return False
+        pyarrow, parquet = arrow(str(path))
+        try:
+            metadata = parquet.read_schema(path).metadata or {}
+            return bool(metadata.get(STATE) == unit.state().encode())
+        except (pyarrow.ArrowException, OSError):
+            return False
+
+    def open(self, inputs: Sequence[str], map_path: Path | None) -> None:
+        """Make the folder, or go on in it with the same settings and at least the same inputs.
+
+        Raises RulecError R0702, R0712 if it is another fleet's, R0701 for a map that is not there.
+        """
+        settings = {**self.by.columns(), "map": _map(map_path)}
+        manifest = self.path / MANIFEST
+        if manifest.is_file():
+            self._check(_read(manifest), settings, inputs)
+        elif any(path.is_file() and path.name[0] != "." for path in self.path.rglob("*")):
+            raise other_fleet(self.path, "it has no manifest.json, but other files")
+        make_folder(self.findings)
+        for left in (*self.findings.glob(".*.part"), *self.path.glob(".*.part")):
+            # Of a process that was killed: nobody else writes here.
+            with suppress(OSError):
+                left.unlink()
+        content = {"version": VERSION, "settings": settings, "inputs": list(inputs)}
+        with written_whole(manifest) as stream:
+            stream.write(f"{json.dumps(content, indent=1, ensure_ascii=False)}\n".encode())
+
+    def _check(
+        self, before: Mapping[str, Any], settings: Mapping[str, Any], inputs: Sequence[str]
+    ) -> None:
+        known = before.get("settings")
+        if before.get("version") != VERSION or not isinstance(known, dict):
+            raise other_fleet(self.path, "its manifest.json is of another version, or damaged")
+        for name, value in settings.items():
+            if known.get(name) != value:
+                was, now = _shown(known.get(name)), _shown(value)
+                raise other_fleet(self.path, f"its {name} is {was}, and would be {now}")
+        missing = [path for path in before.get("inputs", ()) if path not in {*inputs}]
+        if missing:
+            more = f" and {len(missing) - 1:,} more" if len(missing) > 1 else ""
+            raise other_fleet(
+                self.path, f"it also has findings of `{missing[0]}`{more}, which is not given now"
+            )
+
+    def leftovers(self, units: Sequence[WorkUnit]) -> Iterator[Path]:
+        """Files of findings that no unit of work has."""
+        own = {self.part(unit) for unit in units}
+        yield from (path for path in sorted(self.findings.glob("*.parquet")) if path not in own)
+
+
+def _map(path: Path | None) -> str:
+    if path is None:
+        return ""
+    with opened(path) as stream:
+        return f"{path.name} {sha256(stream.read()).hexdigest()}"
+
+
+def _read(manifest: Path) -> Mapping[str, Any]:
+    try:
+        found = json.loads(manifest.read_bytes())
+    except (OSError, ValueError):
+        found = None
+    if not isinstance(found, dict):
+        raise _damaged(manifest)
+    return found
+
+
+def _damaged(manifest: Path) -> RulecError:
+    return other_fleet(manifest.parent, "its manifest.json cannot be read")
+
+
+def _shown(value: object) -> str:
+    return f"`{value}`" if value else "none"

@@ -1,0 +1,82 @@
+"""The files of a fleet: tables of many drives, and recordings, each a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rulec.diagnostics import RulecError
+from rulec.files import opened
+from rulec.fleet.fleet_messages import no_fleet_input
+from rulec.fleet.table_kind import RECORDING
+from rulec.recordings.encodings.csv_head import PARQUET
+from rulec.recordings.recording_files import is_recording
+from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
+from rulec.trace.formats.arrow.parquet_columns import parquet_names
+from rulec.trace.formats.table_reader import STEP, TRACE
+
+
+@dataclass(frozen=True, slots=True)
+class FleetInputs:
+    """Tables and recordings, each in order and once, and why others cannot be meant."""
+
+    tables: tuple[str, ...]
+    recordings: tuple[str, ...]
+    problems: tuple[RulecError, ...] = ()
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """All of them."""
+        return (*self.tables, *self.recordings)
+
+
+def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
+    """The files that are meant by paths, patterns and folders.
+
+    Of folders they are the recordings and the tables of drives in and below them.
+    """
+    tables: dict[str, None] = {}
+    recordings: dict[str, None] = {}
+    problems: list[RulecError] = []
+    for argument in arguments:
+        below = list(_tables_below(argument))
+        tables |= dict.fromkeys(below)
+        found = input_files([argument])
+        problems += [] if below else found.problems
+        for path in found.paths:
+            if path.lower().endswith(PARQUET) and _is_table(path):
+                tables[path] = None
+            elif path != STANDARD_INPUT and is_recording(path):
+                recordings[path] = None
+            else:
+                problems.append(_why_not(path))
+    return FleetInputs(tuple(tables), tuple(recordings), tuple(problems))
+
+
+def _tables_below(argument: str) -> Iterator[str]:
+    folder = Path(argument)
+    if not folder.is_dir() or (argument != STANDARD_INPUT and is_recording(argument)):
+        return
+    for ending in PARQUET:
+        for path in sorted(folder.rglob(f"*{ending}")):
+            hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
+            if path.is_file() and not hidden and _is_table(str(path)):
+                yield str(path)
+
+
+def _why_not(path: str) -> RulecError:
+    try:
+        with opened(Path(path)):
+            return no_fleet_input(path)
+    except RulecError as error:
+        return error
+
+
+def _is_table(path: str) -> bool:
+    """True for a table of traces, or of tracks that says which recording each row is of."""
+    try:
+        names = {*parquet_names(Path(path), lambda why, **_: no_fleet_input(path, why))}
+    except RulecError:
+        return False
+    return {TRACE, STEP} <= names or (RECORDING in names and is_recording(path))

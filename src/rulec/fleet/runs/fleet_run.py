@@ -1,0 +1,121 @@
+"""All drives of a fleet, judged into a folder, or what is left of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from rulec.batch.jobs import Jobs
+from rulec.diagnostics import RulecError
+from rulec.extraction.selection import RequestedDrives
+from rulec.fleet.carried_rulebook import CompiledRules, carried
+from rulec.fleet.judged_by import JudgedBy, judged_by
+from rulec.fleet.runs.fleet_folder import FleetFolder
+from rulec.fleet.runs.fleet_inputs import fleet_inputs
+from rulec.fleet.runs.fleet_tally import FleetTally
+from rulec.fleet.runs.local_engine import judged_locally
+from rulec.fleet.runs.ray_engine import judged_by_ray
+from rulec.fleet.runs.spark_engine import judged_by_spark
+from rulec.fleet.runs.unit_work import UnitWorker
+from rulec.fleet.runs.work_units import WorkUnit, work_units
+from rulec.recordings.recording_format import RecordingSource
+from rulec.trace.trace_model import Ending
+from rulec.value_display import short_repr
+
+EngineName = Literal["local", "ray", "spark"]
+ENGINES: tuple[EngineName, ...] = ("local", "ray", "spark")
+
+_Engine: TypeAlias = Callable[[UnitWorker, Sequence[WorkUnit], Jobs], Iterator[FleetTally]]
+_ENGINES: dict[EngineName, _Engine] = {
+    "local": judged_locally,
+    "ray": judged_by_ray,
+    "spark": judged_by_spark,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class FleetSettings:
+    """How drives are judged: ``source`` says how recordings are read, its path being another one.
+
+    ``ends`` is how traces end, if not as they say. ``jobs`` says how many processes there are.
+    """
+
+    __repr__ = short_repr
+
+    wanted: RequestedDrives
+    source: RecordingSource
+    ends: Ending | None = None
+    engine: EngineName = "local"
+    jobs: Jobs = field(default_factory=lambda: Jobs(1))
+
+
+@dataclass(frozen=True, slots=True)
+class FleetRun:
+    """What a run has done: how many ``units`` there are, and how many of them were there before.
+
+    ``by`` is what they were judged by, ``findings`` the folder of their files, ``tally`` what they
+    come to; ``problems`` say what could not be read, ``leftovers`` are files of no unit.
+    """
+
+    __repr__ = short_repr
+
+    by: JudgedBy
+    findings: Path
+    units: int
+    before: int
+    tally: FleetTally
+    problems: tuple[RulecError, ...] = ()
+    leftovers: tuple[Path, ...] = ()
+
+
+def run_fleet(
+    arguments: Sequence[str],
+    rules: CompiledRules,
+    folder: Path,
+    settings: FleetSettings,
+    tell: Callable[[int, int], object] | None = None,
+) -> FleetRun:
+    """Judge all drives of some files, and write findings and a manifest to a folder.
+
+    A unit whose file is there is not judged again. ``tell`` is told how many units of how many are
+    done. Raises RulecError R0702, R0706 without pyarrow, R0712 for a folder of another fleet, R0713
+    without the engine, and why there is nothing to judge if no input is a recording or a table.
+    """
+    inputs = fleet_inputs(arguments)
+    if not inputs.paths:
+        raise RulecError([one for problem in inputs.problems for one in problem.diagnostics])
+    carried_rules = carried(rules)
+    by = judged_by(carried_rules.read(), settings.wanted, settings.ends or "")
+    kept = FleetFolder(folder, by)
+    kept.open(inputs.paths, settings.source.map_path)
+    problems = list(inputs.problems)
+    units: list[WorkUnit] = []
+    for unit in work_units(inputs.tables, inputs.recordings):
+        if isinstance(unit, RulecError):
+            problems.append(unit)
+        else:
+            units.append(unit)
+    worker = UnitWorker(carried_rules, settings.wanted, settings.source, settings.ends, kept)
+    before = {unit.digest for unit in units if kept.is_done(unit)}
+    there = [unit for unit in units if unit.digest in before]
+    rest = [unit for unit in units if unit.digest not in before]
+    results = judged_locally(worker, there, Jobs(1))
+    if rest:
+        results = chain(results, _ENGINES[settings.engine](worker, rest, settings.jobs))
+    tally = FleetTally()
+    for done, own in enumerate(results, 1):
+        tally.add(own)
+        if tell is not None:
+            tell(done, len(units))
+    return FleetRun(
+        by,
+        kept.findings,
+        units=len(units),
+        before=len(before),
+        tally=tally,
+        problems=tuple(problems),
+        leftovers=tuple(kept.leftovers(units)),
+    )

@@ -1,0 +1,60 @@
+"""What a run over a fleet has done, as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rulec.fleet.runs.fleet_run import FleetRun
+from rulec.report.text.terminal_text import visible
+
+_MOST_REASONS = 5
+
+
+def as_text(run: FleetRun) -> str:
+    """Drives, hours and kilometres; each rule that is not simply kept; where the findings are."""
+    return visible_lines([*_drives(run), *_rules(run), *_files(run)])
+
+
+def visible_lines(lines: list[str]) -> str:
+    """Lines as one text, in which nothing drives a terminal."""
+    return "\n".join(visible(line) for line in lines)
+
+
+def _drives(run: FleetRun) -> Iterator[str]:
+    tally, by = run.tally, run.by
+    chosen = "".join(f", {text}" for text in (by.thresholds, by.assumptions) if text)
+    yield f"rulebook    {by.rulebook} ({by.rulebook_hash[:12]}), rulec {by.rulec}{chosen}"
+    yield (
+        f"drives      {tally.judged:,} judged: {tally.drives['kept']:,} satisfied, "
+        f"{tally.drives['violated']:,} violated, {tally.drives['open']:,} open"
+    )
+    distance = f", {tally.km:,.1f} km" if tally.km else ""
+    driven = f"{tally.hours:,.2f} h" if tally.hours >= 1 else f"{tally.hours * 3600:,.1f} s"
+    yield f"driven      {driven}{distance}"
+    if not tally.drives["not_judged"]:
+        return
+    reasons = tally.reasons.most_common(_MOST_REASONS)
+    yield f"not judged  {tally.drives['not_judged']:,}:"
+    yield from (f"  {count:,}: {why}" for why, count in reasons)
+    others = len(tally.reasons) - len(reasons)
+    if others:
+        yield f"  and for {others:,} more reasons"
+
+
+def _rules(run: FleetRun) -> Iterator[str]:
+    rules = run.tally.rules
+    for name in dict.fromkeys(name for name, _ in sorted(rules)):
+        counts = {x: rules[name, x] for x in ("violated", "open", "not_judged") if rules[name, x]}
+        if counts:
+            said = ", ".join(f"{x.replace('_', ' ')} {n:,}" for x, n in counts.items())
+            yield f"  {name}: {said}"
+
+
+def _files(run: FleetRun) -> Iterator[str]:
+    for lost in run.tally.lost:
+        yield f"lost        {lost}: its process was stopped twice, perhaps for lack of memory"
+    for path in run.leftovers:
+        yield f"left over   {path}: it is of no input of this run"
+    before = f", {run.before:,} of them before" if run.before else ""
+    files = "file" if run.units == 1 else "files"
+    yield f"wrote {run.units - len(run.tally.lost):,} {files} of findings{before} to {run.findings}"

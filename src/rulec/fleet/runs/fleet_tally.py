@@ -1,0 +1,66 @@
+"""What files of findings come to: drives, hours, kilometres, and rules by outcome."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rulec.trace.formats.arrow.parquet import arrow
+
+_COLUMNS = ("kind", "outcome", "rule", "strength", "ego", "file", "vehicle", "because")
+_NUMBERS = ("duration_s", "distance_m")
+
+
+@dataclass
+class FleetTally:
+    """Sums over drives.
+
+    ``drives``: outcome -> number. ``rules``: rule and outcome -> number of drives. ``reasons``: why
+    drives were not judged -> number. ``unread`` are files, recordings and traces, not vehicles,
+    that could not be judged. ``lost`` are units whose process was killed twice.
+    """
+
+    drives: Counter[str] = field(default_factory=Counter)
+    rules: Counter[tuple[str, str]] = field(default_factory=Counter)
+    reasons: Counter[str] = field(default_factory=Counter)
+    unread: int = 0
+    hours: float = 0.0
+    km: float = 0.0
+    lost: list[str] = field(default_factory=list)
+
+    def add(self, other: FleetTally) -> None:
+        """Add the sums of other drives."""
+        self.drives.update(other.drives)
+        self.rules.update(other.rules)
+        self.reasons.update(other.reasons)
+        self.unread += other.unread
+        self.hours += other.hours
+        self.km += other.km
+        self.lost += other.lost
+
+    @property
+    def judged(self) -> int:
+        """The number of drives that have a verdict."""
+        return self.drives.total() - self.drives["not_judged"]
+
+
+def tally_of(path: Path) -> FleetTally:
+    """The sums over a file of findings."""
+    _, parquet = arrow(str(path))
+    tally = FleetTally()
+    with parquet.ParquetFile(path) as source:
+        columns = [*_COLUMNS, *_NUMBERS]
+        for batch in source.iter_batches(columns=columns):
+            for row in zip(*(batch.column(name).to_pylist() for name in columns), strict=True):
+                kind, outcome, rule, _, ego, _, _, because, duration_s, distance_m = row
+                if kind == "rule":
+                    tally.rules[rule, outcome] += 1
+                elif kind == "drive":
+                    tally.drives[outcome] += 1
+                    tally.hours += (duration_s or 0.0) / 3600
+                    tally.km += (distance_m or 0.0) / 1000
+                    if outcome == "not_judged":
+                        tally.reasons[because] += 1
+                        tally.unread += not ego
+    return tally

@@ -1,0 +1,54 @@
+"""Units of work judged by Spark, on the session that there is or on this machine."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import sys
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from rulec.batch.jobs import Jobs
+from rulec.fleet.fleet_messages import engine_missing
+from rulec.fleet.runs.fleet_tally import FleetTally
+from rulec.fleet.runs.unit_work import UnitWorker
+from rulec.fleet.runs.work_units import WorkUnit
+from rulec.trace.formats.arrow.parquet import arrow
+
+
+def judged_by_spark(
+    worker: UnitWorker, units: Sequence[WorkUnit], jobs: Jobs
+) -> Iterator[FleetTally]:
+    """What each unit comes to, in whatever order.
+
+    Spark judges a unit again whose worker fails. Raises RulecError R0713 without Spark.
+    """
+    try:
+        from pyspark.sql import SparkSession  # an extra, and seconds
+    except ImportError:
+        raise engine_missing("spark", "Spark") from None
+    pyarrow, _ = arrow("the table of units")
+    # Workers run the Python that runs here, not the first one on the path.
+    os.environ.setdefault("PYSPARK_PYTHON", sys.executable)
+    running = SparkSession.getActiveSession()
+    builder = SparkSession.builder.appName("rulec fleet")
+    session = running or builder.master(f"local[{jobs.processes}]").config(
+        "spark.ui.enabled", "false"
+    )
+    spark = session.getOrCreate() if running is None else running
+    sent = pickle.dumps(worker)
+
+    def judged(table: Any) -> Any:
+        own = pickle.loads(sent)
+        found = (pickle.loads(unit) for unit in table.column("unit").to_pylist())
+        return pyarrow.table({"tally": [pickle.dumps(own.judged(unit)) for unit in found]})
+
+    try:
+        rows = [(number, pickle.dumps(unit)) for number, unit in enumerate(units)]
+        frame = spark.createDataFrame(rows, "number long, unit binary")
+        done = frame.repartition(max(1, len(rows)), "number").groupBy("number")
+        for row in done.applyInArrow(judged, "tally binary").toLocalIterator():
+            yield pickle.loads(bytes(row["tally"]))
+    finally:
+        if running is None:
+            spark.stop()

@@ -1,0 +1,95 @@
+"""A unit of work: its drives judged, and their findings written as one file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+from rulec.diagnostics import RulecError
+from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.selection import RequestedDrives
+from rulec.files import written_whole
+from rulec.fleet.carried_rulebook import CarriedRulebook
+from rulec.fleet.drive_rows import DriveRows
+from rulec.fleet.finding_columns import Row, arrow_schema, arrow_table
+from rulec.fleet.runs.fleet_folder import STATE, FleetFolder
+from rulec.fleet.runs.fleet_tally import FleetTally, tally_of
+from rulec.fleet.runs.work_units import WorkUnit, table_of_unit
+from rulec.fleet.table_kind import kind_of
+from rulec.fleet.table_recordings import TrackTableJudge
+from rulec.fleet.table_traces import TraceTableJudge
+from rulec.monitoring.assumptions import Assumptions
+from rulec.recordings.recording_files import read_recordings
+from rulec.recordings.recording_format import RecordingSource
+from rulec.trace.formats.arrow.parquet import arrow
+from rulec.trace.trace_model import Ending
+
+_ROWS_AT_ONCE = 1 << 14
+
+
+@dataclass(frozen=True, slots=True)
+class UnitWorker:
+    """Judges units and writes their findings; it is sent to the workers of an engine.
+
+    ``source`` says how to read recordings; its path is another one.
+    """
+
+    rules: CarriedRulebook
+    wanted: RequestedDrives
+    source: RecordingSource
+    ends: Ending | None
+    folder: FleetFolder
+
+    def judged(self, unit: WorkUnit) -> FleetTally:
+        """Write a unit's file, unless it is there; what is in it.
+
+        The file appears whole, and is the same however often it is written.
+        """
+        path = self.folder.part(unit)
+        if not self.folder.is_done(unit):
+            self._write(unit, path)
+        return tally_of(path)
+
+    def _write(self, unit: WorkUnit, path: Path) -> None:
+        _, parquet = arrow(str(path))
+        schema = arrow_schema().with_metadata({STATE: unit.state().encode()})
+        rows = self.rows(unit)
+        with (
+            written_whole(path) as stream,
+            parquet.ParquetWriter(stream, schema, compression="zstd") as writer,
+        ):
+            while chunk := list(islice(rows, _ROWS_AT_ONCE)):
+                writer.write_table(arrow_table(chunk).replace_schema_metadata(schema.metadata))
+
+    def rows(self, unit: WorkUnit) -> Iterator[Row]:
+        """The rows of a unit; what cannot be read is one."""
+        rules = self.rules.read()
+        to_rows = DriveRows(rules, self.folder.by)
+        try:
+            if unit.piece is not None:
+                yield from self._of_table(unit, to_rows)
+                return
+            form, scenario = self.source.form, self.source.scenario_id
+            source = RecordingSource(Path(unit.path), self.source.map_path, form, scenario)
+            for recording in read_recordings(source):
+                own = {"file": unit.path, "recording": recording.name}
+                try:
+                    verdicts = RecordingVerdicts(recording, rules, self.wanted, unit.path)
+                    yield from to_rows.of_recording(verdicts, unit.path)
+                except RulecError as error:
+                    yield to_rows.of_nothing(own, error.diagnostics[0].message)
+        except RulecError as error:
+            yield to_rows.of_nothing({"file": unit.path}, error.diagnostics[0].message)
+
+    def _of_table(self, unit: WorkUnit, to_rows: DriveRows) -> Iterator[Row]:
+        table = table_of_unit(unit)
+        if not table.num_rows:
+            return
+        if kind_of(table.column_names) == "tracks":
+            roads = None if self.source.map_path is None else str(self.source.map_path)
+            yield from TrackTableJudge(to_rows, self.wanted, roads, None).rows(table)
+        else:
+            assumed = Assumptions(self.ends, self.wanted.assumed, self.wanted.defaults)
+            yield from TraceTableJudge(to_rows, assumed, None).rows(table)

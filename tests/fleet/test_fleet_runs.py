@@ -1,0 +1,222 @@
+"""Runs over a fleet: the same findings however it is cut, killed, resumed, or shared out."""
+
+import os
+import random
+import shutil
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import duckdb
+import pyarrow
+import pytest
+from pyarrow import parquet
+
+import rulec
+from rulec.batch.jobs import Jobs
+from rulec.diagnostics import RulecError
+from rulec.extraction.selection import RequestedDrives
+from rulec.fleet import FleetJudge
+from rulec.fleet.carried_rulebook import carried
+from rulec.fleet.judged_by import judged_by
+from rulec.fleet.runs import work_units as units_module
+from rulec.fleet.runs.fleet_folder import FleetFolder
+from rulec.fleet.runs.fleet_run import FleetSettings, run_fleet
+from rulec.fleet.runs.fleet_summary import as_text
+from rulec.fleet.runs.local_engine import judged_locally
+from rulec.fleet.runs.work_units import work_units
+from rulec.recordings.recording_format import RecordingSource
+from support.builders.fleet_inputs import fleet_file, fleet_rules, lanes, trace_table, tracks
+from support.builders.interrupted_runs import DyingWorker
+
+LONG = os.environ.get("RULEC_TEST_PROFILE") == "long"
+DRIVES = 10
+PROGRAM = Path(__file__).resolve().parents[1] / "support/builders/interrupted_runs.py"
+
+
+def settings(road_map=None, **more):
+    return FleetSettings(RequestedDrives(), RecordingSource(Path("-"), road_map), **more)
+
+
+def run(inputs, folder, **more):
+    return run_fleet([str(path) for path in inputs], fleet_rules(), folder, settings(**more))
+
+
+def found_in(folder):
+    """All rows in a folder of findings, in an order of their own."""
+    paths = sorted(folder.glob("rulebook=*/*.parquet"))
+    return in_order(pyarrow.concat_tables([parquet.read_table(path) for path in paths]))
+
+
+def in_order(table):
+    return sorted(map(repr, table.to_pylist()))
+
+
+@pytest.fixture(scope="module")
+def traces():
+    return trace_table(range(DRIVES))
+
+
+@pytest.fixture(scope="module")
+def expected(traces):
+    return in_order(FleetJudge(fleet_rules())(traces))
+
+
+def cut_into(table, folder, seed):
+    """The table in files cut at random, with random row groups; in every third case shuffled."""
+    chosen = random.Random(seed)
+    if seed % 3 == 0:
+        table = table.take(chosen.sample(range(len(table)), len(table)))
+    folder.mkdir()
+    places = sorted(chosen.sample(range(1, len(table)), chosen.randint(0, 4)))
+    for number, (start, stop) in enumerate(pairwise([0, *places, len(table)])):
+        path = folder / f"{number}.parquet"
+        parquet.write_table(
+            table.slice(start, stop - start), path, row_group_size=chosen.randint(3, 60)
+        )
+    return folder
+
+
+@pytest.mark.parametrize("chunk", range(40 if LONG else 1))
+def test_any_cut_into_files_and_row_groups_has_the_same_findings(
+    chunk, traces, expected, tmp_path, monkeypatch
+):
+    for seed in range(chunk * 25, chunk * 25 + 25):
+        # Files are cut into pieces, too
+        monkeypatch.setattr(units_module, "MOST_ROWS", 20 + seed % 50)
+        folder = cut_into(traces, tmp_path / f"in{seed}", seed)
+        run([folder], tmp_path / f"out{seed}")
+        assert found_in(tmp_path / f"out{seed}") == expected, seed
+
+
+def test_recordings_that_are_cut_are_put_together(tmp_path, monkeypatch):
+    monkeypatch.setattr(units_module, "MOST_ROWS", 30)
+    table = pyarrow.table(tracks([0, 1]))
+    whole = FleetJudge(fleet_rules(), lanes(tmp_path))(table)
+    done = run([cut_into(table, tmp_path / "in", 3)], tmp_path / "out", road_map=lanes(tmp_path))
+    assert found_in(tmp_path / "out") == in_order(whole)
+    assert done.units > 2
+    assert done.tally.drives.total() == 6
+
+
+@pytest.fixture
+def folder_of(traces, tmp_path):
+    """A folder of five tables, the drives of which go over from each to the next."""
+    for number, start in enumerate(range(0, len(traces), len(traces) // 4)):
+        path = tmp_path / "in" / f"{number}.parquet"
+        path.parent.mkdir(exist_ok=True)
+        parquet.write_table(traces.slice(start, len(traces) // 4), path)
+    return tmp_path / "in"
+
+
+def test_a_worker_that_is_killed_changes_nothing(folder_of, expected, tmp_path):
+    rules = carried(fleet_rules())
+    by = judged_by(rules.read(), RequestedDrives())
+    folder = FleetFolder(tmp_path / "out", by)
+    inputs = sorted(map(str, folder_of.iterdir()))
+    folder.open(inputs, None)
+    units = list(work_units(inputs, []))[:2]
+    worker = DyingWorker(rules, RequestedDrives(), RecordingSource(Path("-")), None, folder)
+    tallies = list(judged_locally(worker, units, Jobs(2)))
+    assert len(list(folder.path.glob("*.begun"))) == 1
+    assert len(tallies) == len(units)
+    run([folder_of], folder.path)
+    assert found_in(folder.path) == expected
+
+
+@pytest.mark.parametrize("moment", range(20) if LONG else (0, 3, 10))
+def test_what_was_killed_goes_on_where_it_was(moment, folder_of, expected, tmp_path):
+    out = tmp_path / "out"
+    command = [sys.executable, PROGRAM, str(moment), folder_of, fleet_file(tmp_path), out]
+    paths = os.pathsep.join([str(PROGRAM.parents[2]), *sys.path])
+    done = subprocess.run(command, check=False, env={**os.environ, "PYTHONPATH": paths})
+    assert done.returncode == -9
+    before = {path: path.stat().st_mtime_ns for path in out.glob("rulebook=*/*.parquet")}
+    assert run([folder_of], out).before == len(before)
+    assert found_in(out) == expected
+    assert {path: path.stat().st_mtime_ns for path in before} == before
+    left = [path.name for path in out.rglob("*") if path.name.endswith(".part")]
+    assert left == []
+
+
+def test_what_is_done_is_not_done_again_and_what_has_changed_is(folder_of, traces, tmp_path):
+    out = tmp_path / "out"
+    assert run([folder_of], out).before == 0
+    assert run([folder_of], out).before == 5
+    last = sorted(folder_of.iterdir())[-1]
+    os.utime(last, ns=(1, 1))
+    assert run([folder_of], out).before == 3  # that one, and the one whose drive goes over to it
+    parquet.write_table(trace_table([98]), folder_of / "9.parquet")
+    more = run([folder_of], out)
+    assert (more.before, more.units, more.tally.judged) == (5, 6, DRIVES + 1)
+
+
+def test_a_damaged_file_of_findings_is_written_again(folder_of, expected, tmp_path):
+    out = tmp_path / "out"
+    run([folder_of], out)
+    part = sorted(out.glob("rulebook=*/*.parquet"))[0]
+    part.write_bytes(part.read_bytes()[:-10])
+    assert run([folder_of], out).before == 4
+    assert found_in(out) == expected
+
+
+def test_a_folder_of_another_fleet_is_refused(folder_of, tmp_path):
+    out = tmp_path / "out"
+    run([folder_of], out)
+    other = rulec.compile_rulebook("esterle2019")
+    with pytest.raises(RulecError, match=r"its rulebook is `fleet_rules`.*R0712"):
+        run_fleet([str(folder_of)], other, out, settings())
+    with pytest.raises(RulecError, match="its assumptions is none, and would be `ends=complete`"):
+        run([folder_of], out, ends="complete")
+    with pytest.raises(RulecError, match=r"also has findings of `.*0.parquet` and 3 more"):
+        run([sorted(folder_of.iterdir())[-1]], out)
+    with pytest.raises(RulecError, match="no manifest"):
+        run([folder_of], folder_of)
+    (out / "manifest.json").write_text("[")
+    with pytest.raises(RulecError, match="cannot be read"):
+        run([folder_of], out)
+
+
+def test_files_that_hold_no_drives_are_named_and_the_others_are_judged(folder_of, tmp_path):
+    (tmp_path / "notes.txt").write_text("nothing")
+    broken = tmp_path / "broken.parquet"
+    broken.write_bytes(b"PAR1 nothing PAR1")
+    recording = tmp_path / "cars.csv"
+    recording.write_text("track,t,x,y\na,0,zero,1\na,1,0,1\n")
+    done = run([folder_of, tmp_path / "notes.txt", broken, recording], tmp_path / "out")
+    assert [one.diagnostics[0].code for one in done.problems] == ["R0710", "R0710"]
+    assert done.tally.judged == DRIVES
+    assert done.tally.unread == 1
+    (why,) = done.tally.reasons
+    assert "its column `x` holds `zero`" in why
+    with pytest.raises(RulecError, match="no such file"):
+        run([tmp_path / "nothing.parquet"], tmp_path / "none")
+    assert not (tmp_path / "none").exists()
+    assert f"not judged  1:\n  1: {why}" in as_text(done)
+
+
+COUNTS = """
+SELECT rule, count(*) FILTER (outcome = 'violated'), count(*) FILTER (outcome = 'open'),
+       count(*) FILTER (outcome = 'not_judged')
+FROM read_parquet('{folder}/rulebook=*/*.parquet', hive_partitioning = true)
+WHERE kind = 'rule' GROUP BY rule
+"""
+
+
+def test_duckdb_counts_what_the_summary_says(folder_of, tmp_path):
+    done = run([folder_of], tmp_path / "out")
+    rules = done.tally.rules
+    for rule, *counts in duckdb.sql(COUNTS.format(folder=tmp_path / "out")).fetchall():
+        assert counts == [rules[rule, one] for one in ("violated", "open", "not_judged")]
+    assert rules["slowly", "violated"] == len(range(0, DRIVES, 3))
+    assert rules["distance", "violated"] == len(range(1, DRIVES, 3))
+
+
+def test_engines_that_are_not_installed_say_how_to_get_them(folder_of, tmp_path, monkeypatch):
+    for engine, module in (("ray", "ray"), ("spark", "pyspark.sql")):
+        monkeypatch.setitem(sys.modules, module, None)
+        with pytest.raises(RulecError, match="R0713") as raised:
+            run([folder_of], tmp_path / engine, engine=engine)
+        assert f"pip install 'rulec[{engine}]'" in raised.value.diagnostics[0].help
+        shutil.rmtree(tmp_path / engine)
