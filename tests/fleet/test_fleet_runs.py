@@ -2,6 +2,7 @@
 
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -45,7 +46,7 @@ def run(inputs, folder, **more):
 
 def found_in(folder):
     """All rows in a folder of findings, in an order of their own."""
-    paths = sorted(folder.glob("rulebook=*/*.parquet"))
+    paths = sorted(folder.glob("book=*/*.parquet"))
     return in_order(pyarrow.concat_tables([parquet.read_table(path) for path in paths]))
 
 
@@ -132,7 +133,7 @@ def test_what_was_killed_goes_on_where_it_was(moment, folder_of, expected, tmp_p
     paths = os.pathsep.join([str(PROGRAM.parents[2]), *sys.path])
     done = subprocess.run(command, check=False, env={**os.environ, "PYTHONPATH": paths})
     assert done.returncode == -9
-    before = {path: path.stat().st_mtime_ns for path in out.glob("rulebook=*/*.parquet")}
+    before = {path: path.stat().st_mtime_ns for path in out.glob("book=*/*.parquet")}
     assert run([folder_of], out).before == len(before)
     assert found_in(out) == expected
     assert {path: path.stat().st_mtime_ns for path in before} == before
@@ -155,7 +156,7 @@ def test_what_is_done_is_not_done_again_and_what_has_changed_is(folder_of, trace
 def test_a_damaged_file_of_findings_is_written_again(folder_of, expected, tmp_path):
     out = tmp_path / "out"
     run([folder_of], out)
-    part = sorted(out.glob("rulebook=*/*.parquet"))[0]
+    part = sorted(out.glob("book=*/*.parquet"))[0]
     part.write_bytes(part.read_bytes()[:-10])
     assert run([folder_of], out).before == 4
     assert found_in(out) == expected
@@ -171,9 +172,9 @@ def test_a_folder_of_another_fleet_is_refused(folder_of, tmp_path):
         run([folder_of], out, ends="complete")
     with pytest.raises(RulecError, match=r"also has findings of `.*0.parquet` and 3 more"):
         run([sorted(folder_of.iterdir())[-1]], out)
-    with pytest.raises(RulecError, match="no manifest"):
+    with pytest.raises(RulecError, match="no _manifest"):
         run([folder_of], folder_of)
-    (out / "manifest.json").write_text("[")
+    (out / "_manifest.json").write_text("[")
     with pytest.raises(RulecError, match="cannot be read"):
         run([folder_of], out)
 
@@ -196,21 +197,27 @@ def test_files_that_hold_no_drives_are_named_and_the_others_are_judged(folder_of
     assert f"not judged  1:\n  1: {why}" in as_text(done)
 
 
-COUNTS = """
-SELECT rule, count(*) FILTER (outcome = 'violated'), count(*) FILTER (outcome = 'open'),
-       count(*) FILTER (outcome = 'not_judged')
-FROM read_parquet('{folder}/rulebook=*/*.parquet', hive_partitioning = true)
-WHERE kind = 'rule' GROUP BY rule
-"""
+PAGE = (Path(__file__).resolve().parents[2] / "docs/fleet.md").read_text(encoding="utf-8")
 
 
-def test_duckdb_counts_what_the_summary_says(folder_of, tmp_path):
+def test_what_the_page_asks_duckdb_is_what_the_summary_says(folder_of, tmp_path):
     done = run([folder_of], tmp_path / "out")
-    rules = done.tally.rules
-    for rule, *counts in duckdb.sql(COUNTS.format(folder=tmp_path / "out")).fetchall():
-        assert counts == [rules[rule, one] for one in ("violated", "open", "not_judged")]
+    rules, hours = done.tally.rules, done.tally.hours
+    counts, rates, twice = (
+        duckdb.sql(text.replace("'findings/", f"'{tmp_path}/out/")).fetchall()
+        for text in re.findall(r"^```sql\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
+    )
+    outcomes = ("violated", "open", "not_judged")
+    assert counts == [
+        (name, *(rules[name, one] for one in outcomes)) for name in sorted({x for x, _ in rules})
+    ]
     assert rules["slowly", "violated"] == len(range(0, DRIVES, 3))
     assert rules["distance", "violated"] == len(range(1, DRIVES, 3))
+    for rule, per_hour, per_1000_km in rates:
+        if not rules[rule, "not_judged"]:
+            assert per_hour == pytest.approx(rules[rule, "violated"] / hours)
+        assert per_1000_km is None  # traces do not say how far
+    assert twice == []
 
 
 def test_engines_that_are_not_installed_say_how_to_get_them(folder_of, tmp_path, monkeypatch):

@@ -59,7 +59,7 @@ def command(
     of any format that `rulec formats` lists, or a folder of such files, or a pattern. Rows of a
     drive may be spread over tables.
 
-    DIR gets a manifest and the folder `rulebook=HASH` with a file for each recording and piece
+    DIR gets a manifest and the folder `book=HASH` with a file for each recording and piece
     of a table: a row for each drive, for each rule of it, and for each finding (docs/fleet.md).
     Started again, the same command judges only what is missing.
 

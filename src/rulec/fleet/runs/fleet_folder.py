@@ -17,7 +17,8 @@ from rulec.fleet.judged_by import JudgedBy
 from rulec.fleet.runs.work_units import WorkUnit
 from rulec.trace.formats.arrow.parquet import arrow
 
-MANIFEST = "manifest.json"
+MANIFEST = "_manifest.json"
+"""Engines that read the folder as a table pass over what begins so."""
 VERSION = 1
 
 STATE = b"rulec.unit"
@@ -36,7 +37,7 @@ class FleetFolder:
     @property
     def findings(self) -> Path:
         """The folder of the files, named as engines name parts of tables."""
-        return self.path / f"rulebook={self.by.rulebook_hash[:_SHORT]}"
+        return self.path / f"book={self.by.rulebook_hash[:_SHORT]}"
 
     def part(self, unit: WorkUnit) -> Path:
         """The file of a unit's findings."""
@@ -64,7 +65,7 @@ class FleetFolder:
         if manifest.is_file():
             self._check(_read(manifest), settings, inputs)
         elif any(path.is_file() and path.name[0] != "." for path in self.path.rglob("*")):
-            raise other_fleet(self.path, "it has no manifest.json, but other files")
+            raise other_fleet(self.path, "it has no _manifest.json, but other files")
         make_folder(self.findings)
         for left in (*self.findings.glob(".*.part"), *self.path.glob(".*.part")):
             # Of a process that was killed: nobody else writes here.
@@ -79,7 +80,7 @@ class FleetFolder:
     ) -> None:
         known = before.get("settings")
         if before.get("version") != VERSION or not isinstance(known, dict):
-            raise other_fleet(self.path, "its manifest.json is of another version, or damaged")
+            raise other_fleet(self.path, "its _manifest.json is of another version, or damaged")
         for name, value in settings.items():
             if known.get(name) != value:
                 was, now = _shown(known.get(name)), _shown(value)
@@ -115,7 +116,7 @@ def _read(manifest: Path) -> Mapping[str, Any]:
 
 
 def _damaged(manifest: Path) -> RulecError:
-    return other_fleet(manifest.parent, "its manifest.json cannot be read")
+    return other_fleet(manifest.parent, "its _manifest.json cannot be read")
 
 
 def _shown(value: object) -> str:
