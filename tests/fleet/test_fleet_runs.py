@@ -116,7 +116,7 @@ def test_a_worker_that_is_killed_changes_nothing(folder_of, expected, tmp_path):
     by = judged_by(rules.read(), RequestedDrives())
     folder = FleetFolder(tmp_path / "out", by)
     inputs = sorted(map(str, folder_of.iterdir()))
-    folder.open(inputs, None)
+    folder.open(inputs, RecordingSource(Path("-")))
     units = list(work_units(inputs, []))[:2]
     worker = DyingWorker(rules, RequestedDrives(), RecordingSource(Path("-")), None, folder)
     tallies = list(judged_locally(worker, units, Jobs(2)))
@@ -170,6 +170,8 @@ def test_a_folder_of_another_fleet_is_refused(folder_of, tmp_path):
         run_fleet([str(folder_of)], other, out, settings())
     with pytest.raises(RulecError, match="its assumptions is none, and would be `ends=complete`"):
         run([folder_of], out, ends="complete")
+    with pytest.raises(RulecError, match="its map is none, and would be"):
+        run([folder_of], out, road_map=lanes(tmp_path))
     with pytest.raises(RulecError, match=r"also has findings of `.*0.parquet` and 3 more"):
         run([sorted(folder_of.iterdir())[-1]], out)
     with pytest.raises(RulecError, match="no _manifest"):

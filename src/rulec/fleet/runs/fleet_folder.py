@@ -15,6 +15,7 @@ from rulec.files import make_folder, opened, written_whole
 from rulec.fleet.fleet_messages import other_fleet
 from rulec.fleet.judged_by import JudgedBy
 from rulec.fleet.runs.work_units import WorkUnit
+from rulec.recordings.recording_format import RecordingSource
 from rulec.trace.formats.arrow.parquet import arrow
 
 MANIFEST = "_manifest.json"
@@ -55,12 +56,17 @@ class FleetFolder:
         except (pyarrow.ArrowException, OSError):
             return False
 
-    def open(self, inputs: Sequence[str], map_path: Path | None) -> None:
+    def open(self, inputs: Sequence[str], source: RecordingSource) -> None:
         """Make the folder, or go on in it with the same settings and at least the same inputs.
 
         Raises RulecError R0702, R0712 if it is another fleet's, R0701 for a map that is not there.
         """
-        settings = {**self.by.columns(), "map": _map(map_path)}
+        settings = {
+            **self.by.columns(),
+            "map": _map(source.map_path),
+            "input_format": source.form or "",
+            "scenario": source.scenario_id or "",
+        }
         manifest = self.path / MANIFEST
         if manifest.is_file():
             self._check(_read(manifest), settings, inputs)

@@ -90,7 +90,7 @@ def run_fleet(
     carried_rules = carried(rules)
     by = judged_by(carried_rules.read(), settings.wanted, settings.ends or "")
     kept = FleetFolder(folder, by)
-    kept.open(inputs.paths, settings.source.map_path)
+    kept.open(inputs.paths, settings.source)
     problems = list(inputs.problems)
     units: list[WorkUnit] = []
     for unit in work_units(inputs.tables, inputs.recordings):
