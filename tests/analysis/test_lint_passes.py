@@ -10,6 +10,7 @@ from rulec.analysis.lint.antecedents import antecedents, has_constant, occurrenc
 from rulec.analysis.lint.conflict_findings import conflicts
 from rulec.analysis.lint.conflict_search import are_related, common_objects, conflict
 from rulec.analysis.lint.finding_messages import undecided_diagnostic
+from rulec.analysis.lint.questions import ComparedRules, RuleAnswers
 from rulec.analysis.lint.redundancy import (
     MOST_PREMISES,
     can_be_kept,
@@ -187,7 +188,8 @@ def findings_of(formulas):
         name: Rule(name, "hard", (X,), formula)
         for name, formula in zip(names, formulas, strict=True)
     }
-    return [(one.code, one.message) for one in conflicts(names, analyzed, rules)]
+    answers = RuleAnswers(ComparedRules(analyzed))
+    return [(one.code, one.message) for one in conflicts(names, analyzed, rules, answers)]
 
 
 def renamed(rule, name):

@@ -115,7 +115,16 @@ def test_what_verbs_return_is_public():
             }
     names = {word for word in words if word[0].isupper()}
     helpers = {"Before", "Callable", "Fraction", "GraphOptions", "Iterable", "Iterator", "Kind"}
-    helpers |= {"Literal", "Path", "PictureFormat", "Rules", "Sequence", "Theme", "Unpack"}
+    helpers |= {
+        "Literal",
+        "Path",
+        "PictureFormat",
+        "Rules",
+        "Sequence",
+        "Spread",
+        "Theme",
+        "Unpack",
+    }
     assert names - helpers <= set(rulec.__all__)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from rulec.cli.main import main
 from support.builders.recorded_cars import three_cars
 from support.builders.terminal_signals import as_from_a_terminal
 
@@ -77,6 +78,34 @@ def test_a_worker_that_is_killed_again_is_reported(drives):
     assert "3 recordings with 9 drives" in out
     assert "error[R0708]" in err
     assert "--> drives/odd.xml" in err
+
+
+RULES = """\
+rulebook odd
+signal p, q
+hard rule a { require always p accept { p; p } accept "odd" { not p } }
+hard rule b { require always (p and q) }
+hard rule c { require eventually not p }
+soft rule d { require never (p and not p) }
+"""
+
+
+@pytest.mark.parametrize(("verb", "jobs"), [("analyze", "2"), ("test", "4")])
+def test_output_of_questions_and_examples_does_not_depend_on_processes(
+    verb, jobs, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    Path("odd.rules").write_text(RULES)
+    Path("empty.rules").write_text("rulebook empty\n")
+    books = ["./odd.rules", "no.rules", "./empty.rules"]
+    found = []
+    for number in ("1", jobs):
+        status = main([verb, *books, "-j", number])
+        found.append((status, *capsys.readouterr()))
+    assert found[0] == found[1]
+    assert found[0][0] == 2
+    assert ("R0804" if verb == "analyze" else "a/odd") in found[0][1]
+    assert "no.rules" in found[0][2]
 
 
 def processes_of(group):

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rulec.analysis.audit.source_audit import SourceAudit
     from rulec.analysis.diff.rulebook_comparison import RulebookDiff
     from rulec.analysis.lineage.rule_lineage import BookLineage
+    from rulec.analysis.lint.questions import Spread
     from rulec.api.rulebook_compilation import Rules
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.book_tests.example_coverage import RuleCoverage
@@ -108,13 +109,9 @@ class RulebookVerbs(SessionSettings):
 
     def test(self, reference: str | Path, pattern: str | None = None) -> ExampleRun:
         """Run a rulebook's examples whose RULE or RULE/LABEL matches the pattern."""
-        from rulec.automata.step_compilation import StepCompiler
-        from rulec.book_tests.example_runs import run_rulebook_examples
-        from rulec.rulebook.loader import read_rulebook
+        from rulec.batch.example_batch import ExampleRequest, run_examples
 
-        loaded = read_rulebook(reference, self.search_path, self.at)
-        compiled = StepCompiler(loaded.rulebook).at_own_steps()
-        return run_rulebook_examples(loaded.rulebook, compiled, loaded.warnings, pattern)
+        return run_examples(ExampleRequest(self.search_path, self.at, pattern), reference)
 
     def coverage(self, run: ExampleRun) -> tuple[RuleCoverage, ...]:
         """Measure what the examples of a run cover, rule by rule."""
@@ -186,11 +183,16 @@ class RulebookVerbs(SessionSettings):
         return diff if patterns else replace(diff, settings=setting_pairs(lineage, second_lineage))
 
     def analyze(
-        self, reference: str | Path, *, on_progress: Callable[[float], object] = ignore
+        self,
+        reference: str | Path,
+        *,
+        on_progress: Callable[[float], object] = ignore,
+        spread: Spread | None = None,
     ) -> tuple[Diagnostic, ...]:
         """Find defects of a rulebook by its rules' automata. Raises RulecError.
 
-        ``on_progress`` is called with the number of rules that have been looked at.
+        ``on_progress`` is called with the number of rules that have been looked at. ``spread`` has
+        questions about rules answered ahead, as the command does in several processes.
         """
         from rulec.analysis.lint.rulebook_findings import rulebook_findings
         from rulec.rulebook.loader import read_rulebook
@@ -201,7 +203,11 @@ class RulebookVerbs(SessionSettings):
         # On the same side of the road: a treaty's near side is that of the party's traffic.
         bases = [read_rulebook(name, self.search_path, book.at, book.traffic) for name in above]
         return rulebook_findings(
-            book, [base.rulebook for base in bases], on_progress, extends.span if extends else None
+            book,
+            [base.rulebook for base in bases],
+            on_progress,
+            extends.span if extends else None,
+            spread,
         )
 
     def audit(self, reference: str | Path, *, run_examples: bool = False) -> Audit:

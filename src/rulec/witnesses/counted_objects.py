@@ -42,11 +42,13 @@ def fewest_counted_objects(state: JointState, universe: ObjectUniverse) -> Count
     counts = _counts_of(state)
     if not counts:
         return ()
+    sums = tuple(dict(state.counted)[count] for count in counts)
+    if _comes_out(state, universe, dict(zip(counts, sums, strict=True))):
+        return ()  # mostly; kinds of objects take a search each
     kinds = object_kinds(state, universe)
     enough = [_enough(count, state) for count in counts]
-    start = tuple(dict(state.counted)[count] for count in counts)
-    waiting: list[tuple[tuple[int, ...], CountedObjects]] = [(start, ())]
-    seen = {start}
+    waiting: list[tuple[tuple[int, ...], CountedObjects]] = [(sums, ())]
+    seen = {sums}
     for sums, further in waiting:
         if _comes_out(state, universe, dict(zip(counts, sums, strict=True))):
             return further

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 
-from rulec.analysis.lint.conflict_search import Conflict, are_related, conflict
+from rulec.analysis.lint.conflict_search import Conflict, are_related
 from rulec.analysis.lint.finding_messages import CONFLICTING_RULES, undecided_diagnostic
+from rulec.analysis.lint.questions import Question, RuleAnswers
 from rulec.analysis.lint.redundancy import small_premises
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.analysis.trace_display import trace_note
@@ -16,8 +17,24 @@ from rulec.rulebook.rulebook_model import Rule
 from rulec.witnesses.undecided import UndecidedError
 
 
+def conflict_questions(
+    names: Sequence[str], sides: Mapping[str, AnalyzedRule]
+) -> Iterator[Question]:
+    """What ``conflicts`` asks where there is none."""
+    for pair in combinations(names, 2):
+        if are_related(*(sides[name] for name in pair)):
+            yield Question("conflict", pair)
+    for name in names:
+        group = _group(name, names, sides)
+        if len(group) > 2:
+            yield Question("conflict", group)
+
+
 def conflicts(
-    names: Sequence[str], sides: dict[str, AnalyzedRule], rules: dict[str, Rule]
+    names: Sequence[str],
+    sides: Mapping[str, AnalyzedRule],
+    rules: Mapping[str, Rule],
+    answers: RuleAnswers,
 ) -> Iterator[Diagnostic]:
     """Pairs of hard rules in conflict, then groups without such a pair."""
     conflicting: list[frozenset[str]] = []
@@ -25,7 +42,7 @@ def conflicts(
         if not are_related(sides[first], sides[second]):
             continue
         try:
-            clash = conflict([sides[first], sides[second]])
+            clash = answers.conflict([first, second])
         except UndecidedError as problem:
             what = f"it can always be kept together with `{first}`"
             yield undecided_diagnostic(rules[second], what, problem)
@@ -34,44 +51,51 @@ def conflicts(
             conflicting.append(frozenset((first, second)))
             yield _cannot_be_kept((first, second), clash, sides, rules)
     for name in names:
-        premises = [
-            sides[premise]
-            for premise in names
-            if premise != name and are_related(sides[name], sides[premise])
-        ]
-        group = [sides[name], *small_premises(sides[name], premises)]
-        if any(pair <= {analyzed.rule.name for analyzed in group} for pair in conflicting):
+        group = _group(name, names, sides)
+        if any(pair <= set(group) for pair in conflicting):
             continue
-        clash = _clash(group)
+        clash = _clash(group, answers)
         if clash is not None:
-            smaller = _smallest(group)
-            needed = {analyzed.rule.name for analyzed in smaller}
-            chosen = tuple(other for other in names if other in needed)
+            smaller = _smallest(group, answers)
+            chosen = tuple(other for other in names if other in smaller)
             conflicting.append(frozenset(chosen))
-            yield _cannot_be_kept(chosen, _clash(smaller) or clash, sides, rules)
+            yield _cannot_be_kept(chosen, _clash(smaller, answers) or clash, sides, rules)
 
 
-def _clash(group: Sequence[AnalyzedRule]) -> Conflict | None:
+def _group(name: str, names: Sequence[str], sides: Mapping[str, AnalyzedRule]) -> tuple[str, ...]:
+    """A rule with others that speak of the same, as long as all stay small together."""
+    premises = [
+        sides[premise]
+        for premise in names
+        if premise != name and are_related(sides[name], sides[premise])
+    ]
+    return (name, *(one.rule.name for one in small_premises(sides[name], premises)))
+
+
+def _clash(group: Sequence[str], answers: RuleAnswers) -> Conflict | None:
     """A conflict within a group of three or more; None if undecided."""
     if len(group) < 3:
         return None
     try:
-        return conflict(group)
+        return answers.conflict(group)
     except UndecidedError:
         return None
 
 
-def _smallest(group: Sequence[AnalyzedRule]) -> Sequence[AnalyzedRule]:
+def _smallest(group: Sequence[str], answers: RuleAnswers) -> Sequence[str]:
     """The group without those that its conflict does not need."""
-    for analyzed in group:
-        fewer = [kept for kept in group if kept is not analyzed]
-        if _clash(fewer) is not None:
-            return _smallest(fewer)
+    for name in group:
+        fewer = [kept for kept in group if kept != name]
+        if _clash(fewer, answers) is not None:
+            return _smallest(fewer, answers)
     return group
 
 
 def _cannot_be_kept(
-    names: Sequence[str], clash: Conflict, sides: dict[str, AnalyzedRule], rules: dict[str, Rule]
+    names: Sequence[str],
+    clash: Conflict,
+    sides: Mapping[str, AnalyzedRule],
+    rules: Mapping[str, Rule],
 ) -> Diagnostic:
     *firsts, last = names
     whole = [sides[name] for name in names]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from rulec.analysis.diff.rule_comparison import compare
+from rulec.analysis.diff.rule_comparison import RuleComparison
 from rulec.analysis.lint import finding_messages
 from rulec.analysis.lint.antecedents import Antecedent, antecedents, has_constant, occurrence
-from rulec.analysis.lint.conflict_findings import conflicts
-from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
+from rulec.analysis.lint.conflict_findings import conflict_questions, conflicts
+from rulec.analysis.lint.questions import ComparedRules, Question, RuleAnswers, Spread
 from rulec.analysis.shared_compilation import AnalyzedRule, compile_shared
 from rulec.analysis.trace_display import trace_note
 from rulec.diagnostics import Diagnostic, Label, Span
@@ -24,6 +24,7 @@ def rulebook_findings(
     bases: Sequence[Rulebook],
     tell: Callable[[float], object] = lambda _: None,
     extends: Span | None = None,
+    spread: Spread | None = None,
 ) -> tuple[Diagnostic, ...]:
     """All findings about a rulebook: by rule, then about several rules.
 
@@ -31,7 +32,8 @@ def rulebook_findings(
         book: the rulebook.
         bases: the rulebooks that it extends.
         extends: where it says so.
-        tell: is told how many rules have been looked at.
+        tell: is told how many rules have been looked at, or questions with ``spread``.
+        spread: has questions answered ahead, such as in other processes.
 
     Raises RulecError if a rule cannot be compiled.
     """
@@ -44,41 +46,77 @@ def rulebook_findings(
     asked = {name: occurrence(*condition, name) for name, condition in conditions.items()}
     inherited = [{rule.name: rule for rule in base.rules if rule.name in by_name} for base in bases]
     own, *of_bases = compile_shared([book, *bases], [{**by_name, **asked}, *inherited])
+    answers = RuleAnswers(ComparedRules(own, of_bases))
+    if spread is not None:
+        for number in answers.ask_ahead(_likely(by_name, list(asked), own, of_bases), spread):
+            tell(number)
     diagnostics: list[Diagnostic] = []
     good: list[str] = []
     for number, (name, rule) in enumerate(by_name.items(), 1):
         occurring = [
-            (antecedent, own[asked_name])
+            (antecedent, asked_name)
             for asked_name, (conditioned, antecedent) in conditions.items()
             if conditioned is rule
         ]
-        alone = [*_idle(rule, occurring)] or [*_alone(rule, own[name])]
+        alone = [*_idle(rule, occurring, answers)] or [*_alone(rule, answers)]
         if not alone:
             good.append(name)
         diagnostics += alone
         tell(number)
-    diagnostics += _needless(good, by_name, own)
+    diagnostics += _needless(good, by_name, answers)
     hard = [name for name in good if by_name[name].strength == "hard"]
-    diagnostics += conflicts(hard, own, by_name)
-    for base, sides in zip(bases, of_bases, strict=True):
+    diagnostics += conflicts(hard, own, by_name, answers)
+    for number, (base, sides) in enumerate(zip(bases, of_bases, strict=True)):
         for name, side in sides.items():
-            diagnostic = _weaker(by_name[name], own[name], side, base)
+            comparison = answers.compared(name, number)
+            diagnostic = _weaker(by_name[name], own[name], side, base, comparison)
             if diagnostic is not None:
                 is_own = by_name[name].book == book.name
                 diagnostics.append(diagnostic if is_own else _inherited(diagnostic, extends))
     return tuple(diagnostics)
 
 
-def _idle(rule: Rule, occurring: Sequence[tuple[Antecedent, AnalyzedRule]]) -> Iterator[Diagnostic]:
+def _likely(
+    rules: Mapping[str, Rule],
+    asked: Sequence[str],
+    own: Mapping[str, AnalyzedRule],
+    of_bases: Sequence[Mapping[str, AnalyzedRule]],
+) -> Iterator[Question]:
+    """What will be asked if nothing is found, which is as good as all that is."""
+    for name in (*asked, *rules):
+        yield Question("kept", (name,))
+    for name in rules:
+        yield Question("violated", (name,))
+    for name in reversed(list(rules)):
+        yield Question("implied", (name, *_others(name, list(rules), rules)))
+    hard = [name for name, rule in rules.items() if rule.strength == "hard"]
+    yield from conflict_questions(hard, own)
+    for number, sides in enumerate(of_bases):
+        for name in sides:
+            yield Question("compared", (name,), number)
+
+
+def _others(name: str, left: Sequence[str], rules: Mapping[str, Rule]) -> list[str]:
+    """Those that might make a rule needless."""
+    return [
+        kept
+        for kept in left
+        if kept != name and (rules[kept].strength == "hard" or rules[name].strength == "soft")
+    ]
+
+
+def _idle(
+    rule: Rule, occurring: Sequence[tuple[Antecedent, str]], answers: RuleAnswers
+) -> Iterator[Diagnostic]:
     what = {
         "implies": "what stands before `implies`",
         "phase": "the first phase",
         "when": "the condition `when`",
         "unless": "the exception",
     }
-    for trigger, side in occurring:
+    for trigger, asked_name in occurring:
         try:
-            occurs = can_be_kept(side)
+            occurs = answers.can_be_kept(asked_name)
         except UndecidedError as problem:
             yield finding_messages.undecided_diagnostic(
                 rule, f"{what[trigger.kind]} can ever hold", problem
@@ -94,9 +132,9 @@ def _idle(rule: Rule, occurring: Sequence[tuple[Antecedent, AnalyzedRule]]) -> I
             )
 
 
-def _alone(rule: Rule, side: AnalyzedRule) -> Iterator[Diagnostic]:
+def _alone(rule: Rule, answers: RuleAnswers) -> Iterator[Diagnostic]:
     try:
-        if not can_be_violated(side):
+        if not answers.can_be_violated(rule.name):
             if has_constant(rule.formula):
                 return  # an option has switched it off
             yield finding_messages.CANNOT_BE_VIOLATED.at(
@@ -105,7 +143,7 @@ def _alone(rule: Rule, side: AnalyzedRule) -> Iterator[Diagnostic]:
                 help="it holds in every trace that can be; say what it is to forbid",
                 severity="warning",
             )
-        elif not can_be_kept(side):
+        elif not answers.can_be_kept(rule.name):
             yield finding_messages.CANNOT_BE_KEPT.at(
                 rule.span,
                 f"nothing can keep rule `{rule.name}`",
@@ -116,26 +154,21 @@ def _alone(rule: Rule, side: AnalyzedRule) -> Iterator[Diagnostic]:
 
 
 def _needless(
-    names: Sequence[str], rules: dict[str, Rule], sides: dict[str, AnalyzedRule]
+    names: Sequence[str], rules: Mapping[str, Rule], answers: RuleAnswers
 ) -> Iterator[Diagnostic]:
     """Rules that can all be left out together without loss."""
     left = list(names)
     diagnostics: list[Diagnostic] = []
     for name in reversed(names):
-        others = [
-            sides[kept]
-            for kept in left
-            if kept != name and (rules[kept].strength == "hard" or rules[name].strength == "soft")
-        ]
         try:
-            premises = implied_by(sides[name], others)
+            premises = answers.implied_by(name, _others(name, left, rules))
         except UndecidedError as problem:
             diagnostics.append(
                 finding_messages.undecided_diagnostic(rules[name], "others imply it", problem)
             )
             continue
         if premises:
-            diagnostics.append(_implied(rules[name], [rules[one.rule.name] for one in premises]))
+            diagnostics.append(_implied(rules[name], [rules[one] for one in premises]))
             left.remove(name)
     yield from reversed(diagnostics)
 
@@ -164,9 +197,12 @@ def _inherited(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
 
 
 def _weaker(
-    rule: Rule, own: AnalyzedRule, inherited: AnalyzedRule, base: Rulebook
+    rule: Rule,
+    own: AnalyzedRule,
+    inherited: AnalyzedRule,
+    base: Rulebook,
+    comparison: RuleComparison,
 ) -> Diagnostic | None:
-    comparison = compare(own, inherited)
     if comparison.undecided:
         problem = UndecidedError(comparison.undecided)
         return finding_messages.undecided_diagnostic(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import click
 
+from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output
-from rulec.cli.output import counted, errors_told, open_session, print_findings
+from rulec.cli.output import counted, errors_told, open_session, print_findings, print_lost
 from rulec.diagnostics import Diagnostic
 from rulec.report.text.console import progress
 
@@ -15,8 +18,9 @@ from rulec.report.text.console import progress
 @click.command()
 @shared.rulebooks_argument
 @shared.findings_options
+@shared.jobs_option("Answer questions about rules side by side")
 @shared.at_option
-def command(rulebooks: tuple[str, ...], to: Output, fail_on: str, at: str) -> int:
+def command(rulebooks: tuple[str, ...], to: Output, fail_on: str, jobs: Jobs, at: str) -> int:
     """Find out what is odd in RULEBOOKs (names, or paths of sources) by their automata.
 
     That is: rules that nothing can violate or keep, that others imply, or that wait for what never
@@ -27,13 +31,15 @@ def command(rulebooks: tuple[str, ...], to: Output, fail_on: str, at: str) -> in
     """
     # Automata and their analysis, 150 ms: not for --help.
     from rulec.analysis.lint.finding_messages import NOT_DECIDED
+    from rulec.batch.spreading import spreading
 
     shared.only_sources(rulebooks, "cannot be analyzed")
     findings: list[Diagnostic] = []
     unread: list[Diagnostic] = []
     for rulebook in dict.fromkeys(rulebooks):
         with errors_told(unread.extend), progress(f"analyzing {rulebook}", None) as tell:
-            findings += open_session(at).analyze(rulebook, on_progress=tell)
+            spread = spreading(jobs, rulebook, partial(print_lost, "analyzed", rulebook))
+            findings += open_session(at).analyze(rulebook, on_progress=tell, spread=spread)
     status = print_findings(
         list(dict.fromkeys(findings)),
         unread,

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
+from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.output import errors_told, open_session, put_answer
+from rulec.cli.output import print_lost, put_answer
+from rulec.diagnostics import RulecError
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_aside
+from rulec.settings import search_path
 
 if TYPE_CHECKING:
+    from rulec.book_tests.example_coverage import RuleCoverage
     from rulec.book_tests.example_runs import ExampleRun
 
 
@@ -52,6 +57,7 @@ def _number(
     metavar="PERCENT",
     help="Fail if the examples cover less; implies --coverage.",
 )
+@shared.jobs_option("Test so many rulebooks at a time")
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
@@ -60,6 +66,7 @@ def command(
     fail_on_empty: bool,
     with_coverage: bool,
     threshold: float | None,
+    jobs: Jobs,
     at: str,
 ) -> int:
     """Run the accept and reject examples of every RULEBOOK: a name, or the path of a source.
@@ -68,19 +75,25 @@ def command(
     could not be read or compiled.
     """
     # Rulebooks and their automata, 130 ms: not for --help.
-    from rulec.book_tests.example_coverage import coverage, uncovered_verdicts
+    from rulec.batch.example_batch import ExampleRequest, measured_runs
+    from rulec.book_tests.example_coverage import uncovered_verdicts
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import shortcomings
 
     shared.only_sources(rulebooks, "has no examples")
     runs: list[ExampleRun] = []
-    for rulebook in rulebooks:
-        with errors_told():
-            run = open_session(at).test(rulebook, pattern)
-            print_diagnostics([*run.warnings, *uncovered_verdicts(run)])
-            runs.append(run)
+    coverages: list[tuple[RuleCoverage, ...]] = []
     measured = with_coverage or threshold is not None
-    covered = [coverage(run) for run in runs] if measured else None
+    request = ExampleRequest(search_path(), at, pattern, measured)
+    for answer in measured_runs(request, rulebooks, jobs, partial(print_lost, "tested")):
+        if isinstance(answer, RulecError):
+            print_diagnostics(answer.diagnostics)
+            continue
+        run, covers = answer
+        print_diagnostics([*run.warnings, *uncovered_verdicts(run)])
+        runs.append(run)
+        coverages.append(covers)
+    covered = coverages if measured else None
     if runs or to.form != "full":
         put_answer(render(runs, covered, to.form), to)
     short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)

@@ -1,0 +1,109 @@
+"""Questions about a rulebook's rules that do not depend on each other, and their answers.
+
+They take nearly all of the time; so they may be answered ahead, side by side in several processes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+from rulec.analysis.diff.rule_comparison import RuleComparison, compare
+from rulec.analysis.lint.conflict_search import Conflict, conflict
+from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
+from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.witnesses.undecided import UndecidedError
+
+
+class Question(NamedTuple):
+    """A question about rules, by their names.
+
+    ``kept``, ``violated``: can it be? ``implied``: by which of the others? ``conflict``: can they
+    not all be kept? ``compared``: with the rule of that name in the base of that number.
+    """
+
+    kind: Literal["kept", "violated", "implied", "conflict", "compared"]
+    names: tuple[str, ...]
+    base: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedRules:
+    """The rules of a rulebook and of those that it extends, by name, to ask questions about."""
+
+    own: Mapping[str, AnalyzedRule]
+    of_bases: Sequence[Mapping[str, AnalyzedRule]] = ()
+
+
+Spread: TypeAlias = Callable[
+    [Callable[[Question], Iterator[Any]], Sequence[Question]], Iterator[tuple[Question, Any]]
+]
+"""Has a function answer each question, perhaps in other processes: each with its answer."""
+
+
+def answers_to(rules: ComparedRules, question: Question) -> Iterator[object]:
+    """The answer to a question, which may be the reason why it is undecided."""
+    own = [rules.own[name] for name in question.names]
+    try:
+        match question.kind:
+            case "kept":
+                yield can_be_kept(*own)
+            case "violated":
+                yield can_be_violated(*own)
+            case "implied":
+                yield tuple(one.rule.name for one in implied_by(own[0], own[1:]))
+            case "conflict":
+                yield conflict(own)
+            case "compared":
+                yield compare(own[0], rules.of_bases[question.base][question.names[0]])
+    except UndecidedError as problem:
+        yield problem
+
+
+class RuleAnswers:
+    """Answers to questions about rules; each raises UndecidedError."""
+
+    def __init__(self, rules: ComparedRules) -> None:
+        self._rules = rules
+        self._known: dict[Question, object] = {}
+
+    def ask_ahead(self, questions: Iterable[Question], spread: Spread) -> Iterator[int]:
+        """Have questions answered before they are asked; how many have been."""
+        each = list(dict.fromkeys(questions))
+        found = spread(partial(answers_to, self._rules), each)
+        for number, (question, answer) in enumerate(found, 1):
+            self._known[question] = answer
+            yield number
+
+    def can_be_kept(self, name: str) -> bool:
+        """True if some trace, with objects for the rule, keeps it."""
+        return bool(self._to(Question("kept", (name,))))
+
+    def can_be_violated(self, name: str) -> bool:
+        """True if some trace violates the rule."""
+        return bool(self._to(Question("violated", (name,))))
+
+    def implied_by(self, name: str, others: Sequence[str]) -> tuple[str, ...]:
+        """One or few of the others that forbid all that the rule forbids, if there are any."""
+        found: tuple[str, ...] = self._to(Question("implied", (name, *others)))
+        return found
+
+    def conflict(self, names: Sequence[str]) -> Conflict | None:
+        """A shortest trace after which not all of these can be kept."""
+        found: Conflict | None = self._to(Question("conflict", tuple(names)))
+        return found
+
+    def compared(self, name: str, base: int) -> RuleComparison:
+        """The rule compared with that of a base, given by its number."""
+        found: RuleComparison = self._to(Question("compared", (name,), base))
+        return found
+
+    def _to(self, question: Question) -> Any:
+        if question not in self._known:
+            self._known[question] = next(answers_to(self._rules, question))
+        answer = self._known[question]
+        if isinstance(answer, UndecidedError):
+            raise answer
+        return answer

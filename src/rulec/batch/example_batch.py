@@ -1,0 +1,65 @@
+"""The examples of several rulebooks, run in one process or in several."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from rulec.automata.step_compilation import StepCompiler
+from rulec.batch.batch_messages import process_lost
+from rulec.batch.jobs import Jobs
+from rulec.batch.worker_pool import LostTask, in_order
+from rulec.book_tests.example_coverage import RuleCoverage, coverage
+from rulec.book_tests.example_runs import ExampleRun, run_rulebook_examples
+from rulec.diagnostics import RulecError
+from rulec.rulebook.loader import read_rulebook
+
+
+@dataclass(frozen=True, slots=True)
+class ExampleRequest:
+    """Where rulebooks are looked for, on which day, and which examples are wanted.
+
+    ``measured``: what they cover, too.
+    """
+
+    folders: Sequence[str | Path] = ()
+    at: str = ""
+    pattern: str | None = None
+    measured: bool = False
+
+
+def run_examples(request: ExampleRequest, rulebook: str | Path) -> ExampleRun:
+    """Run a rulebook's examples. Raises RulecError."""
+    loaded = read_rulebook(rulebook, request.folders, request.at)
+    compiled = StepCompiler(loaded.rulebook).at_own_steps()
+    return run_rulebook_examples(loaded.rulebook, compiled, loaded.warnings, request.pattern)
+
+
+MeasuredRun = tuple[ExampleRun, tuple[RuleCoverage, ...]]
+
+
+def measured_runs(
+    request: ExampleRequest,
+    rulebooks: Sequence[str],
+    jobs: Jobs,
+    lost: Callable[[str, int | None], object],
+) -> Iterator[MeasuredRun | RulecError]:
+    """The run of each rulebook with what it covers, or why there is none, in their order.
+
+    ``lost`` is told whose process was killed, and by which signal, so that it is run again.
+    """
+    for rulebook, answer in in_order(partial(_measured, request), rulebooks, jobs, lost=lost):
+        if isinstance(answer, LostTask):
+            yield process_lost(rulebook, answer.signal_number, "tested")
+        else:
+            yield answer
+
+
+def _measured(request: ExampleRequest, rulebook: str) -> Iterator[MeasuredRun | RulecError]:
+    try:
+        run = run_examples(request, rulebook)
+        yield run, coverage(run) if request.measured else ()
+    except RulecError as error:
+        yield error
