@@ -108,6 +108,20 @@ def test_output_of_questions_and_examples_does_not_depend_on_processes(
     assert "no.rules" in found[0][2]
 
 
+@pytest.mark.parametrize("ending", ["jsonl", "csv"])
+def test_drives_are_written_alike_by_any_number_of_processes(ending, drives, monkeypatch, capsys):
+    monkeypatch.chdir(drives)
+    command = ["traces", "drives/a.xml", "--recorded", "-r", "./tiny.rules"]
+    for jobs in ("1", "2"):
+        assert main([*command, "-o", f"{jobs}.{ending}", "-j", jobs]) == 0
+        assert capsys.readouterr().out == f"wrote 3 drives to {jobs}.{ending}\n"
+    assert Path(f"1.{ending}").read_bytes() == Path(f"2.{ending}").read_bytes()
+    assert main([*command, "-o", f"few.{ending}", "-j", "2", "--limit", "2"]) == 0
+    assert Path(f"1.{ending}").read_bytes().startswith(Path(f"few.{ending}").read_bytes())
+    assert main(["verify", f"few.{ending}", "-r", "./tiny.rules"]) in (0, 1)
+    assert "2 traces: " in capsys.readouterr().out
+
+
 def processes_of(group):
     found = subprocess.run(["pgrep", "-g", str(group)], capture_output=True, text=True, check=False)
     return found.stdout.split()

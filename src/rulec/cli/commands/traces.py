@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from itertools import chain
+from contextlib import closing
+from functools import partial
+from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import click
 
 import rulec
+from rulec.batch.jobs import Jobs
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import TABLES, Output, output_options
-from rulec.cli.output import output_stream, print_written, read_machines
-from rulec.diagnostics import SourceLocation
+from rulec.cli.output import output_stream, print_lost, print_written, read_machines
 from rulec.report.text.console import progress
 from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
-    from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
 
 MOST_TRACES = 10_000_000
+
+Piece = TypeVar("Piece")
 
 
 @click.command()
@@ -43,6 +46,7 @@ MOST_TRACES = 10_000_000
     help="Of recorded traffic: write what its vehicles did, every one or that of --ego, instead of "
     "what ego could do.",
 )
+@shared.jobs_option("With --recorded: write so many vehicles' drives at a time")
 @scenario_options.drives_options
 def command(
     scenario: str,
@@ -50,6 +54,7 @@ def command(
     to: Output,
     limit: int | None,
     recorded: bool,
+    jobs: Jobs,
     **options: Any,
 ) -> None:
     """Write every maneuver of SCENARIO (a name or a file) as a trace: JSON Lines, CSV or Parquet.
@@ -58,7 +63,7 @@ def command(
     appears whole or not at all.
     """
     if recorded:
-        _write_drives(Path(scenario), to, rulebook=rulebook, limit=limit, options=options)
+        _write_drives(Path(scenario), to, jobs, rulebook=rulebook, limit=limit, options=options)
         return
     about = {name: options.pop(name) for name in ("thresholds", "assumed", "as_recorded")}
     if option := scenario_options.given_drives_option(about):
@@ -99,51 +104,52 @@ _OF_DRIVES |= {"map_path", "input_format", "scenario_id"}
 def _write_drives(
     file: Path,
     to: Output,
+    jobs: Jobs,
     *,
     rulebook: str | None,
     limit: int | None,
     options: dict[str, Any],
 ) -> None:
     # numpy and shapely, 200 ms: only for recordings.
-    from rulec.extraction.selection import selected_drives
-    from rulec.extraction.to_trace import Drive
-    from rulec.recordings.recording_files import read_recording
-    from rulec.recordings.recording_messages import NOT_IN_RECORDING
-    from rulec.trace.formats.trace_files import with_bounds, write_traces
-    from rulec.trace.vocabulary_projection import MEASURED
+    from rulec.batch.drive_batch import WrittenDrives, drives_in_order
+    from rulec.trace.formats.trace_files import write_traces
 
     if (option := _given_maneuvers_option(options)) is not None:
         raise click.UsageError(f"{option} is for maneuvers, not for what is --recorded.")
     book = None if rulebook is None else read_machines(rulebook)
     vocabulary = None if book is None else book.vocabulary
     egos = () if options["ego"] is None else (options["ego"],)
-    result = selected_drives(
-        read_recording(scenario_options.recording_source(file, options)),
+    drives = WrittenDrives(
+        scenario_options.recording_source(file, options),
         scenario_options.requested_drives(egos, options, vocabulary),
-        str(file),
-        "" if book is None else book.traffic,
         vocabulary,
+        "" if book is None else book.traffic,
+        cast("Format", to.form),
     )
+    vehicles, kinds = drives.selected.egos, drives.kinds
     count = 0
 
-    def traces() -> Iterator[Trace]:
+    def counted(pieces: Iterable[Piece]) -> Iterator[Piece]:
         nonlocal count
-        for number, ego in enumerate(result.egos, 1):
-            tell(number)
-            for drive in result.of(ego):
-                if isinstance(drive, Drive) and (limit is None or count < limit):
-                    count += 1
-                    yield drive.trace
+        for piece in islice(pieces, limit):
+            count += 1
+            yield piece
 
-    kinds = with_bounds(result.drives.kinds(), MEASURED)
-    if not kinds:
-        message = "nobody in this recording drives on a lane"
-        raise NOT_IN_RECORDING.error(SourceLocation(str(file)), message)
     with (
-        progress(f"writing {to.path}", len(result.egos)) as tell,
+        progress(f"writing {to.path}", len(vehicles)) as tell,
         output_stream(to) as (stream, name),
     ):
-        write_traces(traces(), stream, name, cast("Format", to.form), kinds, partial=True)
+        if to.form == "parquet":
+            # Its rows have to be together.
+            told = _counted_aloud(vehicles, tell, 1)
+            traces = chain.from_iterable(map(drives.traces, told))
+            write_traces(counted(traces), stream, name, "parquet", kinds, partial=True)
+        else:
+            stream.write(drives.head)
+            lost = partial(print_lost, "wrote the drives of")
+            with closing(drives_in_order(drives, jobs, tell, lost)) as pieces:
+                for piece in counted(pieces):
+                    stream.write(piece)
     print_written(f"{count:,} drives to {to.path}", to)
 
 
@@ -162,8 +168,10 @@ def _given_maneuvers_option(options: Mapping[str, Any]) -> str | None:
     )
 
 
-def _counted_aloud(traces: Iterable[Trace], tell: Callable[[float], None]) -> Iterator[Trace]:
-    for number, trace in enumerate(traces):
-        if number % 100 == 0:
+def _counted_aloud(
+    items: Iterable[Piece], tell: Callable[[float], None], every: int = 100
+) -> Iterator[Piece]:
+    for number, item in enumerate(items):
+        if number % every == 0:
             tell(number)
-        yield trace
+        yield item

@@ -1,0 +1,99 @@
+"""The drives of a recording written as traces, in one process or in several."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from io import BytesIO
+from typing import Any
+
+from rulec.batch.batch_messages import process_lost
+from rulec.batch.jobs import Jobs
+from rulec.batch.worker_pool import LostTask, in_order
+from rulec.diagnostics import SourceLocation
+from rulec.extraction.selection import RequestedDrives, SelectedDrives, selected_drives
+from rulec.extraction.to_trace import Drive
+from rulec.recordings.recording_files import read_recording
+from rulec.recordings.recording_format import RecordingSource
+from rulec.recordings.recording_messages import NOT_IN_RECORDING
+from rulec.rulebook.rulebook_model import Traffic
+from rulec.trace import Trace
+from rulec.trace.formats.trace_files import Format, with_bounds, write_traces
+from rulec.trace.vocabulary_projection import MEASURED
+from rulec.vocabulary import Vocabulary
+
+
+@dataclass(frozen=True)
+class WrittenDrives:
+    """What is to be written: which drives of a recording, in which words and in which format.
+
+    The recording is read once by each process that asks for it. Whatever is asked of this raises
+    RulecError if it cannot be read, or has nobody who drives.
+    """
+
+    source: RecordingSource
+    request: RequestedDrives
+    vocabulary: Vocabulary | None
+    traffic: Traffic
+    form: Format
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but what was read, which another process reads in less time than it is sent."""
+        read = ("selected", "kinds", "head")
+        return {name: value for name, value in self.__dict__.items() if name not in read}
+
+    @cached_property
+    def selected(self) -> SelectedDrives:
+        """The drives."""
+        file = str(self.source.path)
+        recording = read_recording(self.source)
+        return selected_drives(recording, self.request, file, self.traffic, self.vocabulary)
+
+    @cached_property
+    def kinds(self) -> dict[str, type]:
+        """The kinds of all names that the drives speak of."""
+        kinds = with_bounds(self.selected.drives.kinds(), MEASURED)
+        if not kinds:
+            message = "nobody in this recording drives on a lane"
+            raise NOT_IN_RECORDING.error(SourceLocation(str(self.source.path)), message)
+        return kinds
+
+    def traces(self, ego: str) -> Iterator[Trace]:
+        """The drives of one vehicle."""
+        for drive in self.selected.of(ego):
+            if isinstance(drive, Drive):
+                yield drive.trace
+
+    def written(self, ego: str) -> Iterator[bytes]:
+        """The drives of one vehicle, each as it is written into a file behind the head."""
+        for trace in self.traces(ego):
+            yield self._bytes(trace)[len(self.head) :]
+
+    @cached_property
+    def head(self) -> bytes:
+        """What a file begins with."""
+        return self._bytes()
+
+    def _bytes(self, *traces: Trace) -> bytes:
+        stream = BytesIO()
+        write_traces(traces, stream, "", self.form, self.kinds, partial=True)
+        return stream.getvalue()
+
+
+def drives_in_order(
+    drives: WrittenDrives,
+    jobs: Jobs,
+    tell: Callable[[int], object],
+    lost: Callable[[str, int | None], object],
+) -> Generator[bytes, None, None]:
+    """Each drive as it is written behind the head, in the order of the vehicles.
+
+    Not for Parquet, whose rows have to be together. ``tell`` is told how many vehicles are done,
+    ``lost`` whose process was killed, and by which signal, so that another one does it again.
+    Raises RulecError R0708 if that was killed, too.
+    """
+    for _, piece in in_order(drives.written, drives.selected.egos, jobs, tell, lost):
+        if isinstance(piece, LostTask):
+            raise process_lost(str(drives.source.path), piece.signal_number, "read")
+        yield piece
