@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec import read_recording
+from rulec import read_map, read_recording
 from rulec.diagnostics import RulecError
 from rulec.recordings.commonroad import commonroad_file
 from rulec.scenario import Choice, ConstantAcceleration, load_scenario
@@ -126,6 +126,12 @@ def test_other_xml(written):
     found = problem_with(written("<kml version='0.6'/>"))
     assert "it is XML of `kml`" in found.message
     assert "`commonRoad`" in found.expected
+
+
+def test_a_file_without_roads_is_no_map(written):
+    roads = ROAD_XML[ROAD_XML.index("  <lanelet ") : ROAD_XML.index("  <obstacle ")]
+    with pytest.raises(RulecError, match="there is no lanelet in it"):
+        read_map(written(ROAD_XML.replace(roads, "")), 0.1)
 
 
 def test_where_ego_is_not(written):

@@ -59,9 +59,9 @@ def read_as_map(folder: Path, sample: Sample, _: str) -> None:
 
 def _assert_sound(lanelets: dict[str, Lanelet]) -> None:
     for lanelet in lanelets.values():
-        assert len(lanelet.left) == len(lanelet.right) == len(lanelet.centre) >= 2
-        assert np.isfinite(lanelet.left).all()
-        assert np.isfinite(lanelet.right).all()
+        for line in (lanelet.left, lanelet.right, lanelet.centre):
+            assert len(line) >= 2
+            assert np.isfinite(line).all()
 
 
 def assert_refused_well(error: RulecError, folder: Path) -> None:

@@ -62,9 +62,12 @@ def _read_whole(path: Path) -> Recording | None:
 def read_commonroad_map(path: Path, step_s: float) -> RoadMap:
     """The roads of a CommonRoad file; its lights count in its own steps.
 
-    Raises RulecError: as for ``read_commonroad``, and R0610 if lights have other steps.
+    Raises RulecError: as for ``read_commonroad``, and R0610 if lights have other steps, or without
+    any lanelet.
     """
     whole = read_commonroad(path)
+    if not whole.lanelets:
+        raise COMMONROAD.refused(path, "there is no lanelet in it, so that it is no map")
     lit = any(lanelet.lights or lanelet.lights_to for lanelet in whole.lanelets.values())
     if lit and abs(whole.step_s - step_s) > _SAME_STEP_S:
         own = f"its traffic lights count in steps of {whole.step_s:g} s"
