@@ -154,7 +154,9 @@ def _own_part(entry: MapLanelet, line: Points) -> Points:
     """The part of a line, which may be for several lanes, between a lanelet's bounds."""
     whole = shapely.LineString(line)
     bounds = [shapely.LineString(bound) for bound in (entry.left, entry.right)]
-    ends: Points = shapely.get_coordinates(shapely.shortest_line(bounds, whole))[1::2]
+    # Lines that are next to nothing long make GEOS divide by that
+    with np.errstate(all="ignore"):
+        ends: Points = shapely.get_coordinates(shapely.shortest_line(bounds, whole))[1::2]
     return ends if np.hypot(*(ends[1] - ends[0])) > _SHORTEST_M else line
 
 
