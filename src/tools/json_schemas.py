@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 
 from rulec.automata.bundle.bundle_schema import BundleFile
+from rulec.fleet.finding_columns import FindingRowLine
 from rulec.monitoring.online.snapshot import SavedMonitor
 from rulec.report.findings.diagnostics_json import CodeData, FindingData
 from rulec.report.maneuvers.envelope_table import EnvelopeLine
@@ -34,6 +35,7 @@ SCHEMAS: Mapping[str, tuple[Any, ...]] = {
     "compiled": (BundleFile,),
     "diff": (DiffDocument,),
     "envelope": (EnvelopeLine,),
+    "exposure": (FindingRowLine,),
     "finding": (FindingLine,),
     "findings": (list[FindingData],),
     "formats": (FormatsDocument,),

@@ -96,3 +96,54 @@ def test_confidence_is_a_probability(found, confidence, capsys):
 def test_a_file_that_is_not_there(capsys):
     assert main(["rates", "nowhere.jsonl"]) == 2
     assert "R0701" in capsys.readouterr().err
+
+
+BOOK = """
+rulebook lights
+signal red_light, crosses_line default false
+hard rule red_light { require never (red_light and crosses_line) }
+"""
+DRIVES = [
+    {"id": "a", "states": [{"red_light": True}, {}, {"red_light": True, "crosses_line": True}]},
+    {"id": "b", "states": [{"red_light": None}, {"red_light": True}]},
+    {"id": "c", "states": [{"red_light": 7}]},
+]
+
+
+@pytest.mark.parametrize("ending", ["jsonl", "csv", "parquet"])
+def test_findings_of_traces_have_their_exposure(tmp_path, ending, capsys):
+    """Three red lights in 5 s, and one that may be part of another; c cannot be judged."""
+    (tmp_path / "lights.rules").write_text(BOOK)
+    drives = tmp_path / "drives.jsonl"
+    drives.write_text("".join(f"{json.dumps(drive)}\n" for drive in DRIVES))
+    path = tmp_path / f"found.{ending}"
+    command = ["verify", str(drives), "-r", str(tmp_path / "lights.rules"), "--exposure"]
+    assert main([*command, "-o", str(path)]) == 2
+    capsys.readouterr()
+    assert main(["rates", str(path), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert (document["drives"], document["not_judged"]) == (2, 1)
+    (rule,) = document["rules"]
+    assert (rule["opportunities"], rule["perhaps_opportunities"]) == (3, 3)
+    assert (rule["violated"], rule["perhaps_violated"]) == (1, 1)
+    assert rule["exposed_h"] == pytest.approx(3 / 3600)
+    assert rule["perhaps_exposed_h"] == pytest.approx(4 / 3600)
+    assert rule["hours"] == pytest.approx(5 / 3600)
+    assert rule["km"] is None
+
+
+def test_exposure_goes_to_tables(tmp_path, capsys):
+    assert (
+        main(["verify", "x.jsonl", "-r", "de", "--exposure", "-o", str(tmp_path / "a.sarif")]) == 2
+    )
+    assert "--exposure is for tables" in capsys.readouterr().err
+
+
+def test_findings_without_exposure_are_refused(tmp_path, capsys):
+    (tmp_path / "lights.rules").write_text(BOOK)
+    drives = tmp_path / "drives.jsonl"
+    drives.write_text(json.dumps(DRIVES[0]))
+    path = tmp_path / "found.csv"
+    main(["verify", str(drives), "-r", str(tmp_path / "lights.rules"), "-o", str(path)])
+    assert main(["rates", str(path)]) == 2
+    assert "written without `--exposure`" in capsys.readouterr().err

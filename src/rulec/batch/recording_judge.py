@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
+from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
 from rulec.extraction.selection import RequestedDrives
 from rulec.monitoring.verdict import NotJudged
@@ -23,6 +24,11 @@ if TYPE_CHECKING:
     from rulec.report.verdict_findings.found_in_drives import DriveFindings
     from rulec.report.verdict_findings.verdict_finding import FoundInRecording
 
+RowMaker: TypeAlias = Callable[
+    [DriveVerdict | NoDrive, RecordingVerdicts, str], Iterator[Mapping[str, object]]
+]
+"""What makes rows of a drive of a file; it is sent to processes."""
+
 
 @dataclass(frozen=True, slots=True)
 class JudgeSettings:
@@ -31,7 +37,8 @@ class JudgeSettings:
     ``source`` says how to read each of them; its path is another one. The first ``to_explain``
     violations of each file are explained, by ``every_part`` if wanted, in ``width`` columns. Wanted
     may be ``text``, ``lines`` (of JSON, one for each drive) and ``findings``. ``labels`` are what
-    files are called whose paths would say nothing to anybody.
+    files are called whose paths would say nothing to anybody. ``to_rows`` makes of each drive the
+    rows that tables of findings have, if they are to have those of drives and rules, too.
     """
 
     rules: CompiledRulebook
@@ -44,6 +51,7 @@ class JudgeSettings:
     lines: bool
     findings: bool
     labels: Mapping[str, str] = field(default_factory=dict)
+    to_rows: RowMaker | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +132,7 @@ class _RecordingJudge:
         """A piece for each drive that has something to say, and the recording."""
         verdicts, tally = self._verdicts, self._tally
         names = [rule.name for rule in verdicts.rules.rules]
+        rows: list[Mapping[str, object]] = []
         for number, answer in enumerate(verdicts.answers(), 1):
             tell(number, len(verdicts.egos))
             tally.add(answer, names)
@@ -135,13 +144,17 @@ class _RecordingJudge:
                     explained = self._explained(answer)
             if self._findings is not None:
                 self._findings.add(answer, explained)
+            if self._settings.to_rows is not None:
+                rows += self._settings.to_rows(answer, verdicts, self._file)
             if self._settings.lines:
                 # JSON of explanations and evidence, 30 ms: only where it is wanted.
                 from rulec.report.verdicts import recording_json
 
                 yield recording_json.as_json(answer, verdicts, explained)
         table = recording_table.as_text(verdicts, tally) if self._settings.text else ""
-        found = None if self._findings is None else self._findings.whole()
+        found = None
+        if self._findings is not None:
+            found = replace(self._findings.whole(), rows=tuple(rows))
         name = verdicts.recording.name
         explained_in_text = tuple(self._blocks)
         yield JudgedRecording(

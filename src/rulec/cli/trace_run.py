@@ -6,7 +6,7 @@ import os
 import stat
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from io import UnsupportedOperation
 from pathlib import Path
@@ -53,16 +53,32 @@ class TraceRun:
         """Judge the traces of files, with one summary for all of them."""
         for file in files:
             findings: list[VerdictFinding] = []
+            rows: list[Mapping[str, object]] = []
             left, traces_before = self.to_explain, self.counts.total()
             for traces, place, answer in _answers(file, form, self.rules, assumed):
                 if isinstance(answer, NotJudged):
                     self._not_judged(file, answer, findings)
                 else:
                     left -= self._judged(file, (traces, place, answer), left, findings)
+                if self.to.to_rows is not None:
+                    rows += self._rows(file, (traces, place, answer))
             if self.to.wants_findings:
                 drives = self.counts.total() - traces_before
-                self.to.found(FoundInRecording(file, "", drives, tuple(findings)))
+                self.to.found(FoundInRecording(file, "", drives, tuple(findings), tuple(rows)))
         self.to.text(verdict_report.summary(self.counts, self.not_judged))
+
+    def _rows(self, file: str, answer: Answer) -> Iterator[Mapping[str, object]]:
+        """The rows of a trace."""
+        to_rows = self.to.to_rows
+        assert to_rows is not None, "they are wanted"
+        traces, place, verdict = answer
+        own = {"file": file, "vehicle": verdict.trace or ""}
+        if isinstance(verdict, NotJudged):
+            yield to_rows.of_nothing(own, verdict.error.diagnostics[0].message)
+            return
+        trace = cast("Trace", traces[place])
+        used = rulebook_for(traces, place, self.rules)
+        yield from to_rows.of_trace(trace, verdict, own, used)
 
     def _not_judged(self, file: str, answer: NotJudged, findings: list[VerdictFinding]) -> None:
         self.not_judged += 1

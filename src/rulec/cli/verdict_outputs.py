@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ from rulec.report.verdict_findings.finding_writers import ENDINGS, finding_write
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.fleet.drive_rows import DriveRows
     from rulec.report.verdict_findings.finding_writers import FindingWriter
     from rulec.report.verdict_findings.verdict_finding import FoundInRecording
 
@@ -26,7 +27,9 @@ class VerdictOutputs:
     Where no output is standard output, that shows the text, but for what a file has of it.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, to_rows: DriveRows | None) -> None:
+        self.to_rows = to_rows
+        """What makes rows of drives and rules, if tables of findings are to have them."""
         self._text: list[Callable[[str], None]] = []
         self._lines: list[Callable[[str], None]] = []
         self._writers: list[tuple[FindingWriter, str]] = []
@@ -65,15 +68,25 @@ class VerdictOutputs:
 
 
 @contextmanager
-def verdict_outputs(to: Sequence[Output], rules: CompiledRulebook) -> Iterator[VerdictOutputs]:
+def verdict_outputs(
+    to: Sequence[Output], rules: CompiledRulebook, to_rows: DriveRows | None = None
+) -> Iterator[VerdictOutputs]:
     """Outputs that are written whole when the block succeeds, and not at all else.
+
+    With ``to_rows`` tables of findings have rows of drives and rules, too.
 
     Raises RulecError R0702 if a file cannot be written, R0706.
     """
     # The types of rulebooks, and msgspec: not for --help.
     from rulec.report.verdict_findings.verdict_finding import FindingsOf
 
-    outputs = VerdictOutputs()
+    columns: Mapping[str, type] | None = None
+    if to_rows is not None:
+        # Arrow: not for --help.
+        from rulec.fleet.finding_columns import COLUMNS
+
+        columns = COLUMNS
+    outputs = VerdictOutputs(to_rows)
     written: list[Output] = []
     with ExitStack() as files:
         for one in to:
@@ -84,7 +97,7 @@ def verdict_outputs(to: Sequence[Output], rules: CompiledRulebook) -> Iterator[V
                 lines.append(files.enter_context(answer_lines(one)))
             else:
                 stream, name = files.enter_context(output_stream(one))
-                writer = finding_writer(one.form, stream, FindingsOf(rules), name)
+                writer = finding_writer(one.form, stream, FindingsOf(rules, columns=columns), name)
                 outputs._writers.append((writer, name))
         if len(written) == len(to) and not outputs._text:
             outputs._text.append(print_result)

@@ -48,6 +48,13 @@ class DriveRows:
 
     def of_recording(self, verdicts: RecordingVerdicts, file: str) -> Iterator[Row]:
         """The rows of all drives of a recording, and of vehicles that have none."""
+        for answer in verdicts.answers():
+            yield from self.of_answer(answer, verdicts, file)
+
+    def of_answer(
+        self, answer: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, file: str
+    ) -> Iterator[Row]:
+        """The rows of a drive of a recording, or of a vehicle that has none."""
         recording = verdicts.recording
         own = {
             "file": file,
@@ -55,12 +62,11 @@ class DriveRows:
             "source": recording.form,
             "country": recording.country,
         }
-        for answer in verdicts.answers():
-            if isinstance(answer, NoDrive):
-                named = {"vehicle": answer.ego, "ego": answer.ego}
-                yield self.of_nothing({**own, **named}, answer.why)
-            else:
-                yield from self._of_drive(answer, verdicts, own)
+        if isinstance(answer, NoDrive):
+            named = {"vehicle": answer.ego, "ego": answer.ego}
+            yield self.of_nothing({**own, **named}, answer.why)
+        else:
+            yield from self._of_drive(answer, verdicts, own)
 
     def of_trace(
         self,

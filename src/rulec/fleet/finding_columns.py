@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, Optional, TypeAlias
 
+import msgspec
+
+from rulec.report.json_document import JsonDocument
 from rulec.report.verdict_findings import verdict_finding
 from rulec.trace.formats.arrow.parquet import arrow
 
@@ -31,6 +34,21 @@ COLUMNS: Mapping[str, type] = {
 docs/fleet.md says column by column what they mean. A text that does not apply is empty, a list
 has no items, a number is None.
 """
+
+_IN_JSON: Mapping[type, Any] = {list: list[str]}
+
+FindingRowLine = msgspec.defstruct(
+    "FindingRowLine",
+    [(name, Optional[_IN_JSON.get(kind, kind)]) for name, kind in COLUMNS.items()],  # noqa: UP045
+    bases=(JsonDocument,),
+    namespace={
+        "__doc__": "A row of a drive, of a rule of it, or a finding.\n\n"
+        "See docs/rates.md; null is what does not apply."
+    },
+    frozen=True,
+    kw_only=True,
+)
+"""A row as a line of JSON."""
 
 _NOTHING: Mapping[type, Cell] = {str: "", list: ()}
 EMPTY: Mapping[str, Cell] = {name: _NOTHING.get(kind) for name, kind in COLUMNS.items()}

@@ -231,7 +231,7 @@ class _RuleSums:
         least, most = ((self.count(v), self.count(n)) for v, n in zip(violated, of, strict=True))
         return Rate(
             least[0] / least[1] if least[1] else 0.0,
-            most[0] / most[1] if most[1] else 1.0,
+            most[0] / most[1] if most[1] else 0.0,
             binomial_interval(least, most, self._confidence),
             self._bootstrap(violated, of),
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -13,6 +13,7 @@ from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import (
     STANDARD_OUTPUT,
+    TABLES,
     Output,
     output_options,
     refuse_overwriting,
@@ -24,6 +25,8 @@ from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, print_aside
 
 if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.fleet.drive_rows import DriveRows
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.recordings.recording_inputs import InputFiles
     from rulec.trace import Trace
@@ -70,6 +73,12 @@ if TYPE_CHECKING:
 @scenario_options.recording_or_trace_options
 @shared.jobs_option("Judge so many recordings at a time")
 @output_options(FORMATS, "the answer", multiple=True)
+@click.option(
+    "--exposure",
+    is_flag=True,
+    help="Write to .jsonl, .csv and .parquet also a row for each drive, and for each rule of it: "
+    "how often there was an opportunity to violate it. `rulec rates` adds them up.",
+)
 @shared.at_option
 def command(
     files: tuple[str, ...],
@@ -82,6 +91,8 @@ def command(
     at: str,
     egos: tuple[str, ...],
     jobs: Jobs,
+    *,
+    exposure: bool,
     **options: Any,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
@@ -125,7 +136,10 @@ def command(
         found = counted(searched.recordings, "recording")
         more = f", {counted(searched.others, 'other file')} passed over" if searched.others else ""
         print_aside(f"rulec: {found} in {searched.path}{more}")
-    with verdict_outputs(to, rules) as outputs:
+    if exposure and not any(one.form in TABLES for one in to):
+        raise click.UsageError("--exposure is for tables: -o FILE.jsonl, FILE.csv, FILE.parquet.")
+    to_rows = _to_rows(rules, egos, options, ends) if exposure else None
+    with verdict_outputs(to, rules, to_rows) as outputs:
         complaints = Complaints()
         violated, judged, complete = False, False, True
         if recordings or inputs.problems:
@@ -143,6 +157,7 @@ def command(
                 text=outputs.wants_text,
                 lines=outputs.wants_lines,
                 findings=outputs.wants_findings,
+                to_rows=None if to_rows is None else to_rows.of_answer,
             )
             recorded = RecordingRun(settings, outputs, complaints)
             for problem in inputs.problems:
@@ -163,6 +178,21 @@ def command(
             complete &= not traced.not_judged
     complaints.close()
     return ExitStatus.after(answered=judged and complete, failed=violated)
+
+
+def _to_rows(
+    rules: CompiledRulebook,
+    egos: tuple[str, ...],
+    options: Mapping[str, Any],
+    ends: Ending | None,
+) -> DriveRows:
+    """What makes rows of drives and of rules."""
+    # Verdicts, evidence and Arrow, 200 ms: only for those who ask for them.
+    from rulec.fleet.drive_rows import DriveRows
+    from rulec.fleet.judged_by import judged_by
+
+    wanted = scenario_options.requested_drives(egos, options, rules.vocabulary)
+    return DriveRows(rules, judged_by(rules, wanted, ends or ""))
 
 
 def _recordings(inputs: InputFiles, form: Format | None, *, named: bool) -> list[str]:

@@ -4,47 +4,58 @@ from __future__ import annotations
 
 import csv
 import io
-from typing import IO
+import json
+from collections.abc import Iterator, Mapping
+from typing import IO, Any, TypeAlias
 
 from rulec.report.text.terminal_text import visible
 from rulec.report.verdict_findings.verdict_finding import (
     COLUMNS,
     FoundInRecording,
-    VerdictFinding,
     as_json,
 )
 from rulec.trace.formats.arrow.parquet import arrow, write_parquet
+
+Columns: TypeAlias = Mapping[str, type]
+"""Name -> the type of its values."""
 
 _FORMULA = ("=", "+", "-", "@")
 """What a cell begins with that spreadsheets take for a formula."""
 
 
 class JsonLinesWriter:
-    """Findings as JSON Lines."""
+    """Findings, or rows of these columns, as JSON Lines."""
 
-    def __init__(self, stream: IO[bytes]) -> None:
+    def __init__(self, stream: IO[bytes], columns: Columns | None = None) -> None:
         self._stream = stream
+        self._columns = columns
 
     def add(self, found: FoundInRecording) -> None:
-        """Write a line for each finding."""
-        for finding in found.findings:
+        """Write a line for each."""
+        if self._columns is None:
+            lines = [as_json(finding) for finding in found.findings]
+        else:
+            rows = [{name: row.get(name) for name in self._columns} for row in found.rows]
+            lines = [json.dumps({"version": 1, **row}, ensure_ascii=False) for row in rows]
+        for line in lines:
             # What no file may hold in UTF-8, half a surrogate pair, JSON writes in the same way.
-            self._stream.write(f"{as_json(finding)}\n".encode("utf-8", "backslashreplace"))
+            self._stream.write(f"{line}\n".encode("utf-8", "backslashreplace"))
 
     def close(self) -> None:
         """Nothing comes at the end."""
 
 
 class CsvWriter:
-    """Findings as CSV (RFC 4180), with a line of names."""
+    """Findings, or rows of these columns, as CSV (RFC 4180), with a line of names."""
 
-    def __init__(self, stream: IO[bytes]) -> None:
+    def __init__(self, stream: IO[bytes], columns: Columns | None = None) -> None:
         self._stream = stream
-        self._write([list(COLUMNS)])
+        self._columns = columns
+        self._write([list(columns or COLUMNS)])
 
     def add(self, found: FoundInRecording) -> None:
-        """Write a row for each finding."""
-        self._write([[_cell(getattr(one, name)) for name in COLUMNS] for one in found.findings])
+        """Write a row for each."""
+        self._write([[_cell(value) for value in row] for row in _rows(found, self._columns)])
 
     def close(self) -> None:
         """Nothing comes at the end."""
@@ -55,33 +66,42 @@ class CsvWriter:
         self._stream.write(text.getvalue().encode())
 
 
+def _rows(found: FoundInRecording, columns: Columns | None) -> Iterator[list[Any]]:
+    """The values of findings, or those of rows if there are columns."""
+    if columns is None:
+        yield from ([getattr(one, name) for name in COLUMNS] for one in found.findings)
+    else:
+        yield from ([row.get(name) for name in columns] for row in found.rows)
+
+
 def _cell(value: str | float | tuple[str, ...] | None) -> str:
     """A cell; a text that a spreadsheet would compute gets an apostrophe before it."""
     if value is None:
         return ""
-    if isinstance(value, float):
+    if isinstance(value, float | int):
         return repr(value)
     text = visible("; ".join(value) if isinstance(value, tuple) else value)
     return f"'{text}" if text.startswith((*_FORMULA, "'")) else text
 
 
 class ParquetWriter:
-    """Findings as Parquet; several others, and what a rule is open on, are lists."""
+    """Findings, or rows of these columns, as Parquet; several texts of one are lists."""
 
-    def __init__(self, stream: IO[bytes], name: str) -> None:
+    def __init__(self, stream: IO[bytes], name: str, columns: Columns | None = None) -> None:
         arrow(name)  # what is missing is said before anything is judged
         self._stream = stream
         self._name = name
-        self._found: list[VerdictFinding] = []
+        self._columns = columns
+        self._found: list[list[Any]] = []
 
     def add(self, found: FoundInRecording) -> None:
         """Keep the findings."""
-        self._found += found.findings
+        self._found += _rows(found, self._columns)
 
     def close(self) -> None:
         """Write the table."""
-        rows = ([_plain(getattr(one, name)) for name in COLUMNS] for one in self._found)
-        write_parquet(rows, list(COLUMNS.items()), self._stream, self._name)
+        rows = ([_plain(value) for value in row] for row in self._found)
+        write_parquet(rows, list((self._columns or COLUMNS).items()), self._stream, self._name)
 
 
 def _plain(value: str | float | tuple[str, ...] | None) -> str | float | list[str] | None:

@@ -40,11 +40,11 @@ def finding_writer(form: str, stream: IO[bytes], about: FindingsOf, name: str) -
         case "csv":
             from rulec.report.verdict_findings.finding_tables import CsvWriter
 
-            return CsvWriter(stream)
+            return CsvWriter(stream, about.columns)
         case "parquet":
             from rulec.report.verdict_findings.finding_tables import ParquetWriter
 
-            return ParquetWriter(stream, name)
+            return ParquetWriter(stream, name, about.columns)
         case "junit":
             from rulec.report.verdict_findings.finding_junit import JUnitWriter
 
@@ -64,4 +64,4 @@ def finding_writer(form: str, stream: IO[bytes], about: FindingsOf, name: str) -
         case _:
             from rulec.report.verdict_findings.finding_tables import JsonLinesWriter
 
-            return JsonLinesWriter(stream)
+            return JsonLinesWriter(stream, about.columns)

@@ -125,7 +125,8 @@ def as_json(finding: VerdictFinding) -> str:
 class FoundInRecording:
     """The findings of a recording, or of a file of traces, with the number of its ``drives``.
 
-    Without drives, and with one finding without a rule, it could not be judged at all.
+    Without drives, and with one finding without a rule, it could not be judged at all. ``rows`` are
+    those of drives, rules and findings, if they are wanted (``FindingsOf.columns``).
     """
 
     __repr__ = short_repr
@@ -134,6 +135,7 @@ class FoundInRecording:
     recording: str
     drives: int
     findings: tuple[VerdictFinding, ...]
+    rows: tuple[Mapping[str, object], ...] = ()
 
     @property
     def title(self) -> str:
@@ -149,10 +151,14 @@ class FoundInRecording:
 
 @dataclass(frozen=True)
 class FindingsOf:
-    """What all findings are of: a rulebook, judged by a version of rulec."""
+    """What all findings are of: a rulebook, judged by a version of rulec.
+
+    With ``columns`` tables have rows of drives, rules and findings, with these in them.
+    """
 
     rulebook: CompiledRulebook
     version: str = __version__
+    columns: Mapping[str, type] | None = None
 
     @property
     def rules(self) -> Mapping[str, CompiledRule]:
