@@ -15,6 +15,7 @@ from rulec.monitoring.online.snapshot import SavedMonitor
 from rulec.report.findings.diagnostics_json import CodeData, FindingData
 from rulec.report.maneuvers.envelope_table import EnvelopeLine
 from rulec.report.maneuvers.maneuver_json import ManeuversDocument
+from rulec.report.moments.moments_json import MomentLine
 from rulec.report.rates.rates_json import RatesDocument
 from rulec.report.recordings.format_listing import FormatsDocument
 from rulec.report.rulebooks.audit_report import AuditDocument
@@ -42,6 +43,7 @@ SCHEMAS: Mapping[str, tuple[Any, ...]] = {
     "list": (ListingDocument,),
     "maneuvers": (ManeuversDocument,),
     "matrix": (MatrixDocument,),
+    "moment": (MomentLine,),
     "monitor": (SavedMonitor,),
     "rates": (RatesDocument,),
     "show": (RulesDocument,),

@@ -25,6 +25,7 @@ VERBS = {
     "draw": "Draw scenes over time, navigation graphs and traces.",
     "envelopes": "Write the bounds of the cheapest satisfying maneuvers as a table.",
     "explain": "Explain a code of a message.",
+    "find": "List the moments at which a formula holds in drives.",
     "fleet": "Judge all drives of a fleet: many files, on one machine or on Ray or Spark.",
     "fmt": "Format rulebooks and vocabularies.",
     "formats": "List the formats of recorded traffic and of maps, and what each can tell.",

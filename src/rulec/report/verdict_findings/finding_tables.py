@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import IO, Any, TypeAlias
 
 from rulec.report.text.terminal_text import visible
@@ -64,6 +64,23 @@ class CsvWriter:
         text = io.StringIO()
         csv.writer(text, lineterminator="\r\n").writerows(rows)
         self._stream.write(text.getvalue().encode())
+
+
+class RowWriter:
+    """Writes rows of a table as CSV, or as Parquet. Raises RulecError R0706."""
+
+    def __init__(self, form: str, stream: IO[bytes], name: str, columns: Columns) -> None:
+        self._writer = (
+            CsvWriter(stream, columns) if form == "csv" else ParquetWriter(stream, name, columns)
+        )
+
+    def add(self, rows: Iterable[Mapping[str, object]]) -> None:
+        """Write rows."""
+        self._writer.add(FoundInRecording("", "", 0, (), tuple(rows)))
+
+    def close(self) -> None:
+        """Write what comes at the end."""
+        self._writer.close()
 
 
 def _rows(found: FoundInRecording, columns: Columns | None) -> Iterator[list[Any]]:

@@ -1,0 +1,183 @@
+"""``rulec find``: the moments at which a formula holds."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rulec.cli.exit_status import ExitStatus
+from rulec.cli.options import scenario_options
+from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import (
+    STANDARD_OUTPUT,
+    TABLES,
+    Output,
+    endings_of,
+    output_options,
+    refuse_overwriting,
+)
+from rulec.cli.output import answer_lines, output_stream, print_written
+from rulec.diagnostics import RulecError
+from rulec.files import opened
+from rulec.report.findings.diagnostics_text import Complaints
+from rulec.settings import search_path
+
+if TYPE_CHECKING:
+    from rulec.extraction.moment_search import DriveMoments
+    from rulec.rulebook.formula_query import FormulaQuery
+    from rulec.trace.formats.trace_files import Format
+
+FORMATS = {**endings_of("text", "json"), **TABLES}
+
+
+@click.command()
+@click.argument("formula")
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option(
+    "-u",
+    "--use",
+    "vocabulary",
+    default="road",
+    show_default=True,
+    metavar="NAME",
+    help="The vocabulary whose words the formula is in.",
+)
+@shared.rulebook_option(
+    "A rulebook, name or source, whose words, definitions and parameters the formula is in.",
+    required=False,
+)
+@click.option(
+    "--sure", is_flag=True, help="Only what holds for sure, whatever may be true of the unknown."
+)
+@click.option(
+    "--ego",
+    "egos",
+    multiple=True,
+    metavar="ID",
+    help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
+)
+@scenario_options.drives_options
+@scenario_options.recording_or_trace_options
+@output_options(FORMATS, "the moments")
+@shared.at_option
+def command(
+    formula: str,
+    files: tuple[str, ...],
+    vocabulary: str,
+    rulebook: str | None,
+    egos: tuple[str, ...],
+    at: str,
+    to: Output,
+    *,
+    sure: bool,
+    **options: Any,
+) -> int:
+    """List the moments at which FORMULA holds in FILE..., recorded traffic or traces.
+
+    FORMULA is one of the rule language. Its variables stand before it with their types, as in the
+    head of a rule: '(v: vehicle) same_lane(v) and gap(v) < 5 m'. It is asked of every state of
+    every drive, for every choice of different objects; operators of time look back and ahead from
+    there.
+
+    Each moment is said with its drive, its objects, from when to when it is in seconds, and in
+    which states. What is not known for sure is said, too, unless --sure leaves it out.
+
+    Exit status: 0, or 2 if a file or a trace could not be read.
+    """
+    # Formats of recordings, the language and what shows moments, 300 ms: not for --help.
+    from rulec.recordings.recording_inputs import input_files
+    from rulec.report.moments import moment_rows, moments_json
+    from rulec.report.verdict_findings.finding_tables import RowWriter
+    from rulec.rulebook.formula_query import read_query
+
+    inputs = input_files(files)
+    refuse_overwriting((to,), inputs.paths)
+    query = read_query(
+        formula,
+        rulebook=rulebook or "",
+        vocabulary=vocabulary,
+        search_path=search_path(),
+        at=at,
+    )
+    complaints = Complaints()
+    for problem in inputs.problems:
+        complaints.add(problem)
+    tally = moment_rows.MomentTally()
+    complete = not inputs.problems
+
+    def found() -> Iterator[DriveMoments]:
+        nonlocal complete
+        for one in _found(query, inputs.paths, egos, options):
+            if isinstance(one, RulecError):
+                complete = False
+                complaints.add(one)
+                continue
+            if sure:
+                kept = [moment for moment in one.moments if moment.holds == "surely"]
+                one = replace(one, moments=kept)
+            tally.add(one)
+            yield one
+
+    if to.form in ("text", "json", "jsonl"):
+        as_lines = moment_rows.lines if to.form == "text" else moments_json.as_json
+        with answer_lines(to) as write:
+            for drive in found():
+                for line in as_lines(drive):
+                    write(line)
+            if to.form == "text":
+                write(tally.as_text())
+    else:
+        with output_stream(to) as (stream, name):
+            writer = RowWriter(to.form, stream, name, moment_rows.COLUMNS)
+            for drive in found():
+                writer.add(moment_rows.rows(drive))
+            writer.close()
+    print_written(to.path, to)
+    complaints.close()
+    return ExitStatus.after(answered=complete, failed=False)
+
+
+def _found(
+    query: FormulaQuery, paths: tuple[str, ...], egos: tuple[str, ...], options: dict[str, Any]
+) -> Iterator[DriveMoments | RulecError]:
+    """The moments of all drives of all files, and why some could not be read."""
+    # As above: not for --help.
+    from rulec.extraction.moment_search import in_recording, in_trace
+    from rulec.recordings.recording_files import is_recording, read_recordings
+    from rulec.trace.formats.trace_files import format_of, read_chunks
+
+    form: Format | None = scenario_options.trace_format(options)
+    named = options["input_format"] is not None
+    wanted = scenario_options.requested_drives(egos, options, query.vocabulary)
+    source = scenario_options.recording_source("-", options)
+    assumed = scenario_options.assumptions(None, options["assumed"], query.vocabulary)
+    for path in paths:
+        is_stream = path == STANDARD_OUTPUT
+        try:
+            if form is None and (named or (not is_stream and is_recording(path))):
+                for recording in read_recordings(replace(source, path=Path(path))):
+                    yield from in_recording(recording, query, wanted, path)
+                continue
+            if is_stream:
+                chunks = read_chunks(sys.stdin.buffer, "standard input", form or "jsonl")
+                items = [item for chunk in chunks for item in chunk]
+            else:
+                with opened(Path(path)) as stream:
+                    chunks = read_chunks(stream, path, form or format_of(path))
+                    items = [item for chunk in chunks for item in chunk]
+        except RulecError as error:
+            yield error
+            continue
+        for item in items:
+            if isinstance(item, RulecError):
+                yield item
+                continue
+            try:
+                yield in_trace(item, query, assumed, path)
+            except RulecError as error:
+                yield error

@@ -1,0 +1,74 @@
+"""The moments at which a formula holds in recorded drives and in traces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.selection import RequestedDrives, selected_drives
+from rulec.logic.free_names import names_in
+from rulec.monitoring.assumptions import Assumptions
+from rulec.monitoring.moments.formula_moments import Moment, moments
+from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
+from rulec.recordings.recording import Recording
+from rulec.rulebook.formula_query import FormulaQuery
+from rulec.trace import Trace
+from rulec.trace.trace_model import check_trace
+from rulec.value_display import short_repr
+
+
+@dataclass(frozen=True, slots=True)
+class DriveMoments:
+    """The moments of a drive: of a file, a recording in it, and a vehicle or a trace.
+
+    State 0 is ``start_s`` (s), states are ``step_s`` (s) apart.
+    """
+
+    __repr__ = short_repr
+
+    file: str
+    recording: str
+    vehicle: str
+    start_s: float
+    step_s: float
+    moments: Sequence[Moment]
+
+    def time_s(self, state: int) -> float:
+        """The time of a state."""
+        return round(self.start_s + state * self.step_s, 9)
+
+
+def in_recording(
+    recording: Recording, query: FormulaQuery, wanted: RequestedDrives, file: str
+) -> Iterator[DriveMoments]:
+    """The moments of each drive, each vehicle in turn as ego.
+
+    Raises RulecError R0612 for a vehicle that is not there.
+    """
+    selected = selected_drives(
+        recording,
+        wanted,
+        file,
+        traffic=query.traffic,
+        vocabulary=query.vocabulary,
+        names=frozenset(names_in(query.rule.formula)),
+    )
+    for ego in selected.egos:
+        for drive in selected.of(ego):
+            if isinstance(drive, NoDrive):
+                continue
+            arrays = drive.arrays
+            found = moments(arrays, query)
+            yield DriveMoments(file, recording.name, arrays.id, drive.start_s, arrays.step_s, found)
+
+
+def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str) -> DriveMoments:
+    """The moments of a trace. Raises RulecError R0501 to R0506 if it is none, R0407."""
+    trace = assumed.applied(trace) if assumed else trace
+    check_trace(trace)
+    check_objects(trace.objects, query.vocabulary, trace.place)
+    check_told(trace.told, query.vocabulary, trace.place)
+    validator = StateValidator(query.vocabulary, trace.objects)
+    validator.check(trace.states, "state {}".format, trace.place)
+    return DriveMoments(file, "", trace.id, 0.0, trace.step_s, moments(trace, query))

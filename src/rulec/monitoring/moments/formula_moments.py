@@ -1,0 +1,85 @@
+"""The moments at which a formula holds in a trace, for all choices of objects."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from rulec.automata.thresholds import exact_step
+from rulec.diagnostics import RulecError
+from rulec.logic.bounds import NotAMultipleError, in_steps
+from rulec.logic.formula import Formula
+from rulec.monitoring.moments.stretches import Flags, stretches_of
+from rulec.monitoring.moments.trace_truth import FormulaTruth, ReadyFormula, TraceTruth
+from rulec.rulebook.elaborate.rule_messages import no_multiple
+from rulec.rulebook.formula_query import FormulaQuery
+from rulec.trace import Trace
+from rulec.trace.trace_arrays import TraceArrays
+from rulec.value_display import short_repr
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """States ``first`` to ``last`` (both included) in which a formula holds for some objects.
+
+    It does ``surely``, or ``perhaps``: as far as is known. ``objects`` are by the variables' order.
+    """
+
+    __repr__ = short_repr
+
+    objects: Mapping[str, str]
+    first: int
+    last: int
+    holds: Literal["surely", "perhaps"]
+
+
+def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
+    """The moments at which a formula holds in a checked trace, by objects and time.
+
+    A moment is as long as it can be. Of a trace that is cut bounds that are no multiple of its step
+    are rounded down and up: what both say is sure. Raises RulecError R0407 for such bounds else.
+    """
+    roundings = _in_steps(trace, query)
+    truth = TraceTruth(trace, query.vocabulary, query.semantics)
+    n_states = truth.n_states
+    found: dict[tuple[str, ...], list[tuple[FormulaTruth, int]]] = {}
+    for rounded in roundings:
+        for part in truth.of(ReadyFormula(rounded), query.rule.variables):
+            for row in np.flatnonzero(part.possible.any(axis=1)).tolist():
+                found.setdefault(part.choices[row], []).append((part, row))
+    names = [variable.name for variable in query.rule.variables]
+    result = []
+    for choice, rows in found.items():
+        possible = np.any([part.possible[row, :n_states] for part, row in rows], axis=0)
+        sure = np.all([part.sure[row, :n_states] for part, row in rows], axis=0)
+        sure &= len(rows) == len(roundings)
+        objects = dict(zip(names, choice, strict=True))
+        result += sorted(_of_one(objects, sure, possible), key=lambda one: one.first)
+    return result
+
+
+def _of_one(objects: Mapping[str, str], sure: Flags, possible: Flags) -> Iterator[Moment]:
+    kinds: Sequence[tuple[Literal["surely", "perhaps"], Flags]] = (
+        ("surely", sure),
+        ("perhaps", possible & ~sure),
+    )
+    for holds, flags in kinds:
+        stretches = stretches_of(flags[None])
+        for first, last in zip(stretches.first.tolist(), stretches.last.tolist(), strict=True):
+            yield Moment(objects, first, last, holds)
+
+
+def _in_steps(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Formula]:
+    step = exact_step(trace.step_s)
+    try:
+        return [in_steps(query.rule.formula, step)]
+    except NotAMultipleError as error:
+        if trace.ends != "cut":
+            raise RulecError([no_multiple(query.rule, error)]) from None
+        return [
+            in_steps(query.rule.formula, step, rounding) for rounding in (math.floor, math.ceil)
+        ]

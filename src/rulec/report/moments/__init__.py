@@ -1,0 +1,1 @@
+"""Moments at which a formula holds, as text, JSON and tables."""

@@ -1,0 +1,75 @@
+"""Moments as lines of text and as rows of tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from rulec.extraction.moment_search import DriveMoments
+from rulec.report.text.terminal_text import visible
+
+COLUMNS: Mapping[str, type] = {
+    **dict.fromkeys(("file", "recording", "vehicle"), str),
+    "objects": list,
+    "holds": str,
+    **dict.fromkeys(("from_s", "to_s"), float),
+    **dict.fromkeys(("first_state", "last_state"), int),
+}
+"""The columns of tables of moments, with the types of their values; ``objects`` as ``v=car 1``."""
+
+
+def rows(found: DriveMoments) -> Iterator[dict[str, object]]:
+    """A row for each moment."""
+    for one in found.moments:
+        yield {
+            "file": found.file,
+            "recording": found.recording,
+            "vehicle": found.vehicle,
+            "objects": tuple([f"{name}={item}" for name, item in one.objects.items()]),
+            "holds": one.holds,
+            "from_s": found.time_s(one.first),
+            "to_s": found.time_s(one.last),
+            "first_state": one.first,
+            "last_state": one.last,
+        }
+
+
+def lines(found: DriveMoments) -> Iterator[str]:
+    """A line for each moment."""
+    where = found.file
+    if found.recording and found.recording not in found.file:
+        where = f"{found.file}: {found.recording}"
+    for row, one in zip(rows(found), found.moments, strict=True):
+        objects = "".join(f" {name}={item}" for name, item in one.objects.items())
+        when = f"at {row['from_s']:g} s (state {one.first})"
+        if one.last > one.first:
+            when = f"{row['from_s']:g} to {row['to_s']:g} s (states {one.first} to {one.last})"
+        perhaps = "" if one.holds == "surely" else ", perhaps"
+        yield visible(f"{where}: {found.vehicle}{objects}: {when}{perhaps}")
+
+
+@dataclass(slots=True)
+class MomentTally:
+    """How many moments were found, in how many drives of how many."""
+
+    surely: int = 0
+    perhaps: int = 0
+    drives: int = 0
+    with_some: int = 0
+
+    def add(self, found: DriveMoments) -> None:
+        """Count a drive."""
+        surely = sum(one.holds == "surely" for one in found.moments)
+        self.surely += surely
+        self.perhaps += len(found.moments) - surely
+        self.drives += 1
+        self.with_some += bool(found.moments)
+
+    def as_text(self) -> str:
+        """The line that ends the list."""
+        moments = "moment" if self.surely == 1 else "moments"
+        perhaps = f", {self.perhaps:,} more perhaps" if self.perhaps else ""
+        drives = "drive" if self.drives == 1 else "drives"
+        return (
+            f"{self.surely:,} {moments}{perhaps}, in {self.with_some:,} of {self.drives:,} {drives}"
+        )

@@ -1,0 +1,151 @@
+"""``rulec find``: the moments at which a formula holds."""
+
+import csv
+import json
+
+import pyarrow.parquet
+import pytest
+
+from rulec.cli.main import main
+
+BOOK = """
+rulebook streets
+type car
+signal wet default false
+signal near(c: car) default false
+quantity gap(c: car) in m
+param close : length = 5 m
+define too_near(c: car) = near(c) and gap(c) < close
+hard rule r (c: car) { require never too_near(c) }
+"""
+DRIVES = [
+    {
+        "id": "t",
+        "step_s": 0.5,
+        "objects": {"a": "car", "b": "car"},
+        "present": {"b": [1, 3]},
+        "states": [
+            {"near": {"a": True}, "gap": {"a": 4}, "wet": True},
+            {"near": {"a": True, "b": True}, "gap": {"a": 4.5, "b": 9}},
+            {"near": {"a": True, "b": None}, "gap": {"a": 5, "b": 1}},
+            {"near": {"b": True}, "gap": {"a": 1, "b": 1}, "wet": True},
+        ],
+    }
+]
+
+
+@pytest.fixture
+def files(tmp_path):
+    book, drives = tmp_path / "streets.rules", tmp_path / "t.jsonl"
+    book.write_text(BOOK)
+    drives.write_text("".join(f"{json.dumps(drive)}\n" for drive in DRIVES))
+    return str(book), str(drives)
+
+
+def found(files, formula, capsys, *options, status=0):
+    book, drives = files
+    assert main(["find", formula, drives, "-r", book, "--json", *options]) == status
+    lines = map(json.loads, capsys.readouterr().out.splitlines())
+    return [
+        (*one["objects"].values(), one["first_state"], one["last_state"], one["holds"])
+        for one in lines
+    ]
+
+
+FORMULAS = {
+    "(c: car) too_near(c)": [
+        ("a", 0, 1, "surely"),
+        ("b", 2, 2, "perhaps"),
+        ("b", 3, 3, "surely"),
+    ],
+    "wet": [(0, 0, "surely"), (3, 3, "surely")],
+    "wet and next not wet": [(0, 0, "surely")],
+    "eventually[<= 0.5 s] wet": [(0, 0, "surely"), (2, 3, "surely")],
+    "(c: car) previously near(c)": [
+        ("a", 1, 3, "surely"),
+        ("b", 2, 2, "surely"),
+        ("b", 3, 3, "perhaps"),
+    ],
+    "some c: car (near(c) and gap(c) < 2 m)": [(2, 2, "perhaps"), (3, 3, "surely")],
+    "(c: car, d: car) near(c) and gap(d) = 9 m": [("a", "b", 1, 1, "surely")],
+    "never wet": [],
+}
+
+
+@pytest.mark.parametrize("formula", FORMULAS)
+def test_moments_by_hand(files, formula, capsys):
+    assert found(files, formula, capsys) == FORMULAS[formula]
+
+
+def test_only_what_is_sure(files, capsys):
+    moments = found(files, "(c: car) too_near(c)", capsys, "--sure")
+    assert moments == [("a", 0, 1, "surely"), ("b", 3, 3, "surely")]
+
+
+def test_lines_and_times(files, capsys):
+    book, drives = files
+    assert main(["find", "(c: car) too_near(c)", drives, "-r", book]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        f"{drives}: t c=a: 0 to 0.5 s (states 0 to 1)",
+        f"{drives}: t c=b: at 1 s (state 2), perhaps",
+        f"{drives}: t c=b: at 1.5 s (state 3)",
+        "2 moments, 1 more perhaps, in 1 of 1 drive",
+    ]
+
+
+@pytest.mark.parametrize("ending", ["csv", "jsonl", "parquet"])
+def test_tables(files, tmp_path, ending):
+    book, drives = files
+    path = tmp_path / f"moments.{ending}"
+    assert main(["find", "(c: car) too_near(c)", drives, "-r", book, "-o", str(path)]) == 0
+    if ending == "csv":
+        rows = list(csv.DictReader(path.read_text().splitlines()))
+        objects = [row["objects"] for row in rows]
+    elif ending == "jsonl":
+        rows = [json.loads(line) for line in path.read_text().splitlines()]
+        objects = [f"c={row['objects']['c']}" for row in rows]
+    else:
+        rows = pyarrow.parquet.read_table(path).to_pylist()
+        objects = ["; ".join(row["objects"]) for row in rows]
+    assert objects == ["c=a", "c=b", "c=b"]
+    assert [float(row["from_s"]) for row in rows] == [0.0, 1.0, 1.5]
+    assert [int(row["last_state"]) for row in rows] == [1, 2, 3]
+
+
+BAD = {
+    "what is no formula": ("near(", "R0104"),
+    "an unknown name": ("dry", "R0202"),
+    "a variable without a type": ("near(c)", "before the formula"),
+    "a number": ("5 m", "R03"),
+    "a bound between two states": ("eventually[<= 0.7 s] wet", "R0407"),
+    "a second rule": ("wet } hard rule s { require wet", "R0104"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_what_is_wrong_is_said(files, case, capsys):
+    book, drives = files
+    formula, code = BAD[case]
+    assert main(["find", formula, drives, "-r", book]) == 2
+    assert code in capsys.readouterr().err
+
+
+def test_a_trace_that_does_not_fit_is_said_and_others_are_asked(files, tmp_path, capsys):
+    book, drives = files
+    odd = tmp_path / "odd.jsonl"
+    odd.write_text(
+        '{"id": "odd", "states": [{"wet": 7}]}\n{"id": "wet", "states": [{"wet": true}]}'
+    )
+    assert main(["find", "wet", str(odd), drives, "-r", book]) == 2
+    printed = capsys.readouterr()
+    assert "R0503" in printed.err
+    assert "3 moments, in 2 of 2 drives" in printed.out
+
+
+def test_a_vocabulary_by_its_name(tmp_path, capsys):
+    path = tmp_path / "fast.jsonl"
+    path.write_text(
+        '{"states": [{"speed": 60, "built_up": true}, {"speed": 40, "built_up": true}]}'
+    )
+    assert main(["find", "built_up and speed > 50 km/h", str(path)]) == 0
+    assert "at 0 s (state 0)" in capsys.readouterr().out
