@@ -29,6 +29,11 @@ PAST = (
     '"states": [{"position": {"o1": "b", "o2": "b"}, "CONGESTED": true}]}\n'
 )
 
+FOUND = (
+    '{"kind": "drive", "vehicle": "v", "duration_s": 60}\n'
+    '{"kind": "rule", "vehicle": "v", "rule": "stop_sign", "opportunities": 3, "violated": 1}\n'
+)
+
 DOCUMENTS = [
     ("findings", ["check", "WRONG", "--output-format", "json"]),
     ("findings", ["check", "esterle2019", "--output-format", "json"]),
@@ -50,6 +55,7 @@ DOCUMENTS = [
     ),
     ("maneuvers", ["maneuvers", "KERB", "-r", "esterle2019", "--json", "--list", "9", "--worlds"]),
     ("maneuvers", ["maneuvers", RECORDING, "--ego", "g.0", "-r", "esterle2019", "--json"]),
+    ("rates", ["rates", "FOUND", "--by", "country", "--json"]),
     ("show", ["show", "esterle2019", "--json"]),
     ("show", ["show", "esterle2019", "R1", "--json"]),
     ("test", ["test", "esterle2019", "--output-format", "json"]),
@@ -60,6 +66,8 @@ DOCUMENTS = [
 LINES = [
     ("verdict", ["verify", TRACES, "-r", "esterle2019", "--json", "--explain", "1"]),
     ("finding", ["verify", RECORDING, "-r", "de", "--output-format", "jsonl"]),
+    ("exposure", ["verify", RECORDING, "-r", "de", "--output-format", "jsonl", "--exposure"]),
+    ("moment", ["find", "(v: vehicle) behind(v)", RECORDING, "--json"]),
     ("verdict", ["verify", "BROKEN", "-r", "esterle2019", "--json"]),
     ("verdict", ["verify", RECORDING, "-r", "de", "--json", "--explain", "1"]),
     ("state", ["monitor", "esterle2019", "--json"]),
@@ -92,6 +100,7 @@ def run(tmp_path, monkeypatch, capfdbinary):
         "WRONG": ("wrong.rules", WRONG),
         "FAILING": ("failing.rules", WRONG_EXAMPLE),
         "BROKEN": ("broken.jsonl", BROKEN),
+        "FOUND": ("found.jsonl", FOUND),
         "PAST": ("past.jsonl", PAST),
         "KERB": ("kerb.toml", CHILD_AT_THE_KERB),
     }

@@ -60,7 +60,14 @@ def in_recording(
                 continue
             arrays = drive.arrays
             found = moments(arrays, query)
-            yield DriveMoments(file, recording.name, arrays.id, drive.start_s, arrays.step_s, found)
+            yield DriveMoments(
+                file=file,
+                recording=recording.name,
+                vehicle=arrays.id,
+                start_s=drive.start_s,
+                step_s=arrays.step_s,
+                moments=found,
+            )
 
 
 def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str) -> DriveMoments:
@@ -71,4 +78,11 @@ def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str)
     check_told(trace.told, query.vocabulary, trace.place)
     validator = StateValidator(query.vocabulary, trace.objects)
     validator.check(trace.states, "state {}".format, trace.place)
-    return DriveMoments(file, "", trace.id, 0.0, trace.step_s, moments(trace, query))
+    return DriveMoments(
+        file=file,
+        recording="",
+        vehicle=trace.id,
+        start_s=0.0,
+        step_s=trace.step_s,
+        moments=moments(trace, query),
+    )
