@@ -12,7 +12,7 @@ from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.moments.formula_moments import Moment, moments
 from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
 from rulec.recordings.recording import Recording
-from rulec.rulebook.formula_query import FormulaQuery
+from rulec.rulebook.asked_formula import FormulaQuery
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
 from rulec.value_display import short_repr
@@ -71,7 +71,10 @@ def in_recording(
 
 
 def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str) -> DriveMoments:
-    """The moments of a trace. Raises RulecError R0501 to R0506 if it is none, R0407."""
+    """The moments of a trace.
+
+    Raises RulecError R0501 to R0506 if it is none, NotAMultipleError for a bound that does not fit.
+    """
     trace = assumed.applied(trace) if assumed else trace
     check_trace(trace)
     check_objects(trace.objects, query.vocabulary, trace.place)

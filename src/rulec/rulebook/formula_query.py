@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source
+from rulec.logic.bounds import NotAMultipleError
+from rulec.rulebook.asked_formula import FormulaQuery
+from rulec.rulebook.elaborate.rule_messages import no_multiple
 from rulec.rulebook.loader import find, parse_all, parse_rulebook, resolve_trees
-from rulec.rulebook.rulebook_model import Rule, Semantics, Traffic
 from rulec.syntax import parse
 from rulec.syntax.parser import parse_formula
-from rulec.value_display import short_repr
-from rulec.vocabulary import Vocabulary
 
 _HEAD = re.compile(r"\s*(\(\s*\w+\s*(?::\s*\w+\s*)(?:,\s*\w+\s*(?::\s*\w+\s*)?)*\))")
 """Variables with their types, as in the head of a rule; no formula begins so."""
@@ -21,20 +21,9 @@ _HEAD = re.compile(r"\s*(\(\s*\w+\s*(?::\s*\w+\s*)(?:,\s*\w+\s*(?::\s*\w+\s*)?)*
 _NAME = "what_is_asked"
 
 
-@dataclass(frozen=True, slots=True)
-class FormulaQuery:
-    """A formula with its variables, which a ``rule`` has, in the words of a vocabulary.
-
-    ``semantics`` says how a trace ends, ``traffic`` on which side it drives.
-    """
-
-    __repr__ = short_repr
-
-    text: str
-    rule: Rule
-    vocabulary: Vocabulary
-    semantics: Semantics
-    traffic: Traffic
+def bound_between_states(query: FormulaQuery, error: NotAMultipleError) -> RulecError:
+    """The error (R0407) that a bound of the formula is no multiple of a trace's step."""
+    return RulecError([no_multiple(query.rule, error)])
 
 
 def read_query(

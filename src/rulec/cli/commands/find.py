@@ -29,7 +29,7 @@ from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.extraction.moment_search import DriveMoments
-    from rulec.rulebook.formula_query import FormulaQuery
+    from rulec.rulebook.asked_formula import FormulaQuery
     from rulec.trace.formats.trace_files import Format
 
 FORMATS = {**endings_of("text", "json"), **TABLES}
@@ -148,7 +148,9 @@ def _found(
     """The moments of all drives of all files, and why some could not be read."""
     # As above: not for --help.
     from rulec.extraction.moment_search import in_recording, in_trace
+    from rulec.logic.bounds import NotAMultipleError
     from rulec.recordings.recording_files import is_recording, read_recordings
+    from rulec.rulebook.formula_query import bound_between_states
     from rulec.trace.formats.trace_files import format_of, read_chunks
 
     form: Format | None = scenario_options.trace_format(options)
@@ -179,5 +181,7 @@ def _found(
                 continue
             try:
                 yield in_trace(item, query, assumed, path)
+            except NotAMultipleError as misfit:
+                yield bound_between_states(query, misfit)
             except RulecError as error:
                 yield error

@@ -10,13 +10,11 @@ from typing import Literal
 import numpy as np
 
 from rulec.automata.thresholds import exact_step
-from rulec.diagnostics import RulecError
 from rulec.logic.bounds import NotAMultipleError, in_steps
 from rulec.logic.formula import Formula
 from rulec.monitoring.moments.stretches import Flags, stretches_of
 from rulec.monitoring.moments.trace_truth import FormulaTruth, ReadyFormula, TraceTruth
-from rulec.rulebook.elaborate.rule_messages import no_multiple
-from rulec.rulebook.formula_query import FormulaQuery
+from rulec.rulebook.asked_formula import FormulaQuery
 from rulec.trace import Trace
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import short_repr
@@ -41,7 +39,7 @@ def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
     """The moments at which a formula holds in a checked trace, by objects and time.
 
     A moment is as long as it can be. Of a trace that is cut bounds that are no multiple of its step
-    are rounded down and up: what both say is sure. Raises RulecError R0407 for such bounds else.
+    are rounded down and up: what both say is sure. Raises NotAMultipleError for such bounds else.
     """
     roundings = _in_steps(trace, query)
     truth = TraceTruth(trace, query.vocabulary, query.semantics)
@@ -77,9 +75,9 @@ def _in_steps(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Formula]:
     step = exact_step(trace.step_s)
     try:
         return [in_steps(query.rule.formula, step)]
-    except NotAMultipleError as error:
+    except NotAMultipleError:
         if trace.ends != "cut":
-            raise RulecError([no_multiple(query.rule, error)]) from None
+            raise
         return [
             in_steps(query.rule.formula, step, rounding) for rounding in (math.floor, math.ceil)
         ]

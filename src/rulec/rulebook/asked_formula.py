@@ -1,0 +1,25 @@
+"""A formula that is asked of traces, with the words that it is in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rulec.rulebook.rulebook_model import Rule, Semantics, Traffic
+from rulec.value_display import short_repr
+from rulec.vocabulary import Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class FormulaQuery:
+    """A formula with its variables, which a ``rule`` has, in the words of a vocabulary.
+
+    ``semantics`` says how a trace ends, ``traffic`` on which side it drives.
+    """
+
+    __repr__ = short_repr
+
+    text: str
+    rule: Rule
+    vocabulary: Vocabulary
+    semantics: Semantics
+    traffic: Traffic
