@@ -2,5 +2,8 @@
 
 from rulec.fleet.finding_columns import arrow_schema as arrow_schema
 from rulec.fleet.fleet_judge import FleetJudge as FleetJudge
+from rulec.fleet.runs.fleet_run import FleetRun as FleetRun
+from rulec.fleet.runs.fleet_run import FleetSettings as FleetSettings
+from rulec.fleet.runs.fleet_run import run_fleet as run_fleet
 
-__all__ = ["FleetJudge", "arrow_schema"]
+__all__ = ["FleetJudge", "FleetRun", "FleetSettings", "arrow_schema", "run_fleet"]

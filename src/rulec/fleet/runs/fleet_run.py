@@ -45,8 +45,8 @@ class FleetSettings:
 
     __repr__ = short_repr
 
-    wanted: RequestedDrives
-    source: RecordingSource
+    wanted: RequestedDrives = field(default_factory=RequestedDrives)
+    source: RecordingSource = field(default_factory=lambda: RecordingSource(Path("-")))
     ends: Ending | None = None
     engine: EngineName = "local"
     jobs: Jobs = field(default_factory=lambda: Jobs(1))
