@@ -157,7 +157,9 @@ def _own_part(entry: MapLanelet, line: Points) -> Points:
     # Lines that are next to nothing long make GEOS divide by that
     with np.errstate(all="ignore"):
         ends: Points = shapely.get_coordinates(shapely.shortest_line(bounds, whole))[1::2]
-    return ends if np.hypot(*(ends[1] - ends[0])) > _SHORTEST_M else line
+    # And it then may find no place on one of them
+    found = len(ends) == len(bounds) and np.hypot(*(ends[1] - ends[0])) > _SHORTEST_M
+    return ends if found else line
 
 
 def nearest_line(entry: MapLanelet, lines: list[Points]) -> Points | None:
