@@ -123,6 +123,25 @@ def test_who_is_level_to_within_a_tolerance_has_no_station(name, x, station, kno
     assert found.unknown["station"][0, 0] == (not known)
 
 
+@pytest.mark.parametrize(
+    ("xs", "known"),
+    [
+        # Ego's front is level with the other's rear at 4; it passes, only the moment is in doubt
+        ((4.2, 4.03, 3.97, 3.8), (True, True, True, True)),
+        # It is not known whether it ever came beside
+        ((4.2, 4.03, 3.97, 4.03, 4.2), (True, False, False, False, True)),
+        # What was before, and what comes
+        ((4.03, 4.2), (False, True)),
+        ((3.8, 3.97), (True, False)),
+    ],
+)
+def test_who_passes_has_a_station_all_along(xs, known):
+    other = vehicle(8, {k: (10.0 * k + x, 4) for k, x in enumerate(xs)}, speed=10.0)
+    ego = vehicle(7, {k: (10.0 * k, 0) for k in range(len(xs))}, speed=10.0)
+    found = participant_signals(context_of(of_source("ZAM", ego, other)))
+    assert tuple(~found.unknown["station"][0]) == known
+
+
 def test_overtaking_that_hangs_on_a_tolerance_is_unknown():
     # 96 m behind at 9.55 m/s more is 10.05 s; at 9 m/s more it is clearly longer
     for mps, known in ((10.45, False), (11.0, True), (10.0, True)):

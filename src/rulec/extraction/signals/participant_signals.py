@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy import intp
+from numpy import int8, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
@@ -42,10 +42,25 @@ def _position(context: DriveContext) -> SignalColumns:
 
 def _station(context: DriveContext) -> SignalColumns:
     station, others = relations.station(context), relations.possible_stations(context)
+    doubtful = np.logical_or.reduce([station != codes for codes in others])
     return SignalColumns(
         about={"station": named_values(station, STATIONS)},
-        unknown={"station": np.logical_or.reduce([station != codes for codes in others])},
+        unknown={
+            "station": doubtful & ~_passing(station, ~doubtful & ~np.isnan(context.extents.s_min))
+        },
     )
+
+
+def _passing(codes: NDArray[int8], sure: Flags) -> Flags:
+    """Flags of states (columns) between sure ones of different codes: only when is in doubt."""
+    n_states = codes.shape[-1]
+    before = latest(sure)
+    behind = n_states - 1 - latest(sure[:, ::-1])[:, ::-1]
+    known = (before >= 0) & (behind < n_states)
+    rows = np.arange(len(codes))[:, None]
+    ends = codes[rows, before], codes[rows, np.minimum(behind, n_states - 1)]
+    passing: Flags = known & (ends[0] != ends[1])
+    return passing
 
 
 def _lateral(context: DriveContext) -> SignalColumns:
