@@ -45,6 +45,7 @@ def test_every_task_of_the_list_is_there(ready):
         "long",
         "coverage",
         "bench",
+        "mutations",
         "worlds",
         "docs",
         "regenerate",

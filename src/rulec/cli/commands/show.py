@@ -87,8 +87,8 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
     if Path(reference).suffix != ".json":
         return rulec.Session(search_path(), at).load_rulebook(reference), None
     compiled = read_compiled(Path(reference))
-    # What a compiled rule has besides is its automaton, and the one step that this is for.
-    names = {field.name for field in fields(CompiledRule)} - {"machine", "hoa", "step_s"}
+    # What a compiled rule has besides is what it was compiled into.
+    names = {field.name for field in fields(CompiledRule)} & {field.name for field in fields(Rule)}
     rules = [Rule(**{name: getattr(rule, name) for name in names}) for rule in compiled.rules]
     in_books = tuple(replace(rule, book=rule.book or compiled.name) for rule in rules)
     return Rulebook(compiled.name, compiled.vocabulary, in_books), compiled
