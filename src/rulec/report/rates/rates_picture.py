@@ -1,8 +1,7 @@
 """A forest plot of rates: a row for each rule, a mark for its rate, lines for its intervals.
 
 Lewis and Clarke, "Forest plots: trying to see the wood and the trees" (2001). Rates are on a
-logarithmic axis, since they differ by orders of magnitude; what reaches down to none has an open
-end on the left.
+logarithmic axis, since they differ by orders of magnitude; beside it on the left is 0.
 """
 
 from __future__ import annotations
@@ -35,6 +34,8 @@ _BESIDE = 5.0
 _HEAD = 30.0
 _FOOT = 26.0
 _LONGEST_NAME = 380.0
+_TO_ZERO = 28.0
+"""How far 0 is left of the least power of ten."""
 _MOST_DECADES = 6
 
 
@@ -50,7 +51,7 @@ def rates_drawing(rates: ViolationRates, per: str) -> Drawing:
     percent = f"{100 * rates.confidence:g} %"
     title = (
         f"Violations {PER[per]} by {books}: {rates.drives:,} drives; {percent} intervals, "
-        "above for independent opportunities, below over drives"
+        "above for independent opportunities, below over drives; two boxes: the least and the most"
     )
     return Drawing(title, [_forest(title, rates, shown)], None)
 
@@ -58,7 +59,7 @@ def rates_drawing(rates: ViolationRates, per: str) -> Drawing:
 def _forest(title: str, rates: ViolationRates, shown: Sequence[tuple[RuleRates, Rate]]) -> Picture:
     height = _HEAD + _ROW * max(len(shown), 1) + _FOOT
     names = [_name(rule, rates) for rule, _ in shown]
-    left = MARGIN + min(text_width(names), _LONGEST_NAME) + MARGIN
+    left = MARGIN + min(text_width(names), _LONGEST_NAME) + MARGIN + _TO_ZERO
     values = [value for _, rate in shown for value in _values(rate) if value > 0]
     if not values:
         nothing = LabelText("no rule was put to the test", (MARGIN, _HEAD))
@@ -67,14 +68,16 @@ def _forest(title: str, rates: ViolationRates, shown: Sequence[tuple[RuleRates, 
     scale = (WIDTH - 2 * MARGIN - left) / (high - low)
 
     def across(value: float) -> float:
-        return left + scale * (min(max(log10(value), low), high) - low if value > 0 else 0.0)
+        if value <= 0:
+            return left - _TO_ZERO
+        return left + scale * (min(max(log10(value), low), high) - low)
 
     bottom = height - _FOOT
     marks: list[Mark] = []
-    for decade in range(low, high + 1):
-        x = across(10.0**decade)
+    for value in (0.0, *(10.0**decade for decade in range(low, high + 1))):
+        x = across(value)
         marks.append(Polyline(((x, _HEAD / 2), (x, bottom)), "unsaid"))
-        marks.append(LabelText(f"{10.0**decade:g}", (x, bottom + _FOOT / 2), "middle", "faint"))
+        marks.append(LabelText(f"{value:g}", (x, bottom + _FOOT / 2), "middle", "faint"))
     for place, ((_, rate), name) in enumerate(zip(shown, names, strict=True)):
         y = _HEAD + _ROW * (place + 0.5)
         marks.append(LabelText(_shortened(name), (MARGIN, y)))
@@ -87,9 +90,8 @@ def _row(rate: Rate, y: float, place: Callable[[float], float]) -> Iterator[Mark
     if rate.bootstrap is not None:
         yield from _bar(rate.bootstrap, y + _BESIDE, "rejected", place, "over drives")
     for value in {rate.least, rate.most}:
-        if value > 0:
-            tip = f"{number(rate.least)} to {number(rate.most)}"
-            yield filled(centred((place(value), y), 3.0, 8.0), "own", tip)
+        tip = f"{number(rate.least)} to {number(rate.most)}"
+        yield filled(centred((place(value), y), 3.0, 8.0), "own", tip)
 
 
 def _bar(
@@ -99,8 +101,7 @@ def _bar(
     tip = f"{what}: {number(low)} to {number(high)}"
     yield Polyline(((place(low), y), (place(high), y)), style, tip)
     for end in (low, high):
-        if end > 0:
-            yield Polyline(((place(end), y - 3), (place(end), y + 3)), style)
+        yield Polyline(((place(end), y - 3), (place(end), y + 3)), style)
 
 
 def _values(rate: Rate) -> Iterator[float]:
