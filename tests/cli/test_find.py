@@ -7,6 +7,8 @@ import pyarrow.parquet
 import pytest
 
 from rulec.cli.main import main
+from rulec.trace.formats import trace_files
+from rulec.trace.formats.trace_files import read_chunks
 
 BOOK = """
 rulebook streets
@@ -149,3 +151,21 @@ def test_a_vocabulary_by_its_name(tmp_path, capsys):
     )
     assert main(["find", "built_up and speed > 50 km/h", str(path)]) == 0
     assert "at 0 s (state 0)" in capsys.readouterr().out
+
+
+def test_traces_are_asked_while_they_are_read(files, monkeypatch, capsys):
+    """A second chunk is read only after what the first one holds has been told."""
+
+    def chunks(stream, file, form):
+        told.append(capsys.readouterr().out)
+        (chunk,) = read_chunks(stream, file, form)
+        yield chunk
+        told.append(capsys.readouterr().out)
+
+    told = []
+    monkeypatch.setattr(trace_files, "read_chunks", chunks)
+    book, drives = files
+    assert main(["find", "wet", drives, "-r", book]) == 0
+    before, after = told
+    assert not before
+    assert "state 0" in after

@@ -318,6 +318,21 @@ def test_parquet_that_is_refused(data, words):
     assert words in problem(data, "parquet").message
 
 
+@pytest.mark.parametrize("as_codes", [False, True])
+def test_parquet_with_a_text_that_is_not_utf8(as_codes):
+    names = pyarrow.array(["t0", "t1", "tQQ", "t3"])
+    data = table(trace=names.dictionary_encode() if as_codes else names, step=[0, 0, 0, 0])
+    # Who knows whether the second trace would have gone on there?
+    first, bad = read(data.replace(b"tQQ", b"t\xff\xfe"), "parquet")
+    assert first.id == "t0"
+    (found,) = bad.diagnostics
+    assert found.message == "the column `trace` has a text here that is not UTF-8"
+    assert found.place.line == 3
+    data = table(trace=["t"], step=[0], speQQ=[1]).replace(b"eQQ", b"e\xff\xfe")
+    named = problem(data, "parquet")
+    assert named.message == "there is a column with a name that is not UTF-8"
+
+
 def test_a_parquet_file_that_is_cut_off():
     whole = table(trace=["t"] * 3, step=[0, 1, 2])
     for size in range(4, len(whole)):

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +30,9 @@ from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.extraction.moment_search import DriveMoments
+    from rulec.monitoring.assumptions import Assumptions
     from rulec.rulebook.asked_formula import FormulaQuery
+    from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
 
 FORMATS = {**endings_of("text", "json"), **TABLES}
@@ -147,10 +150,8 @@ def _found(
 ) -> Iterator[DriveMoments | RulecError]:
     """The moments of all drives of all files, and why some could not be read."""
     # As above: not for --help.
-    from rulec.extraction.moment_search import in_recording, in_trace
-    from rulec.logic.bounds import NotAMultipleError
+    from rulec.extraction.moment_search import in_recording
     from rulec.recordings.recording_files import is_recording, read_recordings
-    from rulec.rulebook.formula_query import bound_between_states
     from rulec.trace.formats.trace_files import format_of, read_chunks
 
     form: Format | None = scenario_options.trace_format(options)
@@ -167,21 +168,34 @@ def _found(
                 continue
             if is_stream:
                 chunks = read_chunks(sys.stdin.buffer, "standard input", form or "jsonl")
-                items = [item for chunk in chunks for item in chunk]
-            else:
-                with opened(Path(path)) as stream:
-                    chunks = read_chunks(stream, path, form or format_of(path))
-                    items = [item for chunk in chunks for item in chunk]
+                yield from _in_traces(chunks, query, assumed, path)
+                continue
+            with opened(Path(path)) as stream:
+                chunks = read_chunks(stream, path, form or format_of(path))
+                yield from _in_traces(chunks, query, assumed, path)
         except RulecError as error:
             yield error
+
+
+def _in_traces(
+    chunks: Iterable[Sequence[Trace | RulecError]],
+    query: FormulaQuery,
+    assumed: Assumptions,
+    path: str,
+) -> Iterator[DriveMoments | RulecError]:
+    """The moments of traces, a chunk of them in memory at a time."""
+    # As above: not for --help.
+    from rulec.extraction.moment_search import in_trace
+    from rulec.logic.bounds import NotAMultipleError
+    from rulec.rulebook.formula_query import bound_between_states
+
+    for item in chain.from_iterable(chunks):
+        if isinstance(item, RulecError):
+            yield item
             continue
-        for item in items:
-            if isinstance(item, RulecError):
-                yield item
-                continue
-            try:
-                yield in_trace(item, query, assumed, path)
-            except NotAMultipleError as misfit:
-                yield bound_between_states(query, misfit)
-            except RulecError as error:
-                yield error
+        try:
+            yield in_trace(item, query, assumed, path)
+        except NotAMultipleError as misfit:
+            yield bound_between_states(query, misfit)
+        except RulecError as error:
+            yield error

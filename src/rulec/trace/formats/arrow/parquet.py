@@ -54,8 +54,10 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     except RulecError as error:
         yield [error]
         return
+    except UnicodeDecodeError:
+        yield [_no_utf8("there is a column with a name", SourceLocation(file))]
+        return
     except (pyarrow.ArrowException, OSError, ValueError) as reason:
-        # Names of columns that are no UTF-8 are a ValueError
         yield [_unreadable("the file", reason, file)]
         return
     from rulec.trace.formats.arrow.arrow_blocks import cut  # loads Arrow, 0.1 s
@@ -71,10 +73,60 @@ def _pieces(
     number = 0
     try:
         for batch in source.iter_batches(_ROWS_AT_ONCE):
+            found = _first_no_text(batch)
+            if found is not None:
+                row, column = found
+                yield _rows_before(row, batch)
+                yield _no_utf8(
+                    f"the column `{column}` has a text here", SourceLocation(file, number + row + 1)
+                )
+                return
             yield batch
             number += len(batch)
     except problems as reason:
         yield _unreadable(f"after row {number} the file", reason, file)
+
+
+def _first_no_text(batch: Any) -> tuple[int, str] | None:
+    """The first row with a text that is not UTF-8, counted from 0, and its column."""
+    columns = zip(batch.schema.names, batch.columns, strict=True)
+    found = [(_first_that_fails(column), name) for name, column in columns if not _is_valid(column)]
+    return min(found, default=None)
+
+
+def _is_valid(column: Any) -> bool:
+    try:
+        column.validate(full=True)
+    except ValueError:  # Arrow's error is one
+        return False
+    return True
+
+
+def _first_that_fails(column: Any) -> int:
+    """The first row whose text cannot be told; 0 if only a dictionary has such a text."""
+    first, last = 0, len(column)
+    while first < last:
+        middle = (first + last) // 2
+        try:
+            column.slice(first, middle - first + 1).to_pylist()
+            first = middle + 1
+        except UnicodeDecodeError:
+            last = middle
+    return first if first < len(column) else 0
+
+
+def _rows_before(row: int, batch: Any) -> Any:
+    """The rows before one, without what their dictionaries have for others."""
+    columns = [
+        # Codes are those of Parquet, which are Arrow's own.
+        column.dictionary_decode().dictionary_encode() if hasattr(column, "indices") else column
+        for column in batch.slice(0, row).columns
+    ]
+    return type(batch).from_arrays(columns, schema=batch.schema)
+
+
+def _no_utf8(what: str, place: SourceLocation) -> RulecError:
+    return problem(f"{what} that is not UTF-8", place, "write the file's texts in UTF-8")
 
 
 def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
