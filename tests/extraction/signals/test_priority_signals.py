@@ -88,6 +88,26 @@ def test_one_that_would_have_come_at_once_was_held_up():
     assert found.world["conflict_from_right"][3]
 
 
+@pytest.mark.parametrize(("at_1_s", "conflict"), [(-30, False), (-26, True)])
+def test_one_that_speeds_up_when_ego_has_entered_was_not_held_up(at_1_s, conflict):
+    """Ego drives in at 1 s and is past its way at 2.5 s; the other one comes 1.5 s later.
+
+    At 2 s it is 12 m away, 0.9 s at 14 m/s. At 1 s it was 27 m away, or 23, and at 10 m/s.
+    """
+    long = [
+        straight(1, -60, -14, successors=(2,)),
+        straight(2, -14, 4, predecessors=(1,), successors=(3,), types=INSIDE, junction="x"),
+        EAST[2],
+    ]
+    ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
+    times, places = [0, 1.5, 2, 2.5, 3.8], [at_1_s - 10, at_1_s + 5, -15, -11, -3]
+    ways = np.interp(np.arange(16) / 2, times, places)
+    other = vehicle(8, {k: (0, ways[k]) for k in STEPS}, speed=10, heading=np.pi / 2)
+    found = replace(recording([*long, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
+    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    assert signals.world["conflict_from_right"].any() == conflict
+
+
 @pytest.mark.parametrize(("front", "conflict"), [(-1.3, False), (-0.2, True)])
 def test_who_stops_too_far_ahead_lets_one_pass_unless_it_runs_into_it(front, conflict):
     """Their ways meet from 1.6 m before the other's middle on; its body begins 1 m before that."""

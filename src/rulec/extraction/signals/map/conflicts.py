@@ -110,7 +110,17 @@ def _held_up(
     way = passages.travelled[other.row, comes] - passages.travelled[other.row, columns]
     speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
     soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
-    return (int(columns[soon.argmax()]), leaves is not None) if soon[-1] else None
+    decides = min(max(_decides(context, own, enters) - first, 0), len(soon) - 1)
+    # Who speeds up when ego is in the junction already was not held up by its driving in
+    held_up = bool(soon[decides] and soon[-1])
+    return (int(columns[soon.argmax()]), leaves is not None) if held_up else None
+
+
+def _decides(context: DriveContext, own: Passage, enters: int) -> int:
+    """The last column in which ego could wait: it drives into the junction, or on within it."""
+    speed = context.surroundings.passages.tracks.speed[own.row, own.first : enters + 1]
+    waits = np.flatnonzero(speed < _DRIVES_MPS)
+    return min(own.first, enters) + (int(waits[-1]) if len(waits) else 0)
 
 
 def _drives_on(context: DriveContext, own: Passage, comes: int) -> bool:
