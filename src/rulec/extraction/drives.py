@@ -6,12 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy import intp
-from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import drive_context
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_trace
-from rulec.extraction.tracks.driven_road import DrivenRoad, driven_road, junction_lanelets
+from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads, junction_lanelets
 from rulec.extraction.tracks.driven_route import RouteStretch, route_stretches
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.map_matching import MapMatching
@@ -22,7 +20,7 @@ from rulec.extraction.tracks.road_extents import (
 )
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks, tracks_of
+from rulec.extraction.tracks.tracks import Flags, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.recordings.recording import Recording, Side
 
@@ -60,12 +58,13 @@ class Drives:
         self._writer = writer
         self._side: Side = side
         self._tracks = tracks_of(recording, thresholds)
-        self._junctions = junction_lanelets(recording)
+        self._driven_roads = DrivenRoads(recording, junction_lanelets(recording))
         self._graph = LaneletGraph(recording)
         self._matching = MapMatching(recording, self._tracks, self._graph)
         self._numbers = {name: number for number, name in enumerate(recording.lanelets)}
         self._surroundings = Surroundings(recording, self._tracks)
-        self._roads: dict[tuple[str, ...], RoadPlaces | DrivenRoad | str] = {}
+        self._roads: dict[tuple[str, ...], tuple[DrivenRoad, int] | str] = {}
+        self._places: dict[DrivenRoad, RoadPlaces] = {}
 
     def egos(self) -> tuple[str, ...]:
         """The participants that move and steer, in the order of the file."""
@@ -105,22 +104,45 @@ class Drives:
         laid_out = self._road(stretch.route)
         if isinstance(laid_out, str):
             return NoDrive(ego, laid_out)
-        places, columns = laid_out, slice(stretch.first, stretch.last + 1)
-        if isinstance(places, DrivenRoad):
-            places = self._places_during(places, row, stretch)
+        road, first_piece = laid_out
+        columns = slice(stretch.first, stretch.last + 1)
+        if self._tracks.present.size <= MOST_PLACES and not road.meets_itself:
+            places = self._places_on(road)
+        else:
+            places = self._places_during(road, first_piece, row, stretch)
             row, columns = int(np.searchsorted(places.tracks.rows, row)), slice(0, None)
         if np.isnan(places.extents.s[row, columns]).any():
             return NoDrive(ego, "it is far from its road for a while")
         context = drive_context(self._surroundings, places, self._side, row, columns)
         return to_trace(context, ego, name, self._writer)
 
-    def _places_during(self, road: DrivenRoad, row: int, stretch: RouteStretch) -> RoadPlaces:
-        """The places on a road of those who are there during a drive of one of them."""
+    def _places_on(self, road: DrivenRoad) -> RoadPlaces:
+        """The places of everybody on a road."""
+        if road not in self._places:
+            extents = road_extents(self._tracks, road)
+            self._places[road] = RoadPlaces(
+                road, self._tracks, extents, self._thresholds, self._elsewhere(road)
+            )
+        return self._places[road]
+
+    def _places_during(
+        self, road: DrivenRoad, first_piece: int, row: int, stretch: RouteStretch
+    ) -> RoadPlaces:
+        """The places on a road of those who are there during a drive of one of them.
+
+        ``first_piece`` is the road's that the drive begins in.
+        """
         columns = slice(stretch.first, stretch.last + 1)
         rows = self._tracks.present[:, columns].any(axis=1).nonzero()[0]
         tracks, lanelets = self._tracks.part(rows, columns), self._matching.lanelets[rows, columns]
-        row = int(np.searchsorted(rows, row))
-        extents = road_extents(tracks, road, self._expected(tracks, road, row, stretch, lanelets))
+        expected = None
+        if road.meets_itself:
+            own = [column - stretch.first for column in stretch.columns]
+            pieces = [first_piece + piece for piece in stretch.pieces]
+            ego = EgoPieces(int(np.searchsorted(rows, row)), own, pieces, self._numbers)
+            reach_m = self._thresholds.near_m + _LONGEST_M
+            expected = expected_places(tracks, road, ego, lanelets, reach_m)
+        extents = road_extents(tracks, road, expected)
         elsewhere = self._elsewhere(road)[rows, columns]
         return RoadPlaces(road, tracks, extents, self._thresholds, elsewhere)
 
@@ -135,33 +157,11 @@ class Drives:
     def _numbers_along(self, road: DrivenRoad) -> list[int]:
         return [self._numbers[one.id] for row in road.rows for one in row if one is not None]
 
-    def _expected(
-        self,
-        tracks: Tracks,
-        road: DrivenRoad,
-        row: int,
-        stretch: RouteStretch,
-        lanelets: NDArray[intp],
-    ) -> tuple[Floats, Floats] | None:
-        if not road.meets_itself:
-            return None
-        columns = [column - stretch.first for column in stretch.columns]
-        pieces = [road.first_piece + piece for piece in stretch.pieces]
-        ego = EgoPieces(row, columns, pieces, self._numbers)
-        reach_m = self._thresholds.near_m + _LONGEST_M
-        return expected_places(tracks, road, ego, lanelets, reach_m)
-
-    def _road(self, route: tuple[str, ...]) -> RoadPlaces | DrivenRoad | str:
-        """The road of a route with everybody's places, alone if there are too many of them."""
+    def _road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, int] | str:
+        """The road of a route, and the piece that this begins in."""
         if route not in self._roads:
             try:
-                road = driven_road(self.recording, route, self._junctions)
-                shared = self._tracks.present.size <= MOST_PLACES and not road.meets_itself
-                self._roads[route] = self._places(road) if shared else road
+                self._roads[route] = self._driven_roads.along(route)
             except ValueError as reason:
                 self._roads[route] = f"its road makes no sense, {reason}"
         return self._roads[route]
-
-    def _places(self, road: DrivenRoad) -> RoadPlaces:
-        tracks, extents = self._tracks, road_extents(self._tracks, road)
-        return RoadPlaces(road, tracks, extents, self._thresholds, self._elsewhere(road))

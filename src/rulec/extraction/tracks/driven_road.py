@@ -48,14 +48,13 @@ class DrivenRoad:
 
     Piece ``i`` lies from ``borders[i]`` to ``borders[i + 1]``; ``rows[i]`` are the lanelets beside
     each other there, a lane each, from the right, None where the map has none; ``own_lanes[i]`` is
-    the one along which the road leads. ``first_piece`` is the first that ego drove. ``crossings``
-    are pedestrian crossings and ``junctions`` junctions, from where to where along the road.
-    ``meets_itself``: is a place beside several pieces, as on a ring?
+    the one along which the road leads. ``crossings`` are pedestrian crossings and ``junctions``
+    junctions, from where to where along the road. ``meets_itself``: is a place beside several
+    pieces, as on a ring?
     """
 
     rows: tuple[tuple[Lanelet | None, ...], ...]
     own_lanes: tuple[int, ...]
-    first_piece: int
     borders: Floats
     line: ReferenceLine
     lanes: Lanes
@@ -91,46 +90,100 @@ class DrivenRoad:
         return pieces_at(self.borders, s)
 
 
-def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
-    """The road of a chain of lanelets, extended straight at both ends.
+@dataclass(frozen=True, eq=False, slots=True)
+class _Layout:
+    """A road, the lanelets of its pieces, and how many lanes left of the first one's each begins.
 
-    ``junctions`` are the lanelets that lie in one. Raises ValueError: its lanes cannot be laid out
-    along a line.
+    The ``own_lanes`` of the road are not known yet.
     """
-    behind, ahead = roads_beyond(recording, way)
 
-    def beside(start: str, end: str) -> bool:
-        return any(end in lanes_beside(recording, start, left=left) for left in (True, False))
+    pieces: tuple[tuple[str, ...], ...]
+    numbers: tuple[int, ...]
+    borders: Floats
+    line: ReferenceLine
+    lanes: Lanes
 
-    driven = pieces_of(recording, way, beside)
-    pieces = (*((number,) for number in behind), *driven, *((number,) for number in ahead))
-    entries = tuple(piece[0] for piece in pieces)
-    lanelets = tuple(recording.lanelets[number] for number in entries)
+
+class DrivenRoads:
+    """The roads of a recording's drives, those that lead along the same lanelets laid out once.
+
+    ``junctions`` are the lanelets that lie in one.
+    """
+
+    def __init__(self, recording: Recording, junctions: Set[str]) -> None:
+        self._recording = recording
+        self._junctions = junctions
+        self._layouts: dict[tuple[tuple[str, ...], ...], _Layout] = {}
+        self._roads: dict[tuple[_Layout, tuple[int, ...]], DrivenRoad] = {}
+
+    def along(self, way: Sequence[str]) -> tuple[DrivenRoad, int]:
+        """The road of a chain of lanelets, extended straight at both ends; where it enters this.
+
+        That is the number of the chain's first piece. Raises ValueError: its lanes cannot be laid
+        out along a line.
+        """
+        behind, ahead = roads_beyond(self._recording, way)
+        driven = pieces_of(self._recording, way, self._beside)
+        pieces = (*((number,) for number in behind), *driven, *((number,) for number in ahead))
+        if pieces not in self._layouts:
+            self._layouts[pieces] = _layout(self._recording, pieces)
+        layout, first = self._layouts[pieces], len(behind)
+        # Lanes are told apart in the middle of what is driven
+        key = layout, _own_lanes(layout, first, first + len(driven))
+        if key not in self._roads:
+            self._roads[key] = self._road(*key)
+        return self._roads[key], first
+
+    def _beside(self, start: str, end: str) -> bool:
+        return any(end in lanes_beside(self._recording, start, left=left) for left in (True, False))
+
+    def _road(self, layout: _Layout, own_lanes: tuple[int, ...]) -> DrivenRoad:
+        recording, borders = self._recording, layout.borders
+        entries = [piece[0] for piece in layout.pieces]
+        count = layout.lanes.there.shape[1]
+        return DrivenRoad(
+            rows=tuple(
+                _row(recording, number, lane, count)
+                for number, lane in zip(entries, own_lanes, strict=True)
+            ),
+            own_lanes=own_lanes,
+            borders=borders,
+            line=layout.line,
+            lanes=layout.lanes,
+            crossings=tuple(
+                crossings_along(recording, layout.line, layout.lanes, 0.0, layout.line.length)
+            ),
+            junctions=tuple(runs_along(borders, [number in self._junctions for number in entries])),
+            meets_itself=_meets_itself([recording.lanelets[number] for number in entries], borders),
+        )
+
+
+def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
+    """The road of one chain of lanelets, as ``DrivenRoads`` has it."""
+    road, _ = DrivenRoads(recording, junctions).along(way)
+    return road
+
+
+def _layout(recording: Recording, pieces: tuple[tuple[str, ...], ...]) -> _Layout:
+    entries = [piece[0] for piece in pieces]
+    lanelets = [recording.lanelets[number] for number in entries]
     line = reference_line(smoothed(np.concatenate([_middle(recording, piece) for piece in pieces])))
     borders = borders_along(lanelets, line)
-    first = len(behind)
-    middle = float(borders[first] + borders[first + len(driven)]) / 2
-    numbers = _lane_numbers(recording, pieces)
-    lanes = lanes_along(recording, entries, line, middle, numbers)
-    probed = _straight_piece(pieces, int(pieces_at(borders, np.array(middle))))
+    numbers = tuple(_lane_numbers(recording, pieces))
+    lanes = lanes_along(recording, entries, line, float(borders[0] + borders[-1]) / 2, numbers)
+    return _Layout(pieces, numbers, borders, line, lanes)
+
+
+def _own_lanes(layout: _Layout, first: int, end: int) -> tuple[int, ...]:
+    """The lane of each piece, by where the middle of some pieces is between the lanes' bounds."""
+    borders = layout.borders
+    middle = float(borders[first] + borders[end]) / 2
+    probed = _straight_piece(layout.pieces, int(pieces_at(borders, np.array(middle))))
     place = middle if borders[probed] <= middle <= borders[probed + 1] else borders[probed]
-    count = lanes.there.shape[1]
-    own = int((lanes.from_bounds(np.array([[place, 0.0]])) > 0).sum()) - 1 - numbers[probed]
-    own_lanes = tuple(int(np.clip(own + number, 0, count - 1)) for number in numbers)
-    return DrivenRoad(
-        rows=tuple(
-            _row(recording, number, lane, count)
-            for number, lane in zip(entries, own_lanes, strict=True)
-        ),
-        own_lanes=own_lanes,
-        first_piece=first,
-        borders=borders,
-        line=line,
-        lanes=lanes,
-        crossings=tuple(crossings_along(recording, line, lanes, 0.0, line.length)),
-        junctions=tuple(runs_along(borders, [number in junctions for number in entries])),
-        meets_itself=_meets_itself(lanelets, borders),
-    )
+    left_of = layout.lanes.from_bounds(np.array([[place, 0.0]]))
+    own = int((left_of > 0).sum()) - 1 - layout.numbers[probed]
+    last = layout.lanes.there.shape[1] - 1
+    return tuple(int(np.clip(own + number, 0, last)) for number in layout.numbers)
 
 
 def _middle(recording: Recording, piece: Sequence[str]) -> Points:
