@@ -6,8 +6,8 @@ import gzip
 import os
 import stat
 import zlib
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from errno import EACCES, EISDIR
 from io import SEEK_CUR, SEEK_END, BufferedReader, RawIOBase
 from pathlib import Path
@@ -41,20 +41,48 @@ def written_whole(path: Path) -> Iterator[IO[bytes]]:
 
     Raises RulecError: R0702 if the file cannot be written.
     """
-    try:
-        if path.is_dir():
-            raise IsADirectoryError(EISDIR, "it is a folder")
-        if path.exists() and not path.is_file():
-            # A pipe or a device such as /dev/null: there is nothing to replace.
+    with _refusals(path):
+        if _is_replaced(path):
+            with _beside(path) as stream:
+                yield stream
+        else:
             with path.open("wb") as stream:
                 yield stream
-            return
-        if path.exists() and not os.access(path, os.W_OK):
-            raise PermissionError(EACCES, os.strerror(EACCES))
-        with _beside(path) as stream:
-            yield stream
+
+
+def write_together(contents: Mapping[Path, bytes]) -> None:
+    """Write files of which none appears before all are written; one is open at a time.
+
+    Raises RulecError: R0702 if one cannot be written.
+    """
+    with ExitStack() as files:
+        for path, content in contents.items():
+            files.enter_context(_refusals(path))
+            if _is_replaced(path):
+                stream = files.enter_context(_beside(path))
+                stream.write(content)
+                stream.close()
+            else:
+                path.write_bytes(content)
+
+
+@contextmanager
+def _refusals(path: Path) -> Iterator[None]:
+    try:
+        yield
     except OSError as problem:
         raise RulecError(unwritable(path, problem)) from None
+
+
+def _is_replaced(path: Path) -> bool:
+    """Whether a file may be replaced; what is a pipe or a device such as /dev/null is not."""
+    if path.is_dir():
+        raise IsADirectoryError(EISDIR, "it is a folder")
+    if not path.exists():
+        return True
+    if path.is_file() and not os.access(path, os.W_OK):
+        raise PermissionError(EACCES, os.strerror(EACCES))
+    return path.is_file()
 
 
 @contextmanager

@@ -2,13 +2,15 @@
 
 import gzip
 import io
+import resource
 import unicodedata
+from pathlib import Path
 
 import pytest
 
 from rulec import files
 from rulec.diagnostics import RulecError
-from rulec.files import decoded, opened, written_whole
+from rulec.files import decoded, opened, write_together, written_whole
 
 
 @pytest.mark.parametrize("line_end", ["\n", "\r\n", "\r"])
@@ -93,3 +95,31 @@ def test_what_is_packed_and_cannot_be_unpacked(tmp_path, monkeypatch, content, s
     (found,) = refused.value.diagnostics
     assert (found.code, found.place.file) == ("R0701", str(file))
     assert says in found.message
+
+
+def test_any_number_of_files_appear_together_however_few_may_be_open(tmp_path):
+    usual = resource.getrlimit(resource.RLIMIT_NOFILE)
+    n_open = len(list(Path("/proc/self/fd").iterdir()))
+    resource.setrlimit(resource.RLIMIT_NOFILE, (n_open + 10, usual[1]))
+    try:
+        write_together({tmp_path / str(number): b"new" for number in range(40)})
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, usual)
+    assert sorted(int(file.name) for file in tmp_path.iterdir()) == list(range(40))
+
+
+def test_where_one_of_several_files_cannot_be_written_none_appears(tmp_path):
+    (tmp_path / "b").mkdir()
+    with pytest.raises(RulecError, match="it is a folder"):
+        write_together({tmp_path / name: b"new" for name in "abc"})
+    assert [file.name for file in tmp_path.iterdir()] == ["b"]
+
+
+def test_a_file_that_cannot_be_renamed_in_the_end_is_a_message(tmp_path, monkeypatch):
+    def refused(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("pathlib.Path.replace", refused)
+    with pytest.raises(RulecError, match="no space left"):
+        write_together({tmp_path / name: b"new" for name in "ab"})
+    assert list(tmp_path.iterdir()) == []

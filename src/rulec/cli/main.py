@@ -76,8 +76,22 @@ class _Verbs(click.Group):
     "2 could not be answered, 70 a bug in rulec.",
 )
 @click.version_option(__version__, message="rulec %(version)s")
-def rulec() -> None:
+@click.option(
+    "--limit",
+    "limits",
+    multiple=True,
+    metavar="NAME=NUMBER",
+    help="Lift or lower a limit on what a question may cost, such as choices=5000000; several "
+    "times.  [default: what RULEC_LIMITS says]",
+)
+@click.pass_context
+def rulec(context: click.Context, limits: Sequence[str]) -> None:
     """Compile traffic law, and judge traces and maneuvers by it."""
+    if limits:
+        # 2 ms: only where limits are set.
+        from rulec.resource_limits import in_force
+
+        context.with_resource(in_force(limits))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -11,12 +11,10 @@ from typing import Any, get_args
 
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, DISTANCE
+from rulec.resource_limits import MOST_DIGITS
 
 DEEPEST = 250
 """No rulebook nests deeper, so nothing that reads formulas has to."""
-
-LONGEST = 1000
-"""No number of a rulebook is longer."""
 
 _OPERATORS: dict[str, ltl.UnaryOperator | ltl.BinaryOperator] = {
     operator.value: operator
@@ -155,7 +153,7 @@ def _names(data: Any) -> tuple[str, ...]:
 
 def number_from_data(data: Any) -> Fraction:
     """The fraction that a text spells. Raises ValueError if it spells none."""
-    if isinstance(data, str) and len(data) <= LONGEST and _FRACTION.fullmatch(data):
+    if isinstance(data, str) and len(data) <= MOST_DIGITS and _FRACTION.fullmatch(data):
         number = Fraction(data)
         if str(number) == data:
             return number

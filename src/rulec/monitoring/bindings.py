@@ -6,8 +6,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.diagnostics import SourceLocation
+from rulec.resource_limits import CHOICES
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.vocabulary_model import choices
+from rulec.vocabulary.vocabulary_model import choices, number_of_choices
+
+MANY = 1 << 13
+"""From so many choices of objects for three variables and more on, only those are made that may
+not be kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +38,30 @@ def bindings(
     never present together is left out. A rule without variables has one binding, the empty one.
     """
     names = [variable.name for variable in rule.variables]
-    for chosen in choices([variable.type for variable in rule.variables], objects, vocabulary):
+    types = [variable.type for variable in rule.variables]
+    for chosen in choices(types, objects, vocabulary, f"rule `{rule.name}`"):
         binding = binding_of(dict(zip(names, chosen, strict=True)), present, n_states)
         if binding.first <= binding.last:
             yield binding
+
+
+def check_choices(
+    rule: CompiledRule,
+    vocabulary: Vocabulary,
+    objects: Mapping[str, str],
+    place: SourceLocation | None,
+) -> None:
+    """Raise RulecError R0718 if a rule's bindings to a trace's objects are beyond the limit."""
+    types = [variable.type for variable in rule.variables]
+    if len(types) > 1:
+        number = number_of_choices(types, objects, vocabulary)
+        CHOICES.within(number, place, f"rule `{rule.name}`")
+
+
+def has_many(rule: CompiledRule, vocabulary: Vocabulary, objects: Mapping[str, str]) -> bool:
+    """Whether a rule's bindings are too many to make them all."""
+    types = [variable.type for variable in rule.variables]
+    return len(types) > 2 and number_of_choices(types, objects, vocabulary) > MANY
 
 
 def binding_of(

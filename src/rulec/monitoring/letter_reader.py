@@ -62,7 +62,7 @@ class LetterReader:
         same, stride = 0, 1
         varying: list[int] | None = None
         for read in machine.reads:
-            digits = self._digits(read, objects, first, last, rule.name)
+            digits = self.digits(read, objects, (first, last), rule.name)
             if isinstance(digits, int):
                 same += stride * digits
             elif varying is None:
@@ -81,14 +81,18 @@ class LetterReader:
             raise impossible_state(rule, types, self.rulebook.axioms, self.view(number), place)
         return word
 
-    def _digits(
+    def digits(
         self,
         read: Read | NumberRead,
         objects: Mapping[str, str],
-        first: int,
-        last: int,
+        stretch: tuple[int, int],
         rule: str,
     ) -> Digits:
+        """The digits of one read in the states of a stretch, both ends included.
+
+        Raises RulecError R0504 if a value without default is missing.
+        """
+        first, last = stretch
         # Rules tell different values apart, so a column is known by the whole read, bar variables.
         about = read if isinstance(read, Read) else scale(read)
         items = tuple([objects[variable] for variable in about.variables])

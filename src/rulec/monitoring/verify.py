@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.monitoring.axiom_violations import check_counting_axioms
-from rulec.monitoring.bindings import bindings
+from rulec.monitoring.bindings import Binding, bindings, check_choices, has_many
 from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
@@ -53,9 +53,7 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     for rule in rulebook.rules:
         # Bindings with equal words share a run.
         verdicts: dict[tuple[int, ...], tuple[bool, int | None]] = {}
-        for binding in bindings(
-            rule, rulebook.vocabulary, trace.objects, trace.present, len(trace.states)
-        ):
+        for binding in _bindings(rule, trace, reader):
             word = reader.word(rule, binding.objects, binding.first, binding.last)
             if word not in verdicts:
                 verdicts[word] = run(rule.machine, word)
@@ -64,6 +62,18 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
                 step = None if step is None else binding.first + step
                 violations.append(Violation(rule.name, rule.strength, binding.objects, step))
     return Verdict(trace.id, tuple(violations))
+
+
+def _bindings(rule: CompiledRule, trace: Trace, reader: LetterReader) -> Iterator[Binding]:
+    """A rule's bindings; of many only those that may not be kept."""
+    vocabulary = reader.rulebook.vocabulary
+    if has_many(rule, vocabulary, trace.objects):
+        # numpy, a tenth of a second: only where there are many.
+        from rulec.monitoring.lazy_bindings import doubtful_bindings
+
+        return doubtful_bindings(rule, reader, len(trace.states))
+    check_choices(rule, vocabulary, trace.objects, trace.place)
+    return bindings(rule, vocabulary, trace.objects, trace.present, len(trace.states))
 
 
 def letter_reader_of(

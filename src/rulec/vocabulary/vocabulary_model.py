@@ -8,6 +8,7 @@ from functools import cached_property
 from itertools import permutations, product
 from types import MappingProxyType
 
+from rulec.resource_limits import CHOICES
 from rulec.value_display import short_repr
 
 
@@ -112,21 +113,49 @@ class Vocabulary:
 
 
 def choices(
-    types: Sequence[str], objects: Mapping[str, str], vocabulary: Vocabulary
+    types: Sequence[str], objects: Mapping[str, str], vocabulary: Vocabulary, whose: str = ""
 ) -> Iterator[tuple[str, ...]]:
     """All choices of distinct objects for the types.
 
     ``objects`` maps each object to its type.
 
     An object of a subtype fits, too. Of no types there is one choice, the empty one.
+
+    Raises RulecError R0718, which names ``whose`` they are, if there are more than the limit
+    `choices`.
     """
-    fitting = [
-        [item for item, kind in objects.items() if vocabulary.is_subtype(kind, type_name)]
-        for type_name in types
-    ]
+    if len(types) > 1:
+        CHOICES.within(number_of_choices(types, objects, vocabulary), None, whose)
+    fitting = [fitting_objects(type_name, objects, vocabulary) for type_name in types]
     if len(set(types)) == 1:
         yield from permutations(fitting[0], len(types))
         return
     for chosen in product(*fitting):
         if len(set(chosen)) == len(chosen):
             yield chosen
+
+
+def fitting_objects(
+    type_name: str, objects: Mapping[str, str], vocabulary: Vocabulary
+) -> list[str]:
+    """The objects of a type or of one of its subtypes."""
+    return [item for item, kind in objects.items() if vocabulary.is_subtype(kind, type_name)]
+
+
+def number_of_choices(
+    types: Sequence[str], objects: Mapping[str, str], vocabulary: Vocabulary
+) -> int:
+    """How many ``choices`` there are, without going through them.
+
+    Types are a forest, so what fits one is all, some or none of what fits another. Where the
+    narrower ones choose first, each has taken one from whatever is above it.
+    """
+    depth = {name: len(list(vocabulary.ancestors(name))) for name in set(types)}
+    number_of = {name: len(fitting_objects(name, objects, vocabulary)) for name in depth}
+    number = 1
+    before: list[str] = []
+    for name in sorted(types, key=depth.__getitem__, reverse=True):
+        taken = sum(vocabulary.is_subtype(other, name) for other in before)
+        number *= max(number_of[name] - taken, 0)
+        before.append(name)
+    return number

@@ -6,7 +6,6 @@ import codecs
 import json
 import re
 from collections.abc import Iterable
-from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,7 +27,7 @@ from rulec.automata.bundle.stored_steps import StoredSteps
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
-from rulec.files import make_folder, opened, written_whole
+from rulec.files import make_folder, opened, write_together
 from rulec.logic.codec import terms_to_data, to_data
 from rulec.logic.opportunities import trigger_of
 from rulec.logic.printing import formula_text, number_in_words
@@ -209,10 +208,7 @@ def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
         for rule in book.rules
     }
     texts[folder / f"{rulebook.name}.json"] = to_json(rulebook)
-    with ExitStack() as files:
-        for path, text in texts.items():
-            stream = files.enter_context(written_whole(path))
-            stream.write(text.encode())
+    write_together({path: text.encode() for path, text in texts.items()})
     return list(texts)
 
 

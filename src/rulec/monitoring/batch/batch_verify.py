@@ -19,6 +19,7 @@ from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.uncertain.uncertain_verdicts import uncertain_verdicts
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
+from rulec.monitoring.bindings import has_many
 from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import (
@@ -123,7 +124,7 @@ def _verify_group(
         return
     try:
         rules = rules_for(traces[0][1], rulebook)
-    except RulecError:
+    except (RulecError, UnencodableError):
         return
     group = trace_groups.group_traces([trace for _, trace in traces])
     example = traces[0][1]
@@ -208,11 +209,16 @@ def _with_constants(trace: Trace, vocabulary: Vocabulary) -> Trace:
 
 
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
-    """Rulebook for traces of this shape. Raises RulecError if it cannot judge."""
+    """Rulebook for traces of this shape.
+
+    Raises RulecError if it cannot judge, UnencodableError if it has too many bindings for columns.
+    """
     rules = rulebook_for_trace(trace, rulebook)
     for rule in rules.rules:
         check_step(rule, exact_step(trace.step_s))
     check_objects(trace.objects, rules.vocabulary)
+    if any(has_many(rule, rules.vocabulary, trace.objects) for rule in rules.rules):
+        raise UnencodableError
     return rules
 
 

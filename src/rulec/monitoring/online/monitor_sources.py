@@ -9,9 +9,12 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.files import opened, written_whole
+from rulec.logic.codec import number_from_data
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.monitor_state import SoFar
@@ -65,7 +68,8 @@ def read_saved(path: Path) -> Any:
     with opened(path) as stream:
         data = stream.read()
     try:
-        return json.loads(data)
+        # Unlike `json` it takes neither NaN nor half a character.
+        return msgspec.json.decode(data)
     except (ValueError, RecursionError):
         why = "it has been cut short" if is_beginning(data) else "it is not JSON"
         message = f"this is not a saved monitor: {why}"
@@ -78,8 +82,8 @@ def read_saved(path: Path) -> Any:
 def step_of(saved: Any) -> Fraction | None:
     """Step (s) of a saved monitor; None if missing or invalid."""
     try:
-        step_s = Fraction(saved["step_s"])
-    except (TypeError, LookupError, ValueError, ZeroDivisionError):
+        step_s = number_from_data(saved["step_s"])
+    except (TypeError, LookupError, ValueError):
         return None
     return step_s if step_s > 0 else None
 

@@ -14,6 +14,7 @@ from rulec.automata.bundle.bundle_file import read_to_data
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
+from rulec.logic.codec import number_from_data
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.four_valued import FourValued, MonitorEdge, VerdictRange
@@ -165,7 +166,7 @@ def from_data(
     """
     try:
         header = msgspec.convert(data, _Header)
-    except msgspec.ValidationError as problem:
+    except ValueError as problem:  # msgspec's own, and texts that are none
         raise _refused(f"this is not a saved monitor: {json_words(problem)}", place) from None
     if header.version not in (VERSION, PARTIAL_VERSION):
         raise _refused(
@@ -175,8 +176,8 @@ def from_data(
         )
     try:
         saved = msgspec.convert(data, SavedMonitor)
-        step_s = None if saved.step_s is None else Fraction(saved.step_s)
-    except (msgspec.ValidationError, ValueError, ZeroDivisionError) as problem:
+        step_s = None if saved.step_s is None else number_from_data(saved.step_s)
+    except ValueError as problem:
         raise _refused(f"this saved monitor is damaged: {json_words(problem)}", place) from None
     if saved.machines != fingerprint(rulebook):
         whose = (

@@ -13,7 +13,7 @@ from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED
-from rulec.monitoring.bindings import Binding, binding_of, bindings
+from rulec.monitoring.bindings import Binding, binding_of, bindings, check_choices
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.state_letters.possible_letters import (
     PossibleLetters,
@@ -98,6 +98,7 @@ class UncertainRun:
         self, rule: CompiledRule, machine: UncertainMachine
     ) -> Iterator[Violation | OpenVerdict]:
         trace, declared = self.trace, self.vocabulary
+        check_choices(rule, declared, trace.objects, trace.place)
         for binding in bindings(rule, declared, trace.objects, trace.present, len(trace.states)):
             answer = self._answer(rule, machine, binding)
             if answer is not None:

@@ -1,0 +1,120 @@
+"""Limits on what a question may cost where its input's size does not say; ``docs/limits.md``.
+
+Whoever is about to take time or memory that grows with a value asks ``within`` first. The limits
+in force are those of the environment variable ``RULEC_LIMITS``, which the processes that work for
+this one inherit; ``rulec --limit`` sets it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
+from rulec.limit_messages import NO_LIMIT, OVER_LIMIT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+VARIABLE: Final = "RULEC_LIMITS"
+"""The environment variable: settings such as ``choices=5000000``, with spaces between them."""
+
+MOST_DIGITS: Final = 1000
+"""Digits of a number that is read exactly; rulebooks, compiled files and saved monitors alike."""
+
+
+@dataclass(frozen=True, slots=True)
+class ResourceLimit:
+    """A limit by name: how many of ``counted`` there may be, and what else helps."""
+
+    name: str
+    usual: int
+    counted: str
+    way_out: str
+
+    def value(self) -> int:
+        """The limit in force. Raises RulecError R0719 if the environment sets one wrongly."""
+        return settings_in(os.environ.get(VARIABLE, "").split()).get(self.name, self.usual)
+
+    def within(self, amount: int, place: SourceLocation | None, whose: str = "") -> None:
+        """Raise RulecError R0718 if there are more.
+
+        Args:
+            amount: how many there are, or would be.
+            place: the input that asks for them.
+            whose: what they are of, such as "rule `gap`".
+        """
+        most = self.value()
+        if amount > most:
+            raise self.exceeded(
+                f"{amount:,}" if amount < 10**18 else "10^18 and more", place, whose
+            )
+
+    def exceeded(self, amount: str, place: SourceLocation | None, whose: str = "") -> RulecError:
+        """The error of an amount, in words, that is beyond the limit in force."""
+        of = f"{whose}: " if whose else ""
+        return OVER_LIMIT.error(
+            place,
+            f"{of}{amount} {self.counted}, and the limit is {self.value():,}",
+            help=f"{self.way_out}; `rulec --limit {self.name}=NUMBER` lifts the limit",
+        )
+
+
+CHOICES: Final = ResourceLimit(
+    "choices",
+    1_000_000,
+    "choices of objects for a rule's variables",
+    "give the rule fewer variables or narrower types, or the trace fewer objects",
+)
+TIME_STEPS: Final = ResourceLimit(
+    "time_steps",
+    1_000_000,
+    "time steps from the first to the last",
+    "cut the recording into shorter ones, or look for a wrong time in it",
+)
+
+LIMITS: Final = {limit.name: limit for limit in (CHOICES, TIME_STEPS)}
+"""All limits that can be lifted."""
+
+
+def settings_in(texts: Iterable[str]) -> dict[str, int]:
+    """Limits by name from texts such as ``choices=5000000``. Raises RulecError R0719."""
+    found: dict[str, int] = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        if name not in LIMITS:
+            hint = did_you_mean(name, list(LIMITS)) or f"there are {named(list(LIMITS))}"
+            raise NO_LIMIT.error(None, f"there is no limit `{name}`", help=hint)
+        if _NUMBER.fullmatch(value) is None:
+            raise NO_LIMIT.error(
+                None,
+                f"the limit `{name}` is a whole number, not `{value}`",
+                help=f"write it as in `{name}={LIMITS[name].usual}`",
+            )
+        found[name] = int(value)
+    return found
+
+
+_NUMBER = re.compile(r"[0-9]{1,15}")
+
+
+@contextmanager
+def in_force(texts: Iterable[str]) -> Iterator[None]:
+    """Limits set, here and in processes started meanwhile, while the block runs.
+
+    Raises RulecError R0719.
+    """
+    before = os.environ.get(VARIABLE)
+    given = {**settings_in((before or "").split()), **settings_in(texts)}
+    os.environ[VARIABLE] = " ".join(f"{name}={value}" for name, value in given.items())
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[VARIABLE]
+        else:
+            os.environ[VARIABLE] = before

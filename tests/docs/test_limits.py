@@ -1,0 +1,71 @@
+"""The page of limits, against the limits in the code."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from rulec import files
+from rulec.automata import compiler, spot_worker
+from rulec.cli.main import main
+from rulec.report.findings.code_registry import all_codes
+from rulec.resource_limits import LIMITS, MOST_DIGITS
+from rulec.rulebook.arithmetic import size_limits
+from rulec.scenario import scenario_files, time_grid
+from rulec.scenario.toml import schema
+from rulec.syntax import scanner
+from rulec.trace.formats import json_line_problems
+
+PAGE = (Path(__file__).parents[2] / "docs" / "limits.md").read_text(encoding="utf-8")
+
+FIXED = {
+    "bytes of a rulebook or vocabulary": files.MAX_SOURCE_BYTES,
+    "words and signs of a source": scanner.MAX_TOKENS,
+    "operators, atoms and comparisons of a rule, definitions put in": size_limits.MOST_PARTS,
+    "operators inside one another, definitions put in": size_limits.DEEPEST,
+    "digits of a number in compiled files and saved monitors": MOST_DIGITS,
+    "seconds of processor time for a rule's automaton": compiler.CPU_LIMIT_S,
+    "bytes of memory for it": spot_worker.MEMORY_LIMIT_BYTES,
+    "bytes of a packed file, unpacked": files.LARGEST_UNPACKED,
+    "bytes of one line of traces": json_line_problems.LONGEST_LINE_BYTES,
+    "bytes of a scenario in TOML": scenario_files.LARGEST_BYTES,
+    "obstacles of a scenario": schema.MOST_OBSTACLES,
+    "layers of a scenario's graph": time_grid.MAX_LAYERS,
+}
+
+
+def rows(heading):
+    """The rows of the table below a heading, without its head."""
+    section = PAGE.partition(f"## {heading}\n")[2].partition("\n## ")[0]
+    table = [line for line in section.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table[2:]]
+
+
+def number(text):
+    return int(text.replace(",", ""))
+
+
+def test_the_page_lists_the_limits_that_can_be_lifted():
+    listed = {
+        row[0].strip("`"): (number(row[1]), row[2]) for row in rows("Limits that can be lifted")
+    }
+    assert listed == {limit.name: (limit.usual, limit.counted) for limit in LIMITS.values()}
+
+
+def test_the_page_lists_the_limits_that_are_fixed():
+    assert {row[0]: number(row[1]) for row in rows("Limits that are fixed")} == FIXED
+    codes = {code for row in rows("Limits that are fixed") for code in re.findall(r"R\d+", row[2])}
+    assert codes <= all_codes().keys()
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("chices=3", "did you mean `choices`?"),
+        ("choices=many", "write it as in `choices=1000000`"),
+        ("choices", "a whole number, not ``"),
+    ],
+)
+def test_a_limit_that_is_none_is_refused(given, words, capsys):
+    assert main(["--limit", given, "list"]) == 2
+    assert words in capsys.readouterr().err

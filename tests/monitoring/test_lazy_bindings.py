@@ -1,0 +1,115 @@
+"""Bindings made only where a rule may not be kept: the same verdicts, far fewer choices."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec.diagnostics import RulecError
+from rulec.monitoring.batch.batch_verify import verify_chunk
+from rulec.monitoring.verify import verify
+from rulec.resource_limits import in_force
+from rulec.rulebook.loader import parse_rulebook
+from rulec.trace import Trace
+from support.builders.rulebooks import compile_here
+
+BOOK = """
+rulebook crowd
+type car
+type bus is car
+signal beside(a: car), stopped(a: car), wet default false
+signal behind(a: car, b: car) default false
+quantity gap(a: car) in m default 9
+hard rule ahead (a: car, b: car, c: car) {
+  require always not (beside(a) and stopped(b) and behind(b, c))
+}
+hard rule soon (a: car, b: bus, c: car) {
+  require always (beside(a) and gap(b) < 5 m implies next stopped(c) or wet)
+}
+hard rule later (a: car, b: car, c: bus) {
+  require beside(a) and beside(b) implies eventually stopped(c)
+}
+"""
+NAMES = "pqrs"
+
+
+@pytest.fixture(scope="module")
+def book():
+    return compile_here(parse_rulebook(BOOK))
+
+
+def per_object(values):
+    return st.dictionaries(st.sampled_from(NAMES), values, max_size=4)
+
+
+STATES = st.fixed_dictionaries(
+    {},
+    optional={
+        "beside": per_object(st.booleans()),
+        "stopped": per_object(st.booleans()),
+        "wet": st.booleans(),
+        "behind": per_object(per_object(st.booleans())),
+        "gap": per_object(st.sampled_from([3, 5, 7])),
+    },
+)
+SPANS = st.tuples(st.integers(0, 2), st.integers(0, 2)).map(sorted).map(tuple)
+
+
+@given(
+    st.lists(STATES, min_size=3, max_size=3),
+    st.lists(st.sampled_from(["car", "bus"]), min_size=4, max_size=4),
+    st.dictionaries(st.sampled_from(NAMES), SPANS, max_size=2),
+)
+def test_verdicts_are_those_of_all_bindings(book, states, kinds, present):
+    trace = Trace("t", 1, dict(zip(NAMES, kinds, strict=True)), states, present)
+    usual = verify(trace, book)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("rulec.monitoring.bindings.MANY", 0)
+        assert verify(trace, book) == usual
+
+
+def crowd(n_cars, besides, **more):
+    objects = {f"o{number}": "car" for number in range(n_cars)}
+    return Trace("t", 1, objects, [{"beside": dict.fromkeys(besides, True), **more}] * 3)
+
+
+SIX = """
+rulebook six
+type car
+signal beside(a: car), stopped(a: car) default false
+hard rule r (a: car, b: car, c: car, d: car, e: car, f: car) {
+  require always not (beside(a) and beside(b) and beside(c)
+                      and stopped(d) and stopped(e) and stopped(f))
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def six():
+    return compile_here(parse_rulebook(SIX))
+
+
+def test_of_427_million_choices_none_is_made_that_cannot_violate_the_rule(six):
+    assert verify(crowd(30, ["o1", "o2", "o3"]), six).violations == ()
+
+
+def test_violations_of_many_choices_are_found(six):
+    trace = crowd(30, ["o1", "o2", "o3"], stopped={"o4": True, "o5": True, "o6": True})
+    (answer,) = verify_chunk([trace], six, 1)
+    assert len(answer.violations) == 6 * 6
+
+
+def test_choices_that_matter_and_are_too_many_are_refused(six):
+    trace = crowd(30, [f"o{number}" for number in range(30)], stopped={"o1": True, "o2": True})
+    with in_force(["choices=1000"]), pytest.raises(RulecError, match="R0718") as refused:
+        verify(trace, six)
+    (said,) = refused.value.diagnostics
+    assert "rule `r`" in said.message
+    assert "--limit choices=NUMBER" in said.help
+
+
+def test_a_missing_value_is_missed_however_the_bindings_are_made(monkeypatch):
+    book = compile_here(parse_rulebook(SIX.replace(" default false", "")))
+    trace = crowd(6, [f"o{number}" for number in range(6)])
+    monkeypatch.setattr("rulec.monitoring.bindings.MANY", 0)
+    with pytest.raises(RulecError, match="R0504"):
+        verify(trace, book)
