@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
 import pytest
 from click import unstyle
@@ -10,9 +11,11 @@ from hypothesis import assume, given
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
 from rulec.logic.semantics import truth_values
+from rulec.monitoring.explain import explained_states
+from rulec.monitoring.explain.explained_states import states_to_explain
 from rulec.monitoring.explain.explanation import explain
-from rulec.monitoring.limits import LIMITS
-from rulec.monitoring.verify import verify
+from rulec.monitoring.limits import LIMITS, MonitoringLimits
+from rulec.monitoring.verify import letter_reader_of, verify
 from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
 from rulec.report.verdicts.verdict_json import explanation_data
@@ -73,6 +76,35 @@ def test_the_formulas_values_are_those_of_direct_evaluation(semantics, formula, 
     for shown in (*explained.facts, *explained.parts):
         at = explained.decisive
         assert shown.changed == (at > 0 and shown.values[at] != shown.values[at - 1])
+
+
+@given(formula=formulas, word=words)
+def test_the_states_of_a_window_violate_the_rule_like_all(formula, word):
+    x = ("x: car",) if any(atom.arguments for atom in atoms_of(formula)) else ()
+    rules = compile_here(book(rule("A", formula, *x)))
+    trace = trace_of([*word, *word, *word])
+    violations = verify(trace, rules).violations
+    assume(violations)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(explained_states, "LIMITS", MonitoringLimits(states_explained=1))
+        explained = explain(violations[0], trace, rules)
+        machine, decisive = rules.rules[0].machine, explained.decisive
+        letters_of = letter_reader_of(trace, rules)
+        of = partial(letters_of.word, rules.rules[0], violations[0].binding)
+        numbers = states_to_explain(machine, range(len(trace.states)), decisive, of)
+    assert numbers[0] == 0
+    assert {decisive - 1, decisive, decisive + 1} & set(range(len(trace.states))) <= set(numbers)
+    assert len(numbers) <= len(machine.successors) + 4
+    window = replace(trace, states=tuple(trace.states[number] for number in numbers))
+    (again,) = verify(window, rules).violations
+    assert (again.step is None) == (violations[0].step is None)
+    assert numbers[-1 if again.step is None else again.step] == decisive
+    assert (explained.looked_at is None) == (len(numbers) == len(trace.states))
+    if explained.looked_at:
+        assert explained.repair is None
+        first, last = explained.lasts
+        assert explained.looked_at[0] <= first <= decisive <= last <= explained.looked_at[1]
+        assert not explained.parts[0].values[0]
 
 
 def place(text):

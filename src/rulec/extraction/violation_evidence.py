@@ -44,7 +44,9 @@ def evidence_of(
     explanation: Explanation | None = None,
 ) -> ViolationEvidence:
     """The evidence for a violation by a drive; ``explanation`` is its own, if there is one."""
-    explained = explanation or explain(violation, drive.trace, rules, drive.decided_by)
+    explained = explanation or explain(
+        violation, drive.trace, rules, drive.decided_by, repaired=False
+    )
     read = dict.fromkeys(names_in(explained.rule.formula))
     told = [name for name in read if name in drive.kinds and name not in assumed]
     partial = {name for name in told if _is_partial(drive, name)}

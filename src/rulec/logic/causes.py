@@ -27,15 +27,24 @@ def deciding_instants(
 
     Bounds are in steps. ValueError as for ``holds``.
     """
-    known = extended_values(formula, word, semantics)
-    length, last = len(known[formula]), len(word) - 1
+    return instants_among(extended_values(formula, word, semantics), formula, len(word), semantics)
+
+
+def instants_among(
+    known: Mapping[Formula, Sequence[bool]],
+    formula: Formula,
+    n_letters: int,
+    semantics: Semantics = "stutter",
+) -> dict[Formula, list[bool]]:
+    """The deciding instants, from the ``extended_values`` on a word of so many letters."""
+    length, last = len(known[formula]), n_letters - 1
     onward = {part: _Column.of(values) for part, values in known.items()}
     backward = {part: _Column.of(values[::-1]) for part, values in known.items()}
     # A part begins to decide where its mark is above 0, and ceases to where it is below.
     marks = {part: [0] * (length + 1) for part in known}
     marks[formula][:2] = [1, -1]
     result = {}
-    for part in reversed(known):  # all that it is an operand of has been before it
+    for part in reversed(list(known)):  # all that it is an operand of has been before it
         begun, decides = 0, []
         for instant, mark in enumerate(marks[part][:length]):
             begun += mark

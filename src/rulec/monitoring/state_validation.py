@@ -122,10 +122,15 @@ def check_told(
 
 def has_partial_values(state: Mapping[str, Any]) -> bool:
     """Tell whether a state has values that are unknown, or intervals."""
-    return any(
-        has_partial_values(value) if isinstance(value, Mapping) else type(value) in UNKNOWN_TYPES
-        for value in state.values()
-    )
+    for value in state.values():
+        kind = type(value)
+        if kind in UNKNOWN_TYPES:
+            return True
+        # To ask whether something else than a dictionary is a mapping takes long.
+        is_mapping = kind is dict or (kind not in _PLAIN and isinstance(value, Mapping))
+        if is_mapping and has_partial_values(value):
+            return True
+    return False
 
 
 def partial_names(states: Iterable[Mapping[str, Any]]) -> set[str]:

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
 from rulec.automata.thresholds import exact_step
+from rulec.diagnostics import RulecError
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import in_steps
-from rulec.logic.causes import deciding_instants
-from rulec.logic.kleene import Unknown, holds, objects_counted, weighted_sum
+from rulec.logic.causes import instants_among
+from rulec.logic.kleene import objects_counted
 from rulec.logic.printing import formula_text, term_text
-from rulec.logic.semantics import values_of_parts
-from rulec.monitoring.bindings import bindings
-from rulec.monitoring.explain.margins import Margin, margin_in
-from rulec.monitoring.explain.nearest_satisfying import Letter, Repair, nearest_satisfying
+from rulec.logic.semantics import extended_values
+from rulec.monitoring.bindings import Binding, binding_of
+from rulec.monitoring.explain.explained_states import states_to_explain
+from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
+from rulec.monitoring.explain.observed_states import ObservedStates, known_value
+from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
@@ -30,8 +34,6 @@ from rulec.trace import Trace, Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
-
-_Known = TypeVar("_Known")
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +84,8 @@ class Explanation:
     ``lasts`` are the first and the last state of the stretch in which what always, or never, has to
     be is broken; of other rules the decisive state. ``repair`` is what states would have had to say
     for the rule to be kept, their places being their numbers in the trace; None if nothing would
-    have helped.
+    have helped, or nobody has looked. ``looked_at`` are the first and the last state of the window
+    that was looked at in a trace that is too long, else None.
     """
 
     __repr__ = short_repr
@@ -96,6 +99,7 @@ class Explanation:
     repair: tuple[Repair, ...] | None
     vocabulary: Vocabulary
     lasts: tuple[int, int]
+    looked_at: tuple[int, int] | None = None
 
     def margins(self) -> list[Margin]:
         """By how much: the comparisons of quantities that decide, in the decisive state."""
@@ -117,12 +121,15 @@ def explain(
     trace: Trace,
     rulebook: CompiledRulebook,
     decided_by: Mapping[str, Deciding] = MappingProxyType({}),
+    *,
+    repaired: bool = True,
 ) -> Explanation:
     """Explain a violation that ``verify`` reported for this trace and rulebook.
 
     What is unknown is shown as such; as every completion violates the rule, one stands for all.
     Numbers have their middles there. ``decided_by``: signal -> the numbers behind it, for those
-    that were decided by any.
+    that were decided by any. A repair is looked for only if it is to be ``repaired``, and
+    never in a trace of which a window is looked at.
     """
     given, declared = trace, rulebook.vocabulary
     untold = untold_names(declared, trace.told)
@@ -130,31 +137,33 @@ def explain(
         trace = completed(trace, declared)
         rulebook = replace(rulebook, vocabulary=with_all_defaults(declared))
     rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
-    candidates = bindings(
-        rule, rulebook.vocabulary, trace.objects, trace.present, len(trace.states)
-    )
-    binding = next(binding for binding in candidates if binding.objects == violation.binding)
+    binding = binding_of(violation.binding, trace.present, len(trace.states))
     reader = letter_reader_of(trace, rulebook)
     stretch = range(binding.first, binding.last + 1)
     decisive = binding.last if violation.step is None else violation.step
-    states = _shown(stretch, decisive)
-    observed = _ObservedStates(
-        [reader.view(number) for number in stretch],
+    numbers = _looked_at(reader, rule, binding, decisive)
+    place = bisect_left(numbers, decisive)
+    states = tuple(sorted(set(_shown(stretch, decisive)).intersection(numbers)))
+    declared = with_untold(declared, untold)
+    observed = ObservedStates(
+        [reader.view(number) for number in numbers],
         binding.objects,
-        [number - binding.first for number in states],
-        decisive - binding.first,
-        [StateView(given.states[n], {}, with_untold(declared, untold)) for n in stretch],
+        [bisect_left(numbers, number) for number in states],
+        place,
+        lambda index: StateView(given.states[numbers[index]], {}, declared),
     )
     truths = {atom: observed.truths(atom) for atom in dict.fromkeys(ltl.atoms_of(rule.formula))}
-    word = [
-        frozenset(atom for atom, column in truths.items() if column[n]) for n in range(len(stretch))
-    ]
+    word = _letters(truths, len(numbers))
     formula = in_steps(rule.formula, exact_step(trace.step_s))
-    values = values_of_parts(formula, word, rulebook.semantics)
-    instants = deciding_instants(formula, word, rulebook.semantics)
-    deciding = {part for part, at in instants.items() if any(at)}
-    lasts = _broken_stretch(formula, values, decisive - binding.first)
-    repair = nearest_satisfying(rule.machine, observed.word(rule.machine))
+    known = extended_values(formula, word, rulebook.semantics)
+    values = {part: column[: len(word)] for part, column in known.items()}
+    instants = instants_among(known, formula, len(word), rulebook.semantics)
+    deciding = {part for part, at in instants.items() if True in at}
+    first, last = _broken_stretch(formula, values, place, numbers)
+    whole = len(numbers) == len(stretch)
+    repair = None
+    if whole and repaired:
+        repair = nearest_satisfying(rule.machine, observed.word(rule.machine))
     return Explanation(
         rule=rule,
         violation=violation,
@@ -167,20 +176,66 @@ def explain(
         repair=repair
         and tuple([replace(change, place=binding.first + change.place) for change in repair]),
         vocabulary=rulebook.vocabulary,
-        lasts=(binding.first + lasts[0], binding.first + lasts[1]),
+        lasts=(numbers[first], numbers[last]),
+        looked_at=None if whole else _window(numbers, place),
     )
 
 
+def _looked_at(
+    reader: LetterReader, rule: CompiledRule, binding: Binding, decisive: int
+) -> Sequence[int]:
+    """The numbers of the states that are looked at."""
+
+    def word(first: int, last: int) -> tuple[int, ...]:
+        try:
+            return reader.word(rule, binding.objects, first, last)
+        except RulecError:
+            # One completion of what is unknown may contradict facts.
+            return (0,)
+
+    stretch = range(binding.first, binding.last + 1)
+    return states_to_explain(rule.machine, stretch, decisive, word)
+
+
+def _window(numbers: Sequence[int], place: int) -> tuple[int, int]:
+    """The first and the last of the numbers around a place that follow one upon the other."""
+    first = place
+    while first and numbers[first - 1] == numbers[first] - 1:
+        first -= 1
+    return numbers[first], numbers[-1]
+
+
+def _letters(
+    truths: Mapping[ltl.Proposition, Sequence[bool]], n_states: int
+) -> list[frozenset[ltl.Proposition]]:
+    """What is true in each state; equal sets are one."""
+    known: dict[tuple[bool, ...], frozenset[ltl.Proposition]] = {}
+    rows = list(zip(*truths.values(), strict=True)) if truths else [()] * n_states
+    for row in set(rows):
+        known[row] = frozenset(atom for atom, is_true in zip(truths, row, strict=True) if is_true)
+    return [known[row] for row in rows]
+
+
 def _broken_stretch(
-    formula: ltl.Formula, values: Mapping[ltl.Formula, list[bool]], decisive: int
+    formula: ltl.Formula,
+    values: Mapping[ltl.Formula, list[bool]],
+    decisive: int,
+    numbers: Sequence[int],
 ) -> tuple[int, int]:
-    """The stretch around a state in which the body of an outermost always or never is broken."""
+    """The stretch around a state in which the body of an outermost always or never is broken.
+
+    It ends where states, whose ``numbers`` these are, have been left out.
+    """
     for part, wanted in _bodies(formula):
         column = values[part]
         broken = [n for n in range(decisive, -1, -1) if column[n] is not wanted]
         if broken:
             first = last = broken[0]
-            while first > 0 and column[first - 1] is not wanted:
+            while (
+                first > 0
+                and column[first - 1] is not wanted
+                and numbers[first - 1] == numbers[first] - 1
+            ):
                 first -= 1
             while last + 1 < len(column) and column[last + 1] is not wanted:
                 last += 1
@@ -221,69 +276,10 @@ def _shown(stretch: range, decisive: int) -> tuple[int, ...]:
     return tuple(sorted({stretch[0], *range(first, last + 1)}))
 
 
-def _known(value: _Known | Unknown) -> _Known:
-    assert not isinstance(value, Unknown), "verify has read it"
-    return value
-
-
-@dataclass(frozen=True, slots=True)
-class _ObservedStates:
-    """States of a binding, all of whose values are known.
-
-    ``shown`` are the indices of the states to show, ``decisive`` is one of them. ``given`` are the
-    states of which they are completions.
-    """
-
-    views: Sequence[StateView]
-    bound: Mapping[str, str]
-    shown: Sequence[int]
-    decisive: int
-    given: Sequence[StateView]
-
-    def items(self, variables: Sequence[str]) -> tuple[str, ...]:
-        """The objects of some variables."""
-        return tuple([self.bound[variable] for variable in variables])
-
-    def value(self, name: str, variables: Sequence[str], view: StateView) -> Value:
-        """The value of a declaration in one of the states."""
-        value = view.value(name, self.items(variables))
-        assert not isinstance(value, Unknown), "verify has read it"
-        return value
-
-    def truths(self, proposition: ltl.Proposition) -> list[bool]:
-        """Truth of a proposition in each state."""
-        return [holds(proposition, self.bound, view) is True for view in self.views]
-
-    def word(self, machine: MealyMonitor) -> list[Letter]:
-        """The letters that a machine reads, digit by digit."""
-        return [
-            tuple(
-                [
-                    read.digit(_known(weighted_sum(read.terms, self.bound, view)))
-                    if isinstance(read, NumberRead)
-                    else read.digit(self.value(read.name, read.variables, view))
-                    for read in machine.reads
-                ]
-            )
-            for view in self.views
-        ]
-
-    def margins(self, comparison: ltl.Comparison) -> tuple[Margin | None, ...]:
-        """The margins of a comparison in the states that are shown; none of one of counts."""
-        if any(isinstance(term, ltl.Count) for _, term in comparison.terms):
-            return ()
-        margins = [margin_in(comparison, self.bound, self.given[number]) for number in self.shown]
-        return tuple([None if isinstance(one, Unknown) else one for one in margins])
-
-    def changes(self, values: Sequence[object]) -> bool:
-        """Tell whether the decisive state's value differs from the one before."""
-        return self.decisive > 0 and values[self.decisive] != values[self.decisive - 1]
-
-
 def _facts(
     truths: Mapping[ltl.Proposition, list[bool]],
     deciding: Set[ltl.Formula],
-    observed: _ObservedStates,
+    observed: ObservedStates,
 ) -> Iterator[Observation]:
     readers: dict[ltl.Atom | ltl.Term, list[ltl.Proposition]] = {}
     for proposition in truths:
@@ -299,18 +295,24 @@ def _facts(
         passes = isinstance(read, ltl.Atom) or any(
             observed.changes(truths[proposition]) for proposition in propositions
         )
-        values: list[Value | Interval | None]
+        values: dict[int, Value | Interval | None]
         unit, objects = "", None
         if isinstance(read, ltl.Count):
             text = term_text(read)
-            counted = [_known(objects_counted(read, observed.bound, view)) for view in views]
-            values, objects = list(map(len, counted)), tuple(counted[n] for n in observed.shown)
+            counted = {
+                n: known_value(objects_counted(read, observed.bound, views[n]))
+                for n in observed.looked_up
+            }
+            values = {n: len(those) for n, those in counted.items()}
+            objects = tuple(counted[n] for n in observed.shown)
         else:
             text = str(ltl.Atom(read.name, observed.items(read.arguments)))
-            values = [observed.value(read.name, read.arguments, view) for view in views]
+            values = {
+                n: observed.value(read.name, read.arguments, views[n]) for n in observed.looked_up
+            }
             items = observed.items(read.arguments)
-            for index, view in enumerate(observed.given):
-                given = view.given(read.name, items)
+            for index in values:
+                given = observed.given(index).given(read.name, items)
                 if given is None or type(given) in UNKNOWN_TYPES:
                     values[index] = given if isinstance(given, Interval) else None
             declaration = vocabulary.declarations[read.name]
@@ -329,7 +331,7 @@ def _parts(
     formulas: tuple[ltl.Formula, ltl.Formula],
     truths: Mapping[ltl.Formula, list[bool]],
     deciding: Set[ltl.Formula],
-    observed: _ObservedStates,
+    observed: ObservedStates,
     depth: int = 0,
 ) -> Iterator[Part]:
     written, stepped = formulas

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from rulec.monitoring.state_validation import has_partial_values
 from rulec.trace import Trace, Value
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
@@ -19,6 +20,8 @@ def completed(trace: Trace, vocabulary: Vocabulary) -> Trace:
             name: _known(value, declarations[name], len(declarations[name].parameters))
             for name, value in state.items()
         }
+        if has_partial_values(state)
+        else state
         for state in trace.states
     )
     return replace(trace, states=states, ends="complete", told=None)

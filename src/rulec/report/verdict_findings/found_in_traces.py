@@ -28,7 +28,9 @@ def trace_findings(
 
     for number, violation in enumerate(answer.violations):
         explanation = (
-            explained[number] if number < len(explained) else explain(violation, trace, rulebook)
+            explained[number]
+            if number < len(explained)
+            else explain(violation, trace, rulebook, repaired=False)
         )
         first, last = explanation.lasts
         margin = min(explanation.margins(), key=lambda one: one.by, default=None)

@@ -59,7 +59,11 @@ class RepairData(JsonPart, frozen=True, kw_only=True):
 
 
 class ExplanationData(JsonPart, frozen=True, kw_only=True):
-    """Explanation of a violation; null ``repair``: no equally long trace complies."""
+    """Explanation of a violation; null ``repair``: no equally long trace complies.
+
+    ``looked_at``, of a long trace: the first and the last state of the window that was looked at,
+    for which no repair was.
+    """
 
     book: str
     cite: str
@@ -69,6 +73,7 @@ class ExplanationData(JsonPart, frozen=True, kw_only=True):
     facts: Sequence[FactData]
     parts: Sequence[FormulaPart]
     repair: Sequence[RepairData] | None
+    looked_at: tuple[int, int] | UnsetType = UNSET
 
 
 class ErrorData(JsonPart, frozen=True, kw_only=True):
@@ -281,4 +286,5 @@ def explanation_data(explanation: Explanation) -> ExplanationData:
         repair=None
         if explanation.repair is None
         else [RepairData(state=number, says=says) for number, says in repaired_states(explanation)],
+        looked_at=UNSET if explanation.looked_at is None else explanation.looked_at,
     )

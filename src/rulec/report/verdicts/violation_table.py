@@ -64,7 +64,10 @@ def as_text(explanation: Explanation, *, every_part: bool = False, width: int = 
 
 
 def _repair(explanation: Explanation, width: int) -> Iterator[str]:
-    if explanation.repair is None:
+    if explanation.looked_at is not None:
+        first, last = explanation.looked_at
+        yield f"{INDENT}(states {first}-{last} were looked at, of a long trace)"
+    elif explanation.repair is None:
         yield f"{INDENT}no trace of as many states keeps it"
     changes = [
         (_states(list(run)), visible(says))

@@ -1,0 +1,42 @@
+"""The states of a trace that an explanation looks at: all, or of a long one a window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.monitoring.limits import LIMITS
+
+
+def states_to_explain(
+    machine: MealyMonitor,
+    stretch: range,
+    decisive: int,
+    word: Callable[[int, int], Sequence[int]],
+) -> Sequence[int]:
+    """The numbers of states that explain a violation whose decisive state this is, ascending.
+
+    Of a long ``stretch`` they are those of a window around the decisive state, the first one, and
+    the fewest before the window that bring the machine into the state in which it was there: where
+    it comes into a state again, what was in between makes no difference. So the rule is violated by
+    these states alone, and with the same one. ``word`` has the letter classes from one state to
+    another (inclusive).
+    """
+    window = range(
+        max(stretch.start, decisive - LIMITS.states_explained),
+        min(stretch.stop, decisive + LIMITS.states_explained + 1),
+    )
+    if len(stretch) <= 2 * LIMITS.states_explained or window.start == stretch.start:
+        return stretch[: window.stop - stretch.start] if len(window) < len(stretch) else stretch
+    first, *letters = word(stretch.start, window.start - 1)
+    state = machine.successors[0][first]
+    way, length_at = [stretch.start], {state: 1}
+    for number, letter in enumerate(letters, stretch.start + 1):
+        state = machine.successors[state][letter]
+        if state in length_at:
+            del way[length_at[state] :]
+            length_at = {one: n for one, n in length_at.items() if n <= len(way)}
+        else:
+            way.append(number)
+            length_at[state] = len(way)
+    return [*way, *window]

@@ -1,0 +1,82 @@
+"""The states that an explanation looks at, and what a rule reads of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
+from rulec.logic import formula as ltl
+from rulec.logic.kleene import Unknown, holds, weighted_sum
+from rulec.monitoring.explain.margins import Margin, margin_in
+from rulec.monitoring.explain.nearest_satisfying import Letter
+from rulec.monitoring.state_view import StateView
+from rulec.trace import Value
+
+_Known = TypeVar("_Known")
+
+
+def known_value(value: _Known | Unknown) -> _Known:
+    """A value that is known."""
+    assert not isinstance(value, Unknown), "verify has read it"
+    return value
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedStates:
+    """States of a binding, all of whose values are known.
+
+    ``shown`` are the indices of the states to show, ``decisive`` is one of them. ``given`` has
+    for an index the state of which it is a completion.
+    """
+
+    views: Sequence[StateView]
+    bound: Mapping[str, str]
+    shown: Sequence[int]
+    decisive: int
+    given: Callable[[int], StateView]
+
+    def items(self, variables: Sequence[str]) -> tuple[str, ...]:
+        """The objects of some variables."""
+        return tuple([self.bound[variable] for variable in variables])
+
+    def value(self, name: str, variables: Sequence[str], view: StateView) -> Value:
+        """The value of a declaration in one of the states."""
+        value = view.value(name, self.items(variables))
+        assert not isinstance(value, Unknown), "verify has read it"
+        return value
+
+    def truths(self, proposition: ltl.Proposition) -> list[bool]:
+        """Truth of a proposition in each state."""
+        return [holds(proposition, self.bound, view) is True for view in self.views]
+
+    def word(self, machine: MealyMonitor) -> list[Letter]:
+        """The letters that a machine reads, digit by digit."""
+        return [
+            tuple(
+                [
+                    read.digit(known_value(weighted_sum(read.terms, self.bound, view)))
+                    if isinstance(read, NumberRead)
+                    else read.digit(self.value(read.name, read.variables, view))
+                    for read in machine.reads
+                ]
+            )
+            for view in self.views
+        ]
+
+    @property
+    def looked_up(self) -> Sequence[int]:
+        """The indices of the states to show, and of those that are compared."""
+        return sorted({*self.shown, self.decisive, max(self.decisive - 1, 0)})
+
+    def margins(self, comparison: ltl.Comparison) -> tuple[Margin | None, ...]:
+        """The margins of a comparison in the states that are shown; none of one of counts."""
+        if any(isinstance(term, ltl.Count) for _, term in comparison.terms):
+            return ()
+        margins = [margin_in(comparison, self.bound, self.given(number)) for number in self.shown]
+        return tuple([None if isinstance(one, Unknown) else one for one in margins])
+
+    def changes(self, values: Sequence[object] | Mapping[int, object]) -> bool:
+        """Tell whether the decisive state's value differs from the one before."""
+        return self.decisive > 0 and values[self.decisive] != values[self.decisive - 1]
