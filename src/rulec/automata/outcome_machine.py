@@ -101,7 +101,8 @@ class OutcomeMachine:
                 return tuple([int.from_bytes(row.tobytes(), "little") for row in rows])
 
     @cached_property
-    def _below(self) -> tuple[int, ...]:
+    def below(self) -> tuple[int, ...]:
+        """For each state those, as bits, from which no word comes to more."""
         below = [0] * len(self.above)
         for state, above in enumerate(self.above):
             while above:
@@ -115,7 +116,7 @@ class OutcomeMachine:
         members = frozenset(states)
         if len(members) < 3:
             return members
-        above, below = self.above, self._below
+        above, below = self.above, self.below
         bits = sum(1 << state for state in members)
         # A product may have equivalent states.
         first = [

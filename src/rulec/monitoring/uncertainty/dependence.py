@@ -1,19 +1,23 @@
-"""On which words an open verdict depends, and how it comes out by their values."""
+"""On which words an open verdict depends, and how it comes out by their values.
+
+Two completions that agree on some names and disagree on the outcome are two runs of a rule's
+machine, side by side on the same letters but for what is not fixed. So it is enough to follow pairs
+of states, of which there are few: not all sets of them. Of pairs only those count that are the
+furthest apart, by what can still come of their states.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain, combinations, groupby, product
+from itertools import combinations, groupby, product
 from typing import TypeAlias
 
-from rulec.automata.outcome_machine import KEPT, OutcomeRange, SetMonitor
-from rulec.monitoring.uncertainty.prospects import Prospects, agreement
+from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.monitoring.uncertainty.prospects import Prospects
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import bits_of
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
-
-MOST_WAYS = 1 << 12
-"""So many sets of states are told apart while looking for what decides, from each start."""
 
 MOST_REMEMBERED = 1 << 14
 """Steps that are kept before all are forgotten."""
@@ -25,8 +29,15 @@ BEFORE = ""
 """Stands among names for what was before the first state."""
 
 _Word: TypeAlias = tuple[int, ...]
-_Way: TypeAlias = tuple[int | None, ...]
-"""The set of states that each word has led to, None where a word cannot be."""
+_Pairs: TypeAlias = frozenset[tuple[int, int]]
+"""States of a first run, each with the states, as bits, that a second run may be in.
+
+They are of words on which the fixed reads have the same digits. It is asked whether the first run
+may come to less than the second one.
+"""
+
+_Stretch: TypeAlias = tuple[tuple[int, int], int]
+"""The letters of two words, and for how long they stay."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,33 +51,48 @@ class PossibleAlternative:
     constants: Mapping[str, object]
 
 
-class Ways:
-    """The ways that words of one machine lead, step by step, remembered from word to word.
+class RunPairs:
+    """Pairs of runs of one machine, step by step, remembered from word to word.
 
-    Letters have numbers: states are many, their letters few. So have the choices that letters of
-    words leave, side by side, once the digits of some reads are fixed; fewer still, and what comes
-    of many letters is the same.
+    Letters have numbers: states are many, their letters few. So have the choices that two letters
+    leave, side by side, once the digits of some reads are fixed; fewer still.
     """
 
-    def __init__(self, monitor: SetMonitor, classes: LetterClasses) -> None:
-        self.monitor = monitor
+    def __init__(self, machine: OutcomeMachine, classes: LetterClasses) -> None:
+        self._machine = machine
         self._classes = classes
-        self._prospects = Prospects(monitor.machine)
+        self._prospects = Prospects(machine)
+        self._safe = sum(1 << state for state in machine.safe)
+        self._starts: dict[bool, _Pairs] = {}
         self._forget()
 
     def _forget(self) -> None:
         self._numbers: dict[Letters, int] = {}
         self._letters: list[Letters] = []
-        self._choices: dict[tuple[_Word, tuple[int, ...]], int] = {}
-        self._places: dict[frozenset[tuple[int, ...]], int] = {}
-        self._sets: list[frozenset[tuple[int, ...]]] = []
-        self._after: dict[tuple[frozenset[_Way], int], frozenset[_Way]] = {}
-        self._onward: dict[tuple[_Way, int], list[_Way]] = {}
+        self._open: list[frozenset[int]] = []
+        self._choices: dict[tuple[int, int, tuple[int, ...]], int] = {}
+        self._places: dict[frozenset[tuple[int, int]], int] = {}
+        self._sets: list[frozenset[tuple[int, int]]] = []
+        self._after: dict[tuple[_Pairs, int], _Pairs] = {}
+        self._onward: dict[tuple[tuple[int, int], int], list[tuple[int, int]]] = {}
+        self._least: dict[tuple[int, int], list[int]] = {}
+        self._greatest: dict[tuple[int, int], int] = {}
+        self._ends: dict[tuple[_Pairs, int], bool] = {}
         self._along: dict[_Word, list[bytes]] = {}
+        self._undecided: dict[tuple[_Pairs, bytes], _Pairs | None] = {}
+
+    def starts(self, *, same: bool) -> _Pairs:
+        """The pairs of states that runs begin in, optionally only in the same."""
+        if same not in self._starts:
+            states = self._machine.starts
+            every = sum(1 << state for state in states)
+            rows = {state: 1 << state if same else every for state in states}
+            self._starts[same] = self._furthest(rows)
+        return self._starts[same]
 
     def forget_many(self) -> None:
         """Forget what has been met, if it is much; numbers mean nothing any more."""
-        most = max(len(self._after), len(self._onward), len(self._choices))
+        most = max(len(self._after), len(self._onward), len(self._choices), len(self._undecided))
         if most > MOST_REMEMBERED or len(self._along) > MOST_WORDS:
             self._forget()
 
@@ -74,8 +100,11 @@ class Ways:
         """A word in numbers."""
         numbers = self._numbers
         for letters in dict.fromkeys(states):
-            if numbers.setdefault(letters, len(self._letters)) == len(self._letters):
+            if letters not in numbers:
+                numbers[letters] = len(self._letters)
                 self._letters.append(letters)
+                digits = [_united(masks) for masks in zip(*letters, strict=True)]
+                self._open.append(frozenset(n for n, own in enumerate(digits) if own & own - 1))
         return tuple([numbers[letters] for letters in states])
 
     def prospects(self, word: _Word) -> list[bytes]:
@@ -87,49 +116,172 @@ class Ways:
             self._along[word] = found
         return found
 
-    def choices(self, letters: _Word, fixed: tuple[int, ...]) -> int:
-        """The number of the choices of digits of fixed reads that some word has."""
-        key = letters, fixed
+    def undecided(self, pairs: _Pairs, outcomes: bytes) -> _Pairs | None:
+        """The pairs of which it is open whether the first run comes to less than the second one.
+
+        None if it surely does for some. ``outcomes`` are those, as bits, that the rest of the word
+        may have, by state.
+        """
+        key = pairs, outcomes
+        if key not in self._undecided:
+            self._undecided[key] = _undecided(pairs, outcomes)
+        return self._undecided[key]
+
+    def choices(self, one: int, other: int, fixed: tuple[int, ...]) -> int:
+        """The number of what two letters may be, with the same digits of fixed reads."""
+        if one == other:
+            # Reads with one digit divide nothing.
+            fixed = tuple([n for n in fixed if n in self._open[one]])
+        key = one, other, fixed
         found = self._choices.get(key)
         if found is None:
-            groups = [self._classes.groups(self._letters[number], fixed) for number in letters]
-            parts = dict.fromkeys(part for group in groups for part in group)
-            choices = frozenset(tuple([group.get(part, 0) for group in groups]) for part in parts)
+            first, second = (
+                self._classes.groups(self._letters[number], fixed) for number in (one, other)
+            )
+            choices = frozenset([(first[part], second[part]) for part in first.keys() & second])
             found = self._places.setdefault(choices, len(self._sets))
             if found == len(self._sets):
                 self._sets.append(choices)
             self._choices[key] = found
         return found
 
-    def after(self, ways: frozenset[_Way], choices: int) -> frozenset[_Way]:
-        """The ways after one step of each word."""
-        key = ways, choices
+    def after(self, pairs: _Pairs, choices: int) -> _Pairs:
+        """The pairs after one more step."""
+        key = pairs, choices
         found = self._after.get(key)
         if found is None:
-            found = frozenset(chain.from_iterable([self._after_one(way, choices) for way in ways]))
-            self._after[key] = found
+            rows: dict[int, int] = {}
+            for row in pairs:
+                for one, others in self._onward.get((row, choices)) or self._from(row, choices):
+                    rows[one] = rows.get(one, 0) | others
+            found = self._after[key] = self._furthest(rows)
         return found
 
-    def _after_one(self, way: _Way, choices: int) -> list[_Way]:
-        key = way, choices
-        found = self._onward.get(key)
+    def _from(self, row: tuple[int, int], choices: int) -> list[tuple[int, int]]:
+        rows: dict[int, int] = {}
+        for first, second in self._sets[choices]:
+            targets = self._greatest_behind(row[1], second)
+            for target in self._least_behind(row[0], first):
+                rows[target] = rows.get(target, 0) | targets
+        found = self._onward[row, choices] = list(rows.items())
+        return found
+
+    def _least_behind(self, state: int, classes: int) -> list[int]:
+        key = state, classes
+        found = self._least.get(key)
         if found is None:
-            found = self._onward[key] = [
-                tuple([None if step is None else step.states for step in row])
-                for row in self.steps((way,), choices)
-            ]
+            machine = self._machine
+            targets = _behind(machine, state, classes)
+            found = [*bits_of(_foremost(targets, machine.below, machine.above))]
+            self._least[key] = found
         return found
 
-    def steps(self, ways: Iterable[_Way], choices: int) -> Iterator[list[OutcomeRange | None]]:
-        """Steps from each way, for each of some choices."""
-        step_of = self.monitor.step
-        for way, choice in product(ways, self._sets[choices]):
-            steps = [
-                None if here is None or not classes else step_of(here, classes)
-                for here, classes in zip(way, choice, strict=True)
-            ]
-            if any(steps):
-                yield steps
+    def _greatest_behind(self, states: int, classes: int) -> int:
+        key = states, classes
+        found = self._greatest.get(key)
+        if found is None:
+            machine, targets = self._machine, 0
+            for state in bits_of(states):
+                targets |= _behind(machine, state, classes)
+            found = self._greatest[key] = _foremost(targets, machine.above, machine.below)
+        return found
+
+    def _furthest(self, rows: Mapping[int, int]) -> _Pairs:
+        """The pairs without those of which nothing can come that does not come of another.
+
+        So it is if the other's first state is no worse and its second one no better.
+        """
+        if all(others == 1 << one for one, others in rows.items()):
+            return frozenset(rows.items())
+        machine, found = self._machine, []
+        above, below, lost, safe = machine.above, machine.below, machine.lost, self._safe
+        rows = {
+            one: left
+            for one, others in rows.items()
+            if one not in lost and (left := others & ~safe)
+        }
+        if len(rows) == 1:
+            ((one, others),) = rows.items()
+            return frozenset([(one, _foremost(others, above, below))])
+        firsts = sum(1 << one for one in rows)
+        reach = {one: _reach(others, below) for one, others in rows.items()}
+        for one, others in rows.items():
+            better = below[one] & firsts & ~(1 << one)
+            # Of states that are alike the first one counts.
+            better &= ~above[one] | (1 << one) - 1
+            for other in bits_of(better):
+                others &= ~reach[other]
+            if others:
+                found.append((one, _foremost(others, above, below)))
+        return frozenset(found)
+
+    def agree(self, pairs: _Pairs, choices: int) -> bool:
+        """Whether no first run of pairs comes to less than the second one with a last letter."""
+        key = pairs, choices
+        found = self._ends.get(key)
+        if found is None:
+            outputs = self._machine.outputs
+            found = self._ends[key] = all(
+                min([outputs[one][symbol] for symbol in bits_of(first)])
+                >= max([outputs[n][symbol] for n in bits_of(others) for symbol in bits_of(second)])
+                for (one, others), (first, second) in product(pairs, self._sets[choices])
+            )
+        return found
+
+
+def _undecided(pairs: _Pairs, outcomes: bytes) -> _Pairs | None:
+    found = []
+    for one, others in pairs:
+        own, left = outcomes[one], 0
+        # A lower bit is a better outcome.
+        most = 2 * (own & -own)
+        for other in bits_of(others):
+            theirs = outcomes[other]
+            if theirs & -theirs > own:
+                return None
+            if theirs >= most:
+                left |= 1 << other
+        if left:
+            found.append((one, left))
+    return frozenset(found)
+
+
+def _behind(machine: OutcomeMachine, state: int, classes: int) -> int:
+    """The states, as bits, that some classes lead to."""
+    row, found = machine.successors[state], 0
+    for symbol in bits_of(classes):
+        found |= 1 << row[symbol]
+    return found
+
+
+def _united(masks: Iterable[int]) -> int:
+    found = 0
+    for mask in masks:
+        found |= mask
+    return found
+
+
+def _reach(states: int, below: Sequence[int]) -> int:
+    """The states, as bits, that come to no more than one of some."""
+    found = 0
+    for state in bits_of(states):
+        found |= below[state]
+    return found
+
+
+def _foremost(states: int, beyond: Sequence[int], before: Sequence[int]) -> int:
+    """Those of some states that no other of them is beyond, as bits; of equivalent ones the first.
+
+    ``beyond`` and ``before`` are, for each state, itself and those that are.
+    """
+    left = states
+    if not states & (states - 1):
+        return states
+    for state in bits_of(states):
+        others = beyond[state] & left & ~(1 << state)
+        if others & ~before[state] or others & ((1 << state) - 1):
+            left ^= 1 << state
+    return left
 
 
 class Dependence:
@@ -140,15 +292,15 @@ class Dependence:
 
     def __init__(
         self,
-        ways: Ways,
+        runs: RunPairs,
         alternatives: Sequence[PossibleAlternative],
         unknown: Sequence[frozenset[str]],
     ) -> None:
-        ways.forget_many()
-        self._ways = ways
-        self._monitor = ways.monitor
+        runs.forget_many()
+        self._runs = runs
         self._unknown = unknown
-        self._alternatives = [(ways.word(own.letters), own.constants) for own in alternatives]
+        self._alternatives = [(runs.word(own.letters), own.constants) for own in alternatives]
+        self._stretches: dict[tuple[_Word, _Word], list[_Stretch]] = {}
 
     def smallest(self, names: Sequence[str]) -> tuple[str, ...] | None:
         """The smallest set of names that decides; of equally small ones the first in order.
@@ -160,6 +312,8 @@ class Dependence:
             return None
         needed = [name for name in names if not self.decides(frozenset(names) - {name})]
         others = [name for name in names if name not in needed]
+        if not others:
+            return tuple(names)
         for size in range(len(others) + 1):
             for more in combinations(others, size):
                 if self.decides(frozenset((*needed, *more))):
@@ -169,10 +323,12 @@ class Dependence:
     def decides(self, names: frozenset[str]) -> bool:
         """Whether completions that agree on these names agree on the outcome."""
         fixed = tuple([n for n, about in enumerate(self._unknown) if about and about <= names])
-        starts = {self._monitor.start}
-        if BEFORE in names:
-            starts = {self._monitor.number(state) for state in self._monitor.machine.starts}
-        return all(self._agree(group, fixed, starts) for group in self._groups(names))
+        starts = self._runs.starts(same=BEFORE in names)
+        return all(
+            self._agree(one, other, fixed, starts)
+            for group in self._groups(names)
+            for one, other in product(group, repeat=2)
+        )
 
     def _groups(self, names: frozenset[str]) -> Iterator[list[_Word]]:
         """Alternatives that have the same values of these constants."""
@@ -182,50 +338,33 @@ class Dependence:
             groups.setdefault(key, []).append(word)
         yield from groups.values()
 
-    def _agree(self, group: Sequence[_Word], fixed: tuple[int, ...], starts: Set[int]) -> bool:
-        """Whether words that have the same digits of fixed reads come to the same."""
-        ways: frozenset[_Way] = frozenset([(start,) * len(group) for start in starts])
-        most = MOST_WAYS * len(starts)
-        word = list(zip(*group, strict=True))
-        prospects = self._ways.prospects(group[0]) if len(group) == 1 else None
-        known = {letters: self._ways.choices(letters, fixed) for letters in set(word)}
-        *before, last = [known[letters] for letters in word]
+    def _agree(self, one: _Word, other: _Word, fixed: tuple[int, ...], pairs: _Pairs) -> bool:
+        """Whether runs on two words, from pairs of states, cannot come to less and to more."""
+        runs, stretches = self._runs, self._alike(one, other)
+        prospects = runs.prospects(one) if one is other else None
         begin = 0
-        for choices, alike in groupby(before):
-            length, look = len(list(alike)), 0
+        for letters, length in stretches:
+            choices, look = runs.choices(*letters, fixed), 0
             for place in range(length):
                 if place == look and prospects is not None:
                     # To look is worth while now and then
                     look = 2 * look + 1
-                    ways, is_split = self._undecided(ways, prospects[begin + place])
-                    if is_split or not ways:
-                        return not is_split
-                after = self._ways.after(ways, choices)
-                if len(after) > most:
-                    return False
-                if after == ways:
+                    undecided = runs.undecided(pairs, prospects[begin + place])
+                    if not undecided:
+                        return undecided is not None
+                    pairs = undecided
+                after = runs.after(pairs, choices)
+                if after == pairs:
                     break  # the same again, however often
-                ways = after
+                pairs = after
             begin += length
-        return all(_is_one(row) for row in self._ways.steps(ways, last))
+        return runs.agree(pairs, runs.choices(one[-1], other[-1], fixed))
 
-    def _undecided(self, ways: frozenset[_Way], outcomes: bytes) -> tuple[frozenset[_Way], bool]:
-        """The ways that may come to one outcome or several, and whether some surely comes to more.
-
-        They are of one word each.
-        """
-        found = []
-        for way in ways:
-            (number,) = way
-            assert number is not None, "a word can be"
-            agree = agreement(outcomes, self._monitor.states(number))
-            if agree is None:
-                found.append(way)
-            elif not agree:
-                return ways, True
-        return frozenset(found), False
-
-
-def _is_one(steps: Sequence[OutcomeRange | None]) -> bool:
-    best = min([step.best for step in steps if step], default=KEPT)
-    return best == max([step.worst for step in steps if step], default=KEPT)
+    def _alike(self, one: _Word, other: _Word) -> list[_Stretch]:
+        """What two words have for a while, without their last letters."""
+        found = self._stretches.get((one, other))
+        if found is None:
+            together = groupby(zip(one[:-1], other[:-1], strict=True))
+            found = [(letters, len(list(alike))) for letters, alike in together]
+            self._stretches[one, other] = found
+        return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +11,6 @@ from rulec.automata.outcome_machine import OutcomeMachine
 
 MOST_TABLES = 1 << 12
 """Tables of outcomes that are kept before all are forgotten."""
-
-SINGLE = frozenset({1, 2, 4})
-"""Outcomes, as bits, of which there is one."""
 
 
 class Prospects:
@@ -63,18 +60,3 @@ class Prospects:
         if number == len(self._tables):
             self._tables.append(joined)
         return number
-
-
-def agreement(outcomes: bytes, states: Iterable[int]) -> bool | None:
-    """Whether all words from these states have one outcome; None if that depends on the word.
-
-    ``outcomes`` are those that words may have, by state. There are two for sure if all from one
-    state have one, and some from another state another.
-    """
-    own = {outcomes[state] for state in states}
-    every = 0
-    for each in own:
-        every |= each
-    if every in SINGLE:
-        return True
-    return None if SINGLE.isdisjoint(own) else False

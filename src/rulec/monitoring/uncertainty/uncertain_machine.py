@@ -26,7 +26,7 @@ from rulec.monitoring.uncertainty.dependence import (
     BEFORE,
     Dependence,
     PossibleAlternative,
-    Ways,
+    RunPairs,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleWord
@@ -68,7 +68,7 @@ class UncertainMachine:
         self.machine = machine
         self.monitor = SetMonitor(machine)
         self.classes = LetterClasses(machine)
-        self._ways = Ways(self.monitor, self.classes)
+        self._runs = RunPairs(machine, self.classes)
         self._reasons: dict[object, OpenReasons] = {}
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
 
@@ -120,13 +120,13 @@ class UncertainMachine:
         pending: tuple[Reason, ...] = ("not over",) if PENDING in outcomes else ()
         if len(outcomes) == 1:
             return OpenReasons(pending)
-        varying = (
-            {name for own in alternatives for name in own.constants} if alternatives[1:] else set()
-        )
-        names = [name for name in order if any(name in own for own in (*unknown, varying))]
+        doubtful = frozenset[str]().union(*unknown)
+        if alternatives[1:]:
+            doubtful = doubtful.union(*[own.constants for own in alternatives])
+        names = [name for name in order if name in doubtful]
         if len(self.machine.starts) > 1:
             names.append(BEFORE)
-        dependence = Dependence(self._ways, alternatives, unknown)
+        dependence = Dependence(self._runs, alternatives, unknown)
         found = dependence.smallest(names)
         on = names if found is None else found
         told: tuple[Reason, ...] = ("not told",) if any(on) else ()
