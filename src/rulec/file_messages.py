@@ -62,6 +62,52 @@ WRONG_SETTINGS = Code(
     kind="command",
 )
 
+LINK_OUT = Code(
+    "R0730",
+    title="a link leads out of its tree",
+    why="A file in a stranger's checkout may be a link to any file of this machine, so rulec "
+    "neither reads nor writes through links that lead out of the tree: the git work tree, and "
+    "where there is none, the folder that was named. If you do mean that file, give its own path.",
+    bad="mkdir books\necho 'rulebook a signal p hard rule r { require p }' > a.rules\n"
+    "ln -s ../a.rules books/a.rules\nrulec check books",
+    good="mkdir books\necho 'rulebook a signal p hard rule r { require p }' > a.rules\n"
+    "ln -s ../a.rules books/a.rules\nrulec check a.rules",
+    kind="command",
+)
+
+NO_ORDINARY_FILE = Code(
+    "R0731",
+    title="something is no ordinary file",
+    why="A pipe, a socket or a device has the name of a source. Reading it might never end, so it "
+    "is left alone. Standard input is called `-`.",
+    bad="mkfifo pipe.rules\nrulec check .",
+    good="mkfifo pipe\necho 'rulebook a signal p hard rule r { require p }' > pipe &\n"
+    "rulec check - < pipe",
+    kind="command",
+)
+
+OUT_OF_TREE = Code(
+    "R0732",
+    title="a setting names a folder out of its tree",
+    why="A `rulec.toml` may come with a stranger's checkout, so the folders of its `search_path` "
+    "lie in the same git work tree, or without one below the file itself, and have relative names.",
+    bad="echo 'search_path = [\"/tmp\"]' > rulec.toml\nrulec list",
+    good="mkdir books\necho 'search_path = [\"books\"]' > rulec.toml\nrulec list",
+    kind="command",
+)
+
+NOTHING_LEFT = Code(
+    "R0733",
+    title="a folder has no source",
+    why="No file in or below the folder is called `….rules` and begins with `rulebook` or "
+    "`vocabulary`, comments aside; or all of them are left alone, since git ignores them or they "
+    "are in an environment such as `venv`. A file that is named itself is never left alone.",
+    bad="echo 'package x; rule y' > other.rules\nrulec check .",
+    good="echo 'package x; rule y' > other.rules\n"
+    "echo 'rulebook a signal p hard rule r { require p }' > mine.rules\nrulec check .",
+    kind="command",
+)
+
 
 def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
     way_out = "save the file as UTF-8"

@@ -217,19 +217,19 @@ def test_a_pipe_is_no_file_to_rewrite(folder, capsys):
 
 
 @pytest.mark.parametrize(
-    ("path", "words"),
+    ("path", "code", "words"),
     [
-        ("nowhere.rules", "no such file"),
-        ("nowhere", "no such file"),
-        ("esterle2019", "give the path that it stands for"),
-        ("empty", "there is no rulebook and no vocabulary in this folder"),
+        ("nowhere.rules", "R0701", "no such file"),
+        ("nowhere", "R0701", "no such file"),
+        ("esterle2019", "R0701", "give the path that it stands for"),
+        ("empty", "R0733", "there is no rulebook and no vocabulary in this folder"),
     ],
 )
-def test_paths_that_lead_nowhere(path, words, folder, capsys):
+def test_paths_that_lead_nowhere(path, code, words, folder, capsys):
     (folder / "empty").mkdir()
     status, out, err = fmt(capsys, path)
     assert (status, out) == (2, "")
-    assert "error[R0701]" in err
+    assert f"error[{code}]" in err
     assert words in err
 
 

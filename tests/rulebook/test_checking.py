@@ -54,11 +54,11 @@ def test_names_paths_and_folders(tmp_path, monkeypatch):
     Path("words").mkdir()
     Path("words/words.rules").write_text("vocabulary words { signal p }")
     # A name is a name, though there is a folder of that name.
-    assert [path.name for path in find_sources("paper")] == ["paper.rules"]
-    assert find_sources("./paper") == [Path("paper/mine.rules")]
-    assert find_sources("words") == [Path("words/words.rules")]
-    assert find_sources("words", [tmp_path / "words"]) == [tmp_path / "words" / "words.rules"]
-    assert find_sources("none.rules") == [Path("none.rules")]
+    assert [path.name for path in find_sources("paper").paths] == ["paper.rules"]
+    assert find_sources("./paper").paths == [Path("paper/mine.rules")]
+    assert find_sources("words").paths == [Path("words/words.rules")]
+    assert find_sources("words", [tmp_path / "words"]).paths == [tmp_path / "words" / "words.rules"]
+    assert find_sources("none.rules").paths == [Path("none.rules")]
 
 
 def test_one_file_under_two_names_is_checked_once(tmp_path):

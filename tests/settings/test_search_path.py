@@ -47,6 +47,41 @@ def test_what_is_wrong(tmp_path, text, words):
     assert diagnostic.place.file == str(tmp_path / "rulec.toml")
 
 
+@pytest.mark.parametrize("name", ["..", "../books", "/tmp", "link", "books/../..", "nul\\u0000"])
+def test_folders_out_of_the_tree_are_refused(name, tmp_path):
+    (tmp_path / "tree").mkdir()
+    project(tmp_path / "tree", f'search_path = ["{name}"]')
+    (tmp_path / "books").mkdir()
+    (tmp_path / "tree" / "link").symlink_to(tmp_path / "books")
+    with pytest.raises(RulecError) as caught:
+        search_path(tmp_path / "tree")
+    assert [one.code for one in caught.value.diagnostics] == ["R0732"]
+
+
+def test_a_work_tree_of_git_is_one_tree(tmp_path):
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "shared").mkdir()
+    (tmp_path / "part").mkdir()
+    project(tmp_path / "part", 'search_path = ["../shared"]')
+    assert search_path(tmp_path / "part") == (tmp_path / "part" / "../shared",)
+
+
+def test_names_that_are_too_long_are_no_folders(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(project(tmp_path, f'search_path = ["{"a" * 300}"]'))
+    assert main(["list"]) == 2
+    assert "error[R0704]" in capsys.readouterr().err
+
+
+def test_a_link_to_settings_elsewhere_is_refused(tmp_path):
+    (tmp_path / "secret").write_text("PASSWORD = hunter2")
+    (tmp_path / "tree").mkdir()
+    (tmp_path / "tree" / "rulec.toml").symlink_to(tmp_path / "secret")
+    with pytest.raises(RulecError) as caught:
+        search_path(tmp_path / "tree")
+    (one,) = caught.value.diagnostics
+    assert (one.code, one.place.excerpt) == ("R0730", "")
+
+
 def test_names_are_looked_for_there(tmp_path, monkeypatch, capsys):
     inside = project(tmp_path, 'search_path = ["books"]')
     (tmp_path / "books" / "words.rules").write_text("vocabulary words { signal p default true }\n")

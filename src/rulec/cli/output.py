@@ -18,11 +18,12 @@ from rulec.files import written_whole
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.findings.finding_formats import render
 from rulec.report.text.console import PAGE_WIDTH, page_width, print_aside, print_result
-from rulec.report.text.terminal_text import wants_color
+from rulec.report.text.terminal_text import visible, wants_color
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.rulebook.files.source_walk import LeftAlone
 
 
 def open_session(at: str = "") -> rulec.Session:
@@ -107,6 +108,18 @@ def print_lost(deed: str, what: str, signal_number: int | None) -> None:
     """Say that the process that, for one, ``judged`` something was stopped, and what follows."""
     by = "" if signal_number is None else f" by signal {signal_number}"
     print_aside(f"rulec: the process that {deed} {what} was stopped{by}; another one does it again")
+
+
+def print_left_alone(left_alone: Sequence[LeftAlone], *, verbose: bool) -> None:
+    """Say what was not looked into: each thing by itself, or how many of each kind."""
+    if verbose:
+        for one in left_alone:
+            print_aside(f"left alone: {visible(one.path)}: {one.why}")
+    elif left_alone:
+        # Sources below folders, 5 ms: verbs without folders do without.
+        from rulec.rulebook.files.source_walk import in_words
+
+        print_aside(f"left alone: {visible(in_words(left_alone))}")
 
 
 def counted(number: int, noun: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from rulec.diagnostics.source_text import SourceLocation, Span, address
@@ -44,6 +44,13 @@ class Diagnostic:
 def at(span: Span | None) -> SourceLocation | None:
     """The place of a span that may be missing."""
     return None if span is None else span.place
+
+
+def unquoted(diagnostic: Diagnostic) -> Diagnostic:
+    """A diagnostic about the same place, without its line."""
+    if diagnostic.place is None:
+        return diagnostic
+    return replace(diagnostic, place=replace(diagnostic.place, excerpt=""))
 
 
 def diagnostic_rows(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-FILE_WORDS: Final = ("rulebook", "vocabulary")
+from rulec.beginnings import FILE_WORDS
+
 HEADER_WORDS: Final = (
     *FILE_WORDS,
     *("title", "law", "use", "extends", "traffic", "semantics", "step", "priority"),

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from types import ModuleType
 from typing import TypeVar, cast
 
-from rulec.diagnostics import Diagnostic, RulecError, Source, Span, nearest_name
+from rulec.beginnings import is_foreign
+from rulec.diagnostics import Diagnostic, RulecError, Source, Span
 from rulec.syntax import tree
 from rulec.syntax.assembly import Part, assemble_file, assemble_rule
 from rulec.syntax.building import formulas, items
 from rulec.syntax.building.formulas import NodeValues
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.grammar import Mismatch, ParseNode, Start, TooDeep, parse_piece
-from rulec.syntax.keywords import DECLARATION_WORDS, FILE_WORDS, HEADER_WORDS, RESERVED
+from rulec.syntax.keywords import DECLARATION_WORDS, HEADER_WORDS, RESERVED
 from rulec.syntax.messages import structure
 from rulec.syntax.scanner import Token, checked, scan
 from rulec.syntax.split_file import FileSplitter
@@ -38,7 +39,11 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     ``complete``), so that later stages need not complain about it a second time.
     """
     try:
-        tokens = scan(checked(source))
+        own = checked(source)
+        if is_foreign(own.text):
+            # Another program's file, or a secret behind a link: nothing of it is repeated.
+            return _NOTHING, (structure.no_beginning(own),)
+        tokens = scan(own)
     except RulecError as error:
         return _NOTHING, error.diagnostics
     if not tokens:
@@ -55,8 +60,6 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
         reader.rule(part) if isinstance(part, RulePieces) else reader.item(part)
         for part in splitter.split()
     ]
-    if _is_something_else(parts):
-        return _NOTHING, (structure.not_a_rulebook(Span(source, tokens[0].start, tokens[0].end)),)
     file, order_mistakes = assemble_file(source, parts)
     mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes)
     return file, tuple(sorted(mistakes, key=_position))
@@ -89,15 +92,6 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
     if formula is None:
         raise RulecError(reader.mistakes)
     return formula
-
-
-def _is_something_else(parts: Sequence[Part]) -> bool:
-    """Tell whether a file is no rulebook at all."""
-    first = parts[0]
-    if not isinstance(first, tree.BrokenItem) or nearest_name(first.word, FILE_WORDS):
-        return False
-    broken = sum(isinstance(part, tree.BrokenItem) for part in parts)
-    return broken > len(parts) - broken
 
 
 def _position(diagnostic: Diagnostic) -> tuple[int, int]:

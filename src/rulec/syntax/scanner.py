@@ -8,7 +8,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from rulec.beginnings import beginning_of, is_foreign
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
+from rulec.diagnostics.diagnostic import unquoted
 from rulec.file_messages import FILE_TOO_LARGE
 from rulec.files import MAX_SOURCE_BYTES, decoded, without_null
 
@@ -38,7 +40,13 @@ def decode(name: str, data: bytes) -> Source:
     Raises RulecError: more than ``MAX_SOURCE_BYTES``, not UTF-8, or not a text at all.
     """
     _check_size(name, len(data))
-    return decoded(name, data)
+    try:
+        return decoded(name, data)
+    except RulecError as error:
+        if not is_foreign(beginning_of(data)):
+            raise
+        # Not a word of a file that is another program's, or a secret behind a link.
+        raise RulecError(tuple(map(unquoted, error.diagnostics))) from None
 
 
 def checked(source: Source) -> Source:

@@ -7,9 +7,9 @@ import sys
 import click
 
 from rulec.cli.options.output_options import Output
-from rulec.cli.options.shared_options import at_option, findings_options
+from rulec.cli.options.shared_options import at_option, findings_options, verbose_option
 from rulec.cli.options.shell_completion import complete_sources
-from rulec.cli.output import counted, print_findings
+from rulec.cli.output import counted, print_findings, print_left_alone
 from rulec.files import MAX_SOURCE_BYTES
 from rulec.settings import search_path
 
@@ -24,11 +24,15 @@ from rulec.settings import search_path
     is_flag=True,
     help="Check anew also what has not changed since the last time.",
 )
+@verbose_option
 @at_option
-def command(sources: tuple[str, ...], to: Output, fail_on: str, at: str, no_cache: bool) -> int:
+def command(
+    sources: tuple[str, ...], to: Output, *, fail_on: str, at: str, no_cache: bool, verbose: bool
+) -> int:
     """Check rulebooks and vocabularies, and write nothing.
 
-    Each is a name, a file, a folder (all .rules files in it), or `-` for standard input.
+    Each is a name, a file, a folder (the sources in and below it, but for what git ignores, and for
+    environments), or `-` for standard input.
 
     Exit status: 0 no mistakes, 1 there are some, 2 a file could not be read.
     """
@@ -39,10 +43,12 @@ def command(sources: tuple[str, ...], to: Output, fail_on: str, at: str, no_cach
         return sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1)
 
     done = check(sources, standard_input, search_path(), at, recalls=not no_cache)
-    return print_findings(
+    status = print_findings(
         done.findings,
         done.unread,
         nothing=f"{counted(len(done.files), 'file')} checked",
         to=to,
         fail_on=fail_on,
     )
+    print_left_alone(done.left_alone, verbose=verbose)
+    return status

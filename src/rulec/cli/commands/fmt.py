@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.output import counted
+from rulec.cli.options.shared_options import verbose_option
+from rulec.cli.output import counted, print_left_alone
 from rulec.files import MAX_SOURCE_BYTES
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_aside, print_result
@@ -24,11 +25,13 @@ if TYPE_CHECKING:
 @click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path(allow_dash=True))
 @click.option("--check", is_flag=True, help="Write nothing; name the files that would change.")
 @click.option("--diff", is_flag=True, help="Write nothing; print what would change.")
-def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
+@verbose_option
+def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -> int:
     """Format rulebooks and vocabularies in place.
 
-    Each PATH is a file or a folder (all .rules files in it and below it); without one it is the
-    working folder. `-` formats standard input to standard output.
+    Each PATH is a file or a folder (the sources in it and below it, but for what git ignores, and
+    for environments); without one it is the working folder. `-` formats standard input to standard
+    output.
 
     A file with mistakes of spelling is left as it is, and its mistakes are shown. What is written
     means the same and has the same comments, or nothing is written.
@@ -50,7 +53,8 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
             return ExitStatus.OK
         _show([file] if file.changed else [], diff=diff)
         return ExitStatus.after(failed=file.changed)
-    files, refused = format_files(paths or ["."], search_path())
+    done = format_files(paths or ["."], search_path())
+    files, refused = done.files, done.refused
     changed = [file for file in files if file.changed]
     in_form = len(files) - len(changed)
     if writes:
@@ -68,6 +72,7 @@ def command(paths: tuple[str, ...], check: bool, diff: bool) -> int:
         parts.append(f"{counted(in_form, 'file')} in form already")
     if parts:
         print_aside(", ".join(parts))
+    print_left_alone(done.left_alone, verbose=verbose)
     return ExitStatus.after(answered=not refused, failed=bool(changed) and not writes)
 
 

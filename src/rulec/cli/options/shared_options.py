@@ -165,6 +165,10 @@ at_option = click.option(
     "out.  [default: that of the rulebook's `law` line, else today]",
 )
 
+verbose_option = click.option(
+    "-v", "--verbose", is_flag=True, help="Name each file and folder that is left alone, and why."
+)
+
 findings_options = combined(
     [
         output_options(

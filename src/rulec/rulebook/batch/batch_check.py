@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import diagnostic_rows
-from rulec.file_messages import UNREADABLE_FILE
 from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
+from rulec.rulebook.files.source_walk import FoundSources, LeftAlone, sources_below
 from rulec.value_display import Rows, short_repr
 
 _STANDARD_INPUT = Path("standard input")
@@ -22,13 +22,14 @@ _STANDARD_INPUT = Path("standard input")
 
 @dataclass(frozen=True, slots=True)
 class Checked(Rows):
-    """Result of a batch check: checked files, findings, unread files."""
+    """Result of a batch check: checked files, findings, unread files, files left alone."""
 
     __repr__ = short_repr
 
     files: tuple[str, ...]
     findings: tuple[Diagnostic, ...]
     unread: tuple[Diagnostic, ...]
+    left_alone: tuple[LeftAlone, ...] = ()
 
     def rows(self) -> list[dict[str, Any]]:
         """Rows of the findings and of the files that are unreadable."""
@@ -54,8 +55,9 @@ def check(
     """
     files: dict[str, str] = {}
     findings: dict[tuple[object, ...], Diagnostic] = {}
-    unread: list[Diagnostic] = []
-    for path in _meant(references, search_path, unread):
+    meant = FoundSources()
+    unread = meant.refused
+    for path in _meant(references, search_path, meant):
         try:
             data = standard_input() if path is _STANDARD_INPUT else search.read_bytes(path)
         except RulecError as error:
@@ -67,7 +69,9 @@ def check(
         files[identity] = str(path)
         for finding in _findings(path, data, search_path, at, recalls=recalls):
             findings.setdefault(_identity(finding), finding)
-    return Checked(tuple(files.values()), tuple(findings.values()), tuple(unread))
+    return Checked(
+        tuple(files.values()), tuple(findings.values()), tuple(unread), tuple(meant.left_alone)
+    )
 
 
 def _findings(
@@ -91,16 +95,20 @@ def _findings(
 
 
 def _meant(
-    references: Iterable[str], search_path: Sequence[Path], unread: list[Diagnostic]
+    references: Iterable[str], search_path: Sequence[Path], meant: FoundSources
 ) -> Iterator[Path]:
     for reference in references:
         if reference == "-":
             yield _STANDARD_INPUT
             continue
         try:
-            yield from find_sources(reference, search_path)
+            found = find_sources(reference, search_path)
         except RulecError as error:
-            unread += error.diagnostics
+            meant.refused += error.diagnostics
+            continue
+        meant.refused += found.refused
+        meant.left_alone += found.left_alone
+        yield from found.paths
 
 
 def _identity(diagnostic: Diagnostic) -> tuple[object, ...]:
@@ -110,23 +118,23 @@ def _identity(diagnostic: Diagnostic) -> tuple[object, ...]:
     return diagnostic.code, diagnostic.message, where
 
 
-def find_sources(reference: str, search_path: Sequence[Path] = ()) -> list[Path]:
+def find_sources(reference: str, search_path: Sequence[Path] = ()) -> FoundSources:
     """The files that a name, a path or a folder refers to.
 
-    A folder stands for every ``.rules`` file in it and below it, hidden folders left out. A path
+    A folder stands for the sources in it and below it, as ``sources_below`` finds them. A path
     that leads nowhere is returned as it is; reading it tells why. Raises RulecError R0703 for an
-    unknown name, R0701 for a folder without any such file.
+    unknown name.
     """
     is_path = "/" in reference or reference.endswith(".rules")
     if not is_path:
         rulebooks = search.available_rulebooks(search_path)
         vocabularies = {path.stem: path for path in search.available_vocabularies(search_path)}
         if reference in rulebooks:
-            return [search.find_rulebook(reference, search_path)]
+            return FoundSources([search.find_rulebook(reference, search_path)])
         if reference in vocabularies:
-            return [vocabularies[reference]]
+            return FoundSources([vocabularies[reference]])
     if os.path.isdir(reference):  # noqa: PTH112 - Path raises on a null character
-        return _in_folder(reference)
+        return sources_below(reference)
     if not is_path:
         raise NAME_NOT_FOUND.error(
             None,
@@ -134,22 +142,4 @@ def find_sources(reference: str, search_path: Sequence[Path] = ()) -> list[Path]
             help=search.suggest(reference, [*rulebooks, *vocabularies]),
             notes=(search.BY_PATH,),
         )
-    return [Path(reference)]
-
-
-def _in_folder(folder: str) -> list[Path]:
-    paths: list[Path] = []
-    for here, inner, names in os.walk(folder, onerror=_locked):
-        inner[:] = sorted(name for name in inner if not name.startswith("."))
-        paths += [Path(here, name) for name in sorted(names) if name.endswith(".rules")]
-    if paths:
-        return paths
-    message = "there is no rulebook and no vocabulary in this folder"
-    way_out = "give a folder with files whose names end in `.rules`"
-    raise UNREADABLE_FILE.error(SourceLocation(folder), message, help=way_out)
-
-
-def _locked(problem: OSError) -> NoReturn:
-    message = f"the folder cannot be read: {(problem.strerror or str(problem)).lower()}"
-    place = SourceLocation(os.fsdecode(problem.filename))
-    raise UNREADABLE_FILE.error(place, message, help="check its permissions")
+    return FoundSources([Path(reference)])

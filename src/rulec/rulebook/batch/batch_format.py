@@ -12,6 +12,7 @@ from rulec.file_messages import UNREADABLE_FILE, UNWRITABLE_FILE
 from rulec.files import written_whole
 from rulec.rulebook.batch.batch_check import find_sources
 from rulec.rulebook.files.search_path import read_bytes
+from rulec.rulebook.files.source_walk import FoundSources, LeftAlone
 from rulec.syntax import decode
 from rulec.syntax.formatting import format_source
 
@@ -31,22 +32,32 @@ class Formatted:
         return self.before != self.after
 
 
-def format_files(
-    references: Iterable[str], search_path: Sequence[Path] = ()
-) -> tuple[tuple[Formatted, ...], tuple[Diagnostic, ...]]:
+@dataclass(frozen=True, slots=True)
+class FormattedFiles:
+    """Files formatted, why others could not be, and what was left alone."""
+
+    files: tuple[Formatted, ...]
+    refused: tuple[Diagnostic, ...]
+    left_alone: tuple[LeftAlone, ...]
+
+
+def format_files(references: Iterable[str], search_path: Sequence[Path] = ()) -> FormattedFiles:
     """Format the files at the paths, each once, and collect errors; nothing is written.
 
     ``search_path`` is for who gives a name instead. Raises FormattingError, a mistake in rulec.
     """
     done: dict[str, Formatted] = {}
     refused: list[Diagnostic] = []
+    left_alone: list[LeftAlone] = []
     for reference in references:
         try:
-            paths = _at(reference, search_path)
+            found = _at(reference, search_path)
         except RulecError as error:
             refused += error.diagnostics
             continue
-        for path in paths:
+        refused += found.refused
+        left_alone += found.left_alone
+        for path in found.paths:
             identity = os.path.realpath(path)
             if identity in done:
                 continue
@@ -54,10 +65,10 @@ def format_files(
                 done[identity] = formatted(str(path), path, read_bytes(path))
             except RulecError as error:
                 refused += error.diagnostics
-    return tuple(done.values()), tuple(refused)
+    return FormattedFiles(tuple(done.values()), tuple(refused), tuple(left_alone))
 
 
-def _at(reference: str, search_path: Sequence[Path]) -> list[Path]:
+def _at(reference: str, search_path: Sequence[Path]) -> FoundSources:
     # The file that a rulebook's name stands for is often another's.
     if "/" not in reference and not os.path.lexists(reference):
         elsewhere = _named(reference, search_path)
@@ -73,7 +84,7 @@ def _at(reference: str, search_path: Sequence[Path]) -> list[Path]:
 
 def _named(reference: str, search_path: Sequence[Path]) -> Path | None:
     try:
-        (path,) = find_sources(reference, search_path)
+        (path,) = find_sources(reference, search_path).paths
     except RulecError:
         return None
     return None if path == Path(reference) else path

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from rulec.beginnings import LEAD_BYTES, beginning_of, first_word_at
 from rulec.diagnostics import Label, RulecError, Span, did_you_mean, named
 from rulec.files import MAX_SOURCE_BYTES, opened
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
-
-_SUFFIX = ".rules"
-_LEAD = re.compile(r"(?:\s+|#[^\n]*)*(\w*)")
-_LEAD_BYTES = 65536
+from rulec.rulebook.files.source_walk import SUFFIX, rules_files
+from rulec.trees import refuse_no_source
 
 BY_PATH = "a file is given by its path, such as `./mine.rules`"
 
@@ -39,9 +37,9 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
     Raises RulecError R0703 with the nearest name and all those available.
     """
     text = str(reference)
-    if "/" in text or text.endswith(_SUFFIX):
+    if "/" in text or text.endswith(SUFFIX):
         path = Path(text)
-        inside = path / f"{path.name}{_SUFFIX}"
+        inside = path / f"{path.name}{SUFFIX}"
         return inside if _is_file(inside) else path
     found = _by_name(text, search_path)
     if found is not None:
@@ -54,7 +52,7 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
 
 def _by_name(name: str, search_path: Sequence[Path]) -> Path | None:
     for folder in (*search_path, rulebooks_folder()):
-        for candidate in (folder / f"{name}{_SUFFIX}", folder / name / f"{name}{_SUFFIX}"):
+        for candidate in (folder / f"{name}{SUFFIX}", folder / name / f"{name}{SUFFIX}"):
             if name and _is_file(candidate):
                 return candidate
     return None
@@ -65,7 +63,7 @@ def available_rulebooks(search_path: Sequence[Path] = ()) -> tuple[str, ...]:
     names = {
         path.stem
         for folder in (*search_path, rulebooks_folder())
-        for path in _rules_files(folder)
+        for path in rules_files(folder)
         if path.parent == folder or path.stem == path.parent.name
         if _lead(path) == "rulebook"
     }
@@ -78,7 +76,7 @@ def available_vocabularies(
     """Files of all vocabularies, by name, those beside the rulebook ``user`` included."""
     first: dict[str, Path] = {}
     for folder in _vocabulary_folders(user, search_path):
-        for path in _rules_files(folder):
+        for path in rules_files(folder):
             if path.parent == folder and _lead(path) == "vocabulary":
                 first.setdefault(path.stem, path)
     return tuple(first[name] for name in sorted(first))
@@ -99,7 +97,7 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
 def locate_vocabulary(name: str, user: Path | None, search_path: Sequence[Path]) -> Path | None:
     """The vocabulary's file as ``find_vocabulary`` finds it; None if there is none."""
     for folder in _vocabulary_folders(user, search_path):
-        candidate = folder / f"{name}{_SUFFIX}"
+        candidate = folder / f"{name}{SUFFIX}"
         if _is_file(candidate) and (user is None or not is_same_file(candidate, user)):
             return candidate
     return None
@@ -114,7 +112,7 @@ def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Pa
     if path is None:
         known = available_rulebooks([*_around(user), *search_path])
         looked = (
-            f"`{name}{_SUFFIX}` is looked for beside this file, on the search path, and in rulec"
+            f"`{name}{SUFFIX}` is looked for beside this file, on the search path, and in rulec"
         )
         raise _not_found("rulebook", name, line, known, looked)
     return path
@@ -141,11 +139,12 @@ def _around(user: Path | None) -> list[Path]:
 
 
 def read_bytes(path: Path, use: Span | None = None) -> bytes:
-    """A file's bytes, up to just above the size limit. Raises RulecError R0701.
+    """A file's bytes, up to just above the size limit. Raises RulecError R0701, R0730, R0731.
 
     ``use`` is the line that asks for the file.
     """
     labels = (Label(use.place, "it is used here"),) if use else ()
+    refuse_no_source(path, labels)
     with opened(path, labels=labels) as stream:
         return stream.read(MAX_SOURCE_BYTES + 1)
 
@@ -156,12 +155,6 @@ def _vocabulary_folders(user: Path | None, search_path: Sequence[Path]) -> list[
         beside.append(user.parent.parent / "vocabulary")
     listed = [inner for folder in search_path for inner in (folder, folder / "vocabulary")]
     return [*beside, *listed, rulebooks_folder() / "vocabulary"]
-
-
-def _rules_files(folder: Path) -> Iterator[Path]:
-    with suppress(OSError):
-        yield from folder.glob(f"*{_SUFFIX}")
-        yield from folder.glob(f"*/*{_SUFFIX}")
 
 
 def _is_file(path: Path) -> bool:
@@ -179,17 +172,16 @@ def _lead(path: Path) -> str:
     """The first word of a file, which says what it is."""
     try:
         with path.open("rb") as stream:
-            text = stream.read(_LEAD_BYTES).decode("utf-8-sig", "replace")
+            text = beginning_of(stream.read(LEAD_BYTES))
     except OSError:
         return ""
-    lead = _LEAD.match(text)
-    return lead[1] if lead else ""
+    return text[slice(*first_word_at(text))]
 
 
 def suggest(name: str, known: Sequence[str]) -> str:
     """Suggestions for an unknown name in a command."""
-    if name and _is_file(Path(f"{name}{_SUFFIX}")):
-        return f"write `./{name}{_SUFFIX}` for the file in the working folder"
+    if name and _is_file(Path(f"{name}{SUFFIX}")):
+        return f"write `./{name}{SUFFIX}` for the file in the working folder"
     return _suggest(name, known)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final, cast
 
+from rulec.beginnings import FILE_WORDS
 from rulec.diagnostics import Source
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.formatting.document import (
@@ -22,7 +23,7 @@ from rulec.syntax.formatting.document import (
 from rulec.syntax.formatting.parentheses import without_spare_parentheses
 from rulec.syntax.formatting.piece_documents import DocumentBuilder, first_leaf
 from rulec.syntax.grammar import ParseNode, Start, parse_piece
-from rulec.syntax.keywords import CLAUSE_WORDS, FILE_WORDS, HEADER_WORDS, PROVISION_WORDS
+from rulec.syntax.keywords import CLAUSE_WORDS, HEADER_WORDS, PROVISION_WORDS
 from rulec.syntax.scanner import Token
 
 Part = Piece | ExamplePieces | RulePieces

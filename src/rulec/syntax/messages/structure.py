@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rulec.beginnings import first_word_at
 from rulec.diagnostics import Diagnostic, Label, Source, Span
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.source_text import SourceLocation
+from rulec.syntax.keywords import ITEM_WORDS
 from rulec.syntax.scanner import Token
 
 EXPECTED_BEGINNING = "expected `rulebook NAME`"
@@ -54,8 +56,8 @@ GIVEN_TWICE = Code(
 NOT_A_RULEBOOK = Code(
     "R0117",
     title="a file is no rulebook",
-    why="Hardly anything in the file can be read as a rulebook or a vocabulary, so it is probably "
-    "another file than was meant.",
+    why="The file begins with neither `rulebook` nor `vocabulary`, comments aside, so it is "
+    "probably another file than was meant. Nothing of it is shown, as it might be a secret.",
     bad="Dear all,\nplease find the rules attached.\n",
     good="rulebook attached\nsignal p\nhard rule r { require p }\n",
 )
@@ -71,10 +73,17 @@ def given_twice(what: str, again: Span, first: Span) -> Diagnostic:
     )
 
 
-def not_a_rulebook(first: Span) -> Diagnostic:
-    return NOT_A_RULEBOOK.at(
-        first, "the file is no rulebook", expected=EXPECTED_BEGINNING, help=HOW_TO_BEGIN
-    )
+def no_beginning(source: Source) -> Diagnostic:
+    """What there is to say of a file that begins like no source, without a word of it."""
+    start, end = first_word_at(source.text)
+    word = source.text[start:end]
+    line, column = source.position(start)
+    place = SourceLocation(source.name, line, column, line, column + max(1, len(word)))
+    if word in ITEM_WORDS:
+        code, message = MISSING_PART, "the file does not say what it is"
+    else:
+        code, message = NOT_A_RULEBOOK, "the file is no rulebook"
+    return code.at(place, message, help=HOW_TO_BEGIN)
 
 
 UNBALANCED_BRACE = Code(

@@ -1,0 +1,200 @@
+"""What git ignores: the patterns of ``.gitignore`` files, as gitignore(5) describes them.
+
+Own ones and not a library's, since a stranger writes the patterns: matching takes time that grows
+with the length of pattern times name, however many ``*`` there are. The user's own list of patterns
+(`core.excludesFile`) is not read, so that a check comes out alike on every machine.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TypeVar
+
+from rulec.trees import is_ordinary, leads_out
+
+MOST_BYTES = 100_000
+"""Of a file of patterns; further ones are not obeyed."""
+
+_NAMED_CLASS = re.compile(r"\[:(\w+):\]")
+_CLASSES = {
+    "alnum": "a-zA-Z0-9",
+    "alpha": "a-zA-Z",
+    "blank": r" \t",
+    "digit": "0-9",
+    "lower": "a-z",
+    "space": r"\s",
+    "upper": "A-Z",
+    "xdigit": "0-9a-fA-F",
+}
+
+Part = TypeVar("Part")
+Name = TypeVar("Name")
+
+
+@dataclass(frozen=True, slots=True)
+class IgnorePattern:
+    """A line of a ``.gitignore`` file: parts between slashes, and what they are for."""
+
+    parts: tuple[str, ...]
+    includes: bool
+    folders_only: bool
+
+    def matches(self, names: Sequence[str], *, is_folder: bool) -> bool:
+        """Tell whether it is about a path, given by its names below the file of patterns."""
+        return (is_folder or not self.folders_only) and _fit(
+            self.parts, names, "**".__eq__, _part_fits
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class IgnoreFile:
+    """The patterns of one file, for what is below its folder; the last that matches decides."""
+
+    folder: Path
+    patterns: tuple[IgnorePattern, ...]
+
+    def verdict(self, path: Path, *, is_folder: bool) -> bool | None:
+        """True if it is ignored, False if it is taken in again, None if nothing is said."""
+        names = path.relative_to(self.folder).parts
+        for pattern in reversed(self.patterns):
+            if pattern.matches(names, is_folder=is_folder):
+                return not pattern.includes
+        return None
+
+
+def is_ignored(path: Path, files: Sequence[IgnoreFile], *, is_folder: bool) -> bool:
+    """Tell whether git ignores a path, by files of patterns of which the nearest come last."""
+    said = (file.verdict(path, is_folder=is_folder) for file in reversed(files))
+    return next((verdict for verdict in said if verdict is not None), False)
+
+
+def ignore_files(folder: Path, tree: Path) -> list[IgnoreFile]:
+    """The patterns of a folder and of all above it up to the top of its work tree."""
+    above = [place for place in folder.parents if place == tree or tree in place.parents]
+    own = _patterns(tree / ".git" / "info" / "exclude")
+    found = [IgnoreFile(tree, own)] if own else []
+    for place in (*reversed(above), folder):
+        found += patterns_in(place, tree)
+    return found
+
+
+def patterns_in(folder: Path, tree: Path) -> list[IgnoreFile]:
+    """The patterns of a folder's own ``.gitignore``, if it has one that is its own."""
+    file = folder / ".gitignore"
+    if not is_ordinary(file) or leads_out(file, tree):
+        return []
+    return [IgnoreFile(folder, _patterns(file))]
+
+
+def _patterns(file: Path) -> tuple[IgnorePattern, ...]:
+    try:
+        with file.open("rb") as stream:
+            text = stream.read(MOST_BYTES).decode("utf-8-sig", "surrogateescape")
+    except OSError:
+        return ()
+    return tuple(filter(None, map(pattern_of, text.split("\n"))))
+
+
+def pattern_of(line: str) -> IgnorePattern | None:
+    """The pattern that a line stands for; None for comments and what cannot match."""
+    line = line.removesuffix("\r")
+    if line.startswith("#"):
+        return None
+    while line.endswith(" ") and not line.endswith("\\ "):
+        line = line[:-1]
+    includes = line.startswith("!")
+    line = line.removeprefix("!")
+    folders_only = line.endswith("/")
+    line = line.removesuffix("/")
+    if not line:
+        return None
+    # With a slash in it a pattern is about that very place, else about names at any depth.
+    anchored = "/" in line
+    parts = tuple(line.removeprefix("/").split("/"))
+    return IgnorePattern(parts if anchored else ("**", *parts), includes, folders_only)
+
+
+def _part_fits(part: str, name: str) -> bool:
+    return _fit(_signs(part), name, lambda sign: sign == "*", _sign_fits)
+
+
+def _fit(
+    pattern: Sequence[Part],
+    names: Sequence[Name],
+    is_wild: Callable[[Part], bool],
+    fits: Callable[[Part, Name], bool],
+) -> bool:
+    """Match a row of things; what is wild stands for any number of them.
+
+    Only the last wild part is tried anew, since where an earlier one ends makes no difference.
+    """
+    # Behind the last part, `**` is everything inside, but not the folder itself.
+    least = 1 if pattern and len(pattern) > 1 and pattern[-1] == "**" else 0
+    at = here = 0
+    again: tuple[int, int] | None = None
+    while here < len(names):
+        if at < len(pattern) and is_wild(pattern[at]):
+            again = (at, here)
+            at += 1
+        elif at < len(pattern) and fits(pattern[at], names[here]):
+            at += 1
+            here += 1
+        elif again is not None:
+            again = (again[0], again[1] + 1)
+            at, here = again[0] + 1, again[1]
+        else:
+            return False
+    left = pattern[at:]
+    return all(map(is_wild, left)) and not (least and len(left) == 1)
+
+
+@lru_cache(maxsize=4096)
+def _signs(part: str) -> tuple[str, ...]:
+    """A part as signs: `*`, `?`, a class in brackets, or a backslash and a character."""
+    signs: list[str] = []
+    at = 0
+    while at < len(part):
+        sign = part[at]
+        end = part.find("]", at + (3 if part[at + 1 : at + 2] in ("!", "^") else 2))
+        while end > 0 and part.rfind("[:", at + 1, end) > part.rfind(":]", at + 1, end):
+            end = part.find("]", end + 1)
+        if sign == "[" and end > 0:
+            signs.append(part[at : end + 1])
+            at = end + 1
+            continue
+        if sign == "\\":
+            at += 1
+            sign = part[at : at + 1]
+            signs.append(f"\\{sign}")
+        elif sign in "*?":
+            signs += [] if sign == "*" and signs[-1:] == ["*"] else [sign]
+        else:
+            signs.append(f"\\{sign}")
+        at += 1
+    return tuple(signs)
+
+
+def _sign_fits(sign: str, character: str) -> bool:
+    if sign == "?":
+        return True
+    if sign.startswith("\\"):
+        return sign[1:] == character
+    return _in_class(sign)(character)
+
+
+@lru_cache(maxsize=1024)
+def _in_class(sign: str) -> Callable[[str], bool]:
+    inside = sign[1:-1]
+    negated = inside[:1] in ("!", "^")
+    inside = inside[1:] if negated else inside
+    classes = "".join(_CLASSES.get(name, "") for name in _NAMED_CLASS.findall(inside))
+    escaped = re.sub(r"[\[\]^&~|]", r"\\\g<0>", _NAMED_CLASS.sub("", inside))
+    try:
+        found = re.compile(f"[{'^' if negated else ''}{escaped}{classes}]").fullmatch
+    except re.error:
+        return lambda _: False
+    return lambda character: found(character) is not None

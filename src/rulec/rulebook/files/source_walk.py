@@ -1,0 +1,156 @@
+"""The sources in and below a folder, and what is left alone there."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rulec.beginnings import LEAD_BYTES, beginning_of, is_foreign
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.file_messages import NOTHING_LEFT, UNREADABLE_FILE
+from rulec.rulebook.files.git_ignores import IgnoreFile, ignore_files, is_ignored, patterns_in
+from rulec.trees import is_ordinary, refuse_no_source, tree_of
+
+SUFFIX = ".rules"
+
+ENVIRONMENTS = frozenset({"__pypackages__", "node_modules", "site-packages", "venv"})
+"""Folders of programs that others wrote; hidden ones such as ``.venv`` are left alone anyway."""
+
+_MARKS = ("pyvenv.cfg", "conda-meta")
+"""A folder that has one of them is an environment of Python's, whatever it is called."""
+
+
+@dataclass(frozen=True, slots=True)
+class LeftAlone:
+    """A file or a folder that was not looked into, and why."""
+
+    path: str
+    why: str
+
+
+@dataclass(slots=True)
+class FoundSources:
+    """Sources in order, what was left alone, and what was refused."""
+
+    paths: list[Path] = field(default_factory=list)
+    left_alone: list[LeftAlone] = field(default_factory=list)
+    refused: list[Diagnostic] = field(default_factory=list)
+
+
+def sources_below(folder: str) -> FoundSources:
+    """The sources in and below a folder, in order.
+
+    Hidden folders, environments and links to folders are not entered. What git ignores, and what
+    begins neither with `rulebook` nor with `vocabulary` is left alone. Links out of the tree, pipes
+    and devices are refused.
+    """
+    found = FoundSources()
+    top = Path(os.path.abspath(folder))  # noqa: PTH100 - Path.absolute() keeps `..`
+    tree = tree_of(top)
+    ignored: dict[Path, list[IgnoreFile]] = {top: ignore_files(top, tree)}
+
+    def unreadable(problem: OSError) -> None:
+        found.refused.append(_locked(problem))
+
+    for here, folders, names in os.walk(folder, onerror=unreadable):
+        place = Path(os.path.normpath(top / os.path.relpath(here, folder)))
+        files = ignored.pop(place)
+        entered = []
+        for name in sorted(folders):
+            if why := _why_not_entered(place / name, files):
+                if not name.startswith("."):
+                    found.left_alone.append(LeftAlone(str(Path(here, name)), why))
+                continue
+            entered.append(name)
+            ignored[place / name] = [*files, *patterns_in(place / name, tree)]
+        folders[:] = entered
+        for name in sorted(name for name in names if name.endswith(SUFFIX)):
+            _sort(Path(here, name), is_ignored(place / name, files, is_folder=False), tree, found)
+    if not found.paths and not found.refused:
+        found.refused.append(_nothing_left(folder, found.left_alone))
+    return found
+
+
+def _why_not_entered(folder: Path, files: Sequence[IgnoreFile]) -> str:
+    if folder.name.startswith("."):
+        return "hidden"
+    if folder.name in ENVIRONMENTS or any((folder / mark).exists() for mark in _MARKS):
+        return "an environment"
+    if folder.is_symlink():
+        return "a link to a folder"
+    return "ignored by git" if is_ignored(folder, files, is_folder=True) else ""
+
+
+def _sort(path: Path, ignored: bool, tree: Path, found: FoundSources) -> None:
+    """Put a file where it belongs."""
+    if ignored:
+        found.left_alone.append(LeftAlone(str(path), "ignored by git"))
+        return
+    try:
+        refuse_no_source(path, tree=tree)
+    except RulecError as error:
+        found.refused += error.diagnostics
+        return
+    if is_other_file(path):
+        found.left_alone.append(LeftAlone(str(path), "no rulebook and no vocabulary"))
+    else:
+        found.paths.append(path)
+
+
+def is_other_file(path: Path) -> bool:
+    """True for another program's file. What cannot be read, or is empty, is none."""
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(LEAD_BYTES)
+    except (OSError, ValueError):
+        return False
+    return is_foreign(beginning_of(data))
+
+
+def in_words(left_alone: Sequence[LeftAlone], most: int = 3) -> str:
+    """How much was left alone, and why, with the first names of each kind; empty for nothing."""
+    kinds = Counter(one.why for one in left_alone)
+    return "; ".join(
+        f"{count:,} {why} ({_first([one.path for one in left_alone if one.why == why], most)})"
+        for why, count in kinds.items()
+    )
+
+
+def _first(names: Sequence[str], most: int) -> str:
+    return ", ".join([*names[:most], *(["…"] if len(names) > most else [])])
+
+
+def _nothing_left(folder: str, left_alone: Sequence[LeftAlone]) -> Diagnostic:
+    said = in_words(left_alone)
+    return NOTHING_LEFT.at(
+        SourceLocation(folder),
+        "there is no rulebook and no vocabulary in this folder",
+        help="give a folder with files whose names end in `.rules`, or a file by its own path",
+        notes=(f"left alone: {said}",) if said else (),
+    )
+
+
+def _locked(problem: OSError) -> Diagnostic:
+    message = f"the folder cannot be read: {(problem.strerror or str(problem)).lower()}"
+    place = SourceLocation(os.fsdecode(problem.filename))
+    return UNREADABLE_FILE.at(place, message, help="check its permissions")
+
+
+def rules_files(folder: Path) -> Iterator[Path]:
+    """Files of a folder, and of those in it, that may be sources: pipes and links out are none."""
+    tree = tree_of(folder)
+    with suppress(OSError):
+        for pattern in (f"*{SUFFIX}", f"*/*{SUFFIX}"):
+            yield from (path for path in folder.glob(pattern) if _is_own(path, tree))
+
+
+def _is_own(path: Path, tree: Path) -> bool:
+    try:
+        refuse_no_source(path, tree=tree)
+    except RulecError:
+        return False
+    return is_ordinary(path)

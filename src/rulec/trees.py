@@ -1,0 +1,80 @@
+"""The tree that a file stands in: links out of it, pipes and devices are refused.
+
+Whoever wrote the checkout chose what its files are. A link may lead to any file of this machine,
+and a pipe never ends.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from rulec.diagnostics import Label, SourceLocation
+from rulec.file_messages import LINK_OUT, NO_ORDINARY_FILE, UNREADABLE_FILE, reason_in_words
+
+_OF_THE_SYSTEM = ("/dev/", "/proc/self/fd/")
+"""Its links are the machine's own, such as ``/dev/stdout``."""
+
+
+def tree_of(folder: Path) -> Path:
+    """The git work tree that a folder is in; the folder itself if it is in none.
+
+    Links in the folder's own name are left as they are: who names them means them.
+    """
+    here = Path(os.path.abspath(folder))  # noqa: PTH100 - Path.absolute() keeps `..`
+    return next((place for place in (here, *here.parents) if os.path.lexists(place / ".git")), here)
+
+
+def leads_out(path: Path, tree: Path | None = None) -> bool:
+    """True for what is behind a link out of a tree, by default that of the path itself."""
+    root = os.path.realpath(tree or tree_of(path.parent))
+    real = os.path.realpath(path)
+    return real != root and not real.startswith(root.rstrip("/") + "/")
+
+
+def refuse_link_out(path: Path, labels: tuple[Label, ...] = (), tree: Path | None = None) -> None:
+    """Refuse what is behind a link out of its tree. Raises RulecError R0730, R0701."""
+    try:
+        if str(path).startswith(_OF_THE_SYSTEM) or not leads_out(path, tree):
+            return
+    except (OSError, ValueError) as problem:  # a null character, or too long a name
+        message = f"the file cannot be read: {reason_in_words(problem)}"
+        raise UNREADABLE_FILE.error(
+            SourceLocation(str(path)), message, help="check its name", labels=labels
+        ) from None
+    raise LINK_OUT.error(
+        SourceLocation(str(path)),
+        "it is a link that leads out of its tree",
+        help="if the file behind it is meant, give its own path",
+        labels=labels,
+    )
+
+
+def is_ordinary(path: Path) -> bool:
+    """True for a file, also behind a link, that is no pipe, socket, device or folder."""
+    try:
+        return stat.S_ISREG(path.stat().st_mode)
+    except (OSError, ValueError):
+        return False
+
+
+def refuse_no_source(path: Path, labels: tuple[Label, ...] = (), tree: Path | None = None) -> None:
+    """Refuse what cannot be a source of its tree.
+
+    What is not there at all, or a folder, is left to whoever opens it.
+
+    Raises RulecError: R0730 for a link out of the tree, R0731 for pipes, sockets and devices.
+    """
+    refuse_link_out(path, labels, tree)
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):
+        return
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        raise NO_ORDINARY_FILE.error(
+            SourceLocation(str(path)),
+            "it is no ordinary file, but a pipe, a socket or a device",
+            help="remove it, or give `-` to have standard input read",
+            labels=labels,
+        )
