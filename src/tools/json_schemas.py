@@ -93,8 +93,9 @@ def _without_indents(part: Any) -> Any:
 
 
 def _required_version(definition: dict[str, Any]) -> dict[str, Any]:
-    """A version has a default in the type, but is always written."""
+    """A version and a digest have defaults in the type, but are always written."""
     if "version" not in definition.get("properties", {}):
         return definition
-    required = [key for key in definition.get("required", []) if key != "version"]
-    return {**definition, "required": ["version", *required]}
+    written = [key for key in ("sha256", "version") if key in definition["properties"]]
+    required = [key for key in definition.get("required", []) if key not in written]
+    return {**definition, "required": [*written, *required]}

@@ -1,6 +1,8 @@
 """The compiled rulebook's file: read back as it was, or refused with a reason."""
 
 import json
+import random
+import subprocess
 from dataclasses import replace
 from fractions import Fraction
 
@@ -24,6 +26,7 @@ from rulec.logic.formula import (
     UnaryOperator,
 )
 from rulec.rulebook.rulebook_model import Rulebook
+from support.builders.compiled_files import sealed
 from support.builders.rulebooks import P, Q, always, book, eventually, far, implies, near, rule
 from support.generators.timed_formulas import TIMED_VOCABULARY, comparison
 
@@ -84,11 +87,11 @@ NUMBERS = compile_rulebook(
 NUMBERS_TEXT = to_json(NUMBERS)
 
 
-def refused(data):
+def refused(data, code="R0404"):
     with pytest.raises(RulecError) as caught:
-        from_json(data if isinstance(data, bytes) else json.dumps(data).encode(), "x.json")
+        from_json(data if isinstance(data, bytes) else sealed(data), "x.json")
     (diagnostic,) = caught.value.diagnostics
-    assert diagnostic.code == "R0404"
+    assert diagnostic.code == code
     assert diagnostic.place.file == "x.json"
     return diagnostic.message
 
@@ -121,7 +124,7 @@ def test_a_row_of_a_table_stands_on_one_line():
 def test_the_documented_parts_are_there():
     data = json.loads(TEXT)
     assert data["format"] == "rulec compiled rulebook"
-    assert data["version"] == 3
+    assert data["version"] == 6
     assert data["spot"].startswith("2.")
     assert [rule["strength"] for rule in data["rules"]] == ["hard", "soft", "hard"]
     assert data["rules"][0]["cite"] == "Art. A"
@@ -162,9 +165,8 @@ def test_numbers_are_written_exactly():
         (b"[" * 100_000, "not a compiled rulebook"),
         (b'{"format": "something else", "version": 1}', "not a compiled rulebook"),
         (b'{"format": "rulec compiled rulebook", "version": 1}', "of version 1"),
-        (b'{"format": "rulec compiled rulebook", "version": 6}', "of version 6"),
-        (b'{"format": "rulec compiled rulebook", "version": 4}', "damaged"),
-        (b'{"format": "rulec compiled rulebook", "version": 3}', "damaged"),
+        (b'{"format": "rulec compiled rulebook", "version": 7}', "of version 7"),
+        (sealed({"format": "rulec compiled rulebook", "version": 6}), "damaged"),
     ],
 )
 def test_what_is_no_compiled_rulebook_is_refused(data, words):
@@ -283,8 +285,9 @@ def test_damaged_numbers_are_noticed(path, value, words):
 @given(st.data())
 def test_a_truncated_file_is_refused(data):
     text = data.draw(st.sampled_from([TEXT, NUMBERS_TEXT])).encode()
-    cut = data.draw(st.integers(0, len(text.rstrip()) - 1))
-    refused(text[:cut])
+    cut = data.draw(st.integers(0, len(text) - 1))
+    begun = text.index(b'"', 10)
+    refused(text[:cut], "R0404" if cut <= begun else "R0410")
 
 
 def test_writing_and_reading_files(tmp_path):
@@ -339,16 +342,94 @@ def test_damaged_machines_for_cut_traces_are_refused(name, value):
     compiled = rulec.compile_rulebook(rulec.parse_rulebook(PAST))
     data = json.loads(to_json(replace(compiled, prefixes=stored(compiled))))
     data["rules"][0]["cut"][name] = value
-    assert "damaged" in refused(json.dumps(data).encode())
+    assert "damaged" in refused(data)
 
 
-def test_a_machine_for_cut_traces_may_be_lacking_and_is_none_of_version_3():
+def test_machines_for_cut_traces_may_be_lacking_but_not_for_some_rules_alone():
     compiled = rulec.compile_rulebook(rulec.parse_rulebook(PAST))
     lacking = replace(compiled, prefixes=StoredPrefixes({"recalled": None}))
     again = from_json(to_json(lacking).encode(), "past.json")
     trace = rulec.Trace("t", 1.0, {}, ({"p": True, "q": False},), ends="cut")
     (unjudged,) = rulec.verify(trace, again).not_judged
     assert unjudged.rule == "recalled"
+    again = from_json(to_json(replace(compiled, prefixes=None)).encode(), "past.json")
+    assert again.prefixes is None
     data = json.loads(to_json(replace(compiled, prefixes=stored(compiled))))
-    assert data["version"] == 4
-    assert "damaged" in refused(json.dumps({**data, "version": 3}).encode())
+    data["rules"].append({**data["rules"][0], "name": "another"})
+    del data["rules"][1]["cut"]
+    assert "for some rules alone" in refused(data)
+
+
+@pytest.mark.parametrize("version", [3, 4, 5])
+def test_files_without_a_digest_are_refused_with_the_command_that_makes_them_anew(version):
+    data = {"format": "rulec compiled rulebook", "version": version, "steps": ["1", "1/2"]}
+    with pytest.raises(RulecError) as caught:
+        from_json(json.dumps(data).encode(), "my build/old.json")
+    (diagnostic,) = caught.value.diagnostics
+    assert (diagnostic.code, diagnostic.place.file) == ("R0411", "my build/old.json")
+    assert "`rulec compile old --step 1 --step 1/2 -o 'my build'`" in diagnostic.help
+
+
+def test_a_digest_that_is_not_in_its_place_is_none():
+    assert "not in its place" in refused(json.dumps(json.loads(TEXT)).encode(), "R0410")
+    assert "not in its place" in refused(TEXT.replace('"sha256"', '"sha257"').encode(), "R0410")
+
+
+def test_the_digest_is_what_a_shell_finds(tmp_path):
+    path = tmp_path / "test.json"
+    path.write_text(TEXT)
+    found = subprocess.run(
+        f"tail -n +3 {path} | sha256sum", shell=True, capture_output=True, text=True, check=True
+    )
+    assert found.stdout.split()[0] == json.loads(TEXT)["sha256"]
+
+
+@pytest.mark.parametrize("text", [TEXT, NUMBERS_TEXT], ids=["signals", "numbers"])
+@given(st.data())
+def test_a_bit_that_is_not_as_it_was_is_refused(text, data):
+    changed = bytearray(text.encode())
+    place = data.draw(st.integers(0, len(changed) * 8 - 1))
+    changed[place // 8] ^= 1 << place % 8
+    with pytest.raises(RulecError) as caught:
+        from_json(bytes(changed), "x.json")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code in ("R0404", "R0410")
+    assert diagnostic.code == "R0410" or place < 8 * len('{\n "sha256": "')
+    assert diagnostic.help
+
+
+@pytest.mark.long
+def test_ten_thousand_bits_in_a_file_of_a_country(tmp_path):
+    *_, path = write_compiled(rulec.compile_rulebook("gb", step_s=1), tmp_path)
+    whole = path.read_bytes()
+    chance = random.Random(7)
+    for _ in range(10_000):
+        changed = bytearray(whole)
+        place = chance.randrange(len(changed) * 8)
+        changed[place // 8] ^= 1 << place % 8
+        with pytest.raises(RulecError):
+            from_json(bytes(changed), str(path))
+
+
+@pytest.mark.parametrize("name", ["a\x1b[2Jb", "a\nb", "a\u202eb", "a\x85b"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        ("name",),
+        ("rules", 0, "name"),
+        ("rules", 0, "book"),
+        ("rules", 0, "variables", 0, 0),
+        ("vocabulary", "name"),
+        ("vocabulary", "declarations", 0, "name"),
+        ("vocabulary", "declarations", 1, "values", 0),
+        ("at",),
+    ],
+)
+def test_names_that_a_terminal_would_obey_are_refused(path, name):
+    message = refused(damage(path, name))
+    assert "not visible" in message
+    assert message.isprintable()
+
+
+def test_a_type_that_a_terminal_would_obey_is_refused():
+    assert "not visible" in refused(damage(("vocabulary", "types", "a\x1b[2Jb"), None))

@@ -147,7 +147,7 @@ def test_a_compiled_rulebook_and_a_saved_monitor_keep_to_theirs(run, monkeypatch
     run(["compile", "esterle2019", "-o", str(tmp_path / "out")])
     compiled = json.loads((tmp_path / "out" / "esterle2019.json").read_text())
     validator("compiled").validate(compiled)
-    assert compiled["version"] == 4
+    assert compiled["version"] == 6
     saved = tmp_path / "saved.json"
     answers_of(run, monkeypatch, tmp_path, ["monitor", "esterle2019", "--save", str(saved)])
     monitor = json.loads(saved.read_text())

@@ -1,1 +1,1 @@
-"""The compiled rulebook as data and as a file: JSON, version 3."""
+"""The compiled rulebook as data and as a file: JSON, version 6."""

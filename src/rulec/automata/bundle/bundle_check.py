@@ -36,6 +36,7 @@ def rulebook_of(read: schema.BundleFile, *, own: bool = False) -> CompiledRulebo
 
     ``own``: this rulec has written it so, and its rules need no check.
     """
+    _check_visible(read)
     kind_of = {entry: kind for kind, entry in schema.ENTRY_OF.items()}
     vocabulary = Vocabulary(
         read.vocabulary.name,
@@ -46,7 +47,7 @@ def rulebook_of(read: schema.BundleFile, *, own: bool = False) -> CompiledRulebo
     for name in (read.name, *[rule.name for rule in read.rules]):
         # They become names of files.
         plain = name and not name.startswith(".") and not set(name) & set("/\\\0")
-        _require(bool(plain), f"`{name}` is not a name")
+        _require(bool(plain), f"{name!a} is not a name")
     rulebook = CompiledRulebook(
         **alike(Rulebook, read),
         rulec=read.rulec,
@@ -58,11 +59,28 @@ def rulebook_of(read: schema.BundleFile, *, own: bool = False) -> CompiledRulebo
         axioms=tuple(_axiom(fact, vocabulary) for fact in read.facts),
     )
     prefixes = _prefixes(read, own=own)
-    if read.version == schema.WITH_STEPS:
+    if read.steps is not UNSET:
         return _with_steps(rulebook, read)
-    _require(read.steps is UNSET, "it has several steps, which its version has not")
     _check_names(rulebook)
     return replace(rulebook, prefixes=prefixes)
+
+
+def _check_visible(read: schema.BundleFile) -> None:
+    """Whatever is a name is printed as it is, so nothing in it may move a terminal's cursor."""
+    vocabulary = read.vocabulary
+    declared = vocabulary.declarations
+    enumerations = [item for item in declared if isinstance(item, schema.EnumerationEntry)]
+    bound = [pair for item in (*read.rules, *read.facts) for pair in item.variables]
+    names = chain(
+        (read.name, vocabulary.name, read.rulec, read.spot, read.at, *read.extends, *read.levels),
+        [name for rule in read.rules for name in (rule.name, rule.book)],
+        vocabulary.types,
+        [item.name for item in declared],
+        [value for item in enumerations for value in item.values],
+        chain.from_iterable(bound),
+    )
+    for name in names:
+        _require(name.isprintable(), f"the name {name!a} has a character that is not visible")
 
 
 def _check_names(rulebook: CompiledRulebook) -> None:
@@ -80,7 +98,7 @@ def _with_steps(rulebook: CompiledRulebook, read: schema.BundleFile) -> Compiled
     books = []
     for step in steps:
         own = [(rule, entry) for rule, entry in pairs if rule.step_s in (None, step)]
-        prefixes = StoredPrefixes({entry.name: entry.cut for _, entry in own})
+        prefixes = StoredPrefixes({entry.name: entry.cut or None for _, entry in own})
         books.append(replace(rulebook, rules=tuple([rule for rule, _ in own]), prefixes=prefixes))
         _check_names(books[-1])
         same = list(map(_timeless, books[0].rules)) == list(map(_timeless, books[-1].rules))
@@ -96,18 +114,18 @@ def _timeless(rule: CompiledRule) -> CompiledRule:
 
 def _prefixes(read: schema.BundleFile, *, own: bool) -> StoredPrefixes | None:
     """The machines for cut traces, checked; None in a file that has none."""
-    if read.version == schema.VERSION:
-        none = all(rule.cut is None for rule in read.rules)
-        _require(none, "it has machines for traces that are cut, which its version has not")
+    lacking = [rule.cut is UNSET for rule in read.rules]
+    if any(lacking):
+        _require(all(lacking), "it has machines for traces that are cut for some rules alone")
         return None
     for rule in () if own else read.rules:
-        if rule.cut is not None:
+        if rule.cut:
             _check_table(rule.cut, len(rule.machine.letters), rule.name)
             known = len(rule.cut.starts) > 0 and set(rule.cut.starts) <= set(
                 range(len(rule.cut.successors))
             )
             _require(known, f"the table of rule `{rule.name}` for cut traces begins nowhere")
-    return StoredPrefixes({rule.name: rule.cut for rule in read.rules})
+    return StoredPrefixes({rule.name: rule.cut or None for rule in read.rules})
 
 
 def _priorities(read: schema.BundleFile) -> frozenset[tuple[str, str]]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import codecs
 import json
 import re
+from codecs import BOM_UTF8
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +15,13 @@ from msgspec import structs
 
 from rulec.automata.bundle import bundle_schema as schema
 from rulec.automata.bundle.bundle_check import rulebook_of
+from rulec.automata.bundle.bundle_digest import (
+    changed,
+    check_digest,
+    has_digest,
+    with_digest,
+    without_digest,
+)
 from rulec.automata.bundle.bundle_messages import DAMAGED_BUNDLE
 from rulec.automata.bundle.compiled_rulebook import (
     CompiledAxiom,
@@ -36,8 +43,10 @@ from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
 
 def to_json(rulebook: CompiledRulebook) -> str:
     """Text of a compiled rulebook's file, one row of numbers per line."""
-    text = json.dumps(msgspec.to_builtins(entry_of(rulebook)), indent=1, ensure_ascii=False)
-    return _STRING_OR_ROW.sub(_on_one_line, text) + "\n"
+    data = msgspec.to_builtins(entry_of(rulebook))
+    del data["sha256"]
+    text = json.dumps(data, indent=1, ensure_ascii=False)
+    return with_digest(_STRING_OR_ROW.sub(_on_one_line, text) + "\n")
 
 
 def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
@@ -48,12 +57,12 @@ def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
     """
     if isinstance(rulebook.recompile, StoredSteps):
         return _entry_of_steps(rulebook.recompile)
-    has_cut = isinstance(rulebook.prefixes, StoredPrefixes)
+    stored_prefixes = isinstance(rulebook.prefixes, StoredPrefixes)
     cut = rulebook.prefixes.entries if isinstance(rulebook.prefixes, StoredPrefixes) else {}
+    lacking = None if stored_prefixes else msgspec.UNSET
     vocabulary = rulebook.vocabulary
     return schema.BundleFile(
         **alike(Rulebook, rulebook),
-        version=schema.WITH_CUT if has_cut else schema.VERSION,
         rulec=rulebook.rulec,
         spot=rulebook.spot,
         sources=[schema.SourceEntry(source.name, source.sha256) for source in rulebook.sources],
@@ -67,7 +76,7 @@ def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
             ],
         ),
         facts=[_axiom(axiom) for axiom in rulebook.axioms],
-        rules=[_rule(rule, cut.get(rule.name)) for rule in rulebook.rules],
+        rules=[_rule(rule, cut.get(rule.name, lacking)) for rule in rulebook.rules],
     )
 
 
@@ -80,7 +89,7 @@ def _entry_of_steps(stored_steps: StoredSteps) -> schema.BundleFile:
         for entry in (entries[:1] if entries[0].step_s is None else entries)
     ]
     steps = tuple(map(str, stored_steps.steps))
-    return structs.replace(files[0], version=schema.WITH_STEPS, steps=steps, rules=rules)
+    return structs.replace(files[0], steps=steps, rules=rules)
 
 
 _STRING_OR_ROW = re.compile(r'"(?:[^"\\]|\\.)*"|\[\s[^\[\]{}"]*\]')
@@ -107,7 +116,9 @@ def _variables(variables: Iterable[Variable]) -> list[tuple[str, str]]:
     return [(variable.name, variable.type) for variable in variables]
 
 
-def _rule(rule: CompiledRule, cut: schema.CutMachineEntry | None) -> schema.BundleRule:
+def _rule(
+    rule: CompiledRule, cut: schema.CutMachineEntry | msgspec.UnsetType | None
+) -> schema.BundleRule:
     machine = rule.machine
     return schema.BundleRule(
         **alike(Rule, rule),
@@ -156,24 +167,30 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
     """Read a compiled rulebook, checking everything that running relies on.
 
     Raises RulecError R0404 if it is not a compiled rulebook, of a version that this rulec does not
-    read, or damaged.
+    read, or damaged; R0410 if it is not as it was written, R0411 if nothing tells that.
     """
-    data = data.removeprefix(codecs.BOM_UTF8)
+    if has_digest(data):
+        check_digest(data, file)
     try:
-        header = msgspec.json.decode(data, type=schema.BundleHeader)
+        header = msgspec.json.decode(data.removeprefix(BOM_UTF8), type=schema.BundleHeader)
     except msgspec.MsgspecError as problem:
         raise _damaged(file, f"this is not a compiled rulebook: {json_words(problem)}") from None
     except (RecursionError, UnicodeDecodeError):
         raise _damaged(file, "this is not a compiled rulebook") from None
-    if header.version not in (schema.VERSION, schema.WITH_CUT, schema.WITH_STEPS):
+    if header.version in schema.WITHOUT_DIGEST:
+        raise without_digest(file, header.version, header.steps)
+    if header.version != schema.VERSION:
         raise _damaged(
             file,
-            f"this compiled rulebook is of version {header.version}; this rulec reads versions "
-            f"{schema.VERSION}, {schema.WITH_CUT} and {schema.WITH_STEPS}",
+            f"this compiled rulebook is of version {header.version}; this rulec reads version "
+            f"{schema.VERSION}",
         )
+    if not has_digest(data):
+        message = "this compiled rulebook is not as it was written: its digest is not in its place"
+        raise changed(file, message)
     try:
         return rulebook_of(msgspec.json.decode(data, type=schema.BundleFile))
-    except (msgspec.MsgspecError, ValueError) as problem:
+    except (msgspec.MsgspecError, ValueError, RecursionError) as problem:
         raise _damaged(file, f"this compiled rulebook is damaged: {json_words(problem)}") from None
 
 
@@ -184,7 +201,7 @@ def _damaged(file: str, message: str) -> RulecError:
 
 
 def read_compiled(path: Path) -> CompiledRulebook:
-    """Read a compiled rulebook's file. Raises RulecError: R0701, R0404."""
+    """Read a compiled rulebook's file. Raises RulecError: R0701, R0404, R0410, R0411."""
     with opened(path) as stream:
         return from_json(stream.read(), str(path))
 

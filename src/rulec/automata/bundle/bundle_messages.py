@@ -6,13 +6,38 @@ from rulec.diagnostics.code import Code
 
 DAMAGED_BUNDLE = Code(
     "R0404",
-    title="a compiled rulebook is damaged or of another version",
-    why="A compiled rulebook is read as a whole and checked before it judges anything. If it was "
-    "cut off, edited, or written by a version of rulec that this one does not understand, "
-    "compile the source again.",
+    title="a file is no compiled rulebook, or one of another version",
+    why="A compiled rulebook is read as a whole and checked before it judges anything. If the file "
+    "is something else, was put together by hand, or was written by a version of rulec that this "
+    "one does not understand, compile the source again.",
+    bad="""echo '{"format": "a rulebook"}' > esterle2019.json\n"""
+    "rulec maneuvers s2 -r esterle2019.json",
+    good="rulec compile esterle2019 -o build > log\nrulec maneuvers s2 -r build/esterle2019.json",
+    kind="command",
+)
+
+CHANGED_BUNDLE = Code(
+    "R0410",
+    title="a compiled rulebook is not as it was written",
+    why="A compiled rulebook begins with the SHA-256 of all that follows, so that a single bit "
+    "that has changed on a disk, on the way or in an editor cannot change a verdict unseen. Line "
+    "ends and spaces count. Compile the source again; if the file was edited on purpose, edit "
+    "the source instead.",
     bad="rulec compile esterle2019 -o build > log\n"
-    "head -c 5000 build/esterle2019.json > part.json\n"
-    "rulec maneuvers s2 -r part.json",
+    "sed 's/true/false/' build/esterle2019.json > changed.json\n"
+    "rulec maneuvers s2 -r changed.json",
+    good="rulec compile esterle2019 -o build > log\nrulec maneuvers s2 -r build/esterle2019.json",
+    kind="command",
+)
+
+NO_DIGEST = Code(
+    "R0411",
+    title="a compiled rulebook has no digest",
+    why="Compiled rulebooks of versions 3 to 5 do not say what their bytes were when they were "
+    "written, so a table that has changed since would judge otherwise without a word. They are "
+    "not read any more: compile the source again.",
+    bad="""echo '{"format": "rulec compiled rulebook", "version": 5}' > old.json\n"""
+    "rulec maneuvers s2 -r old.json",
     good="rulec compile esterle2019 -o build > log\nrulec maneuvers s2 -r build/esterle2019.json",
     kind="command",
 )

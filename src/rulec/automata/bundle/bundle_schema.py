@@ -1,4 +1,4 @@
-"""Fields of a compiled rulebook's file, versions 3 to 5 (see docs/compiled.md)."""
+"""Fields of a compiled rulebook's file, version 6 (see docs/compiled.md)."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from rulec.rulebook.rulebook_model import Certainty, Semantics, Strength, Traffi
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 FORMAT = "rulec compiled rulebook"
-VERSION, WITH_CUT, WITH_STEPS = 3, 4, 5
-"""Versions of files; the second has machines for traces that are cut, the third several steps."""
+VERSION = 6
+WITHOUT_DIGEST = range(3, VERSION)
+"""Versions of files that rulec once wrote, and which do not say whether they are as written."""
 
 
 class _Strict(msgspec.Struct, forbid_unknown_fields=True):
@@ -128,7 +129,7 @@ class CutMachineEntry(_Strict, rename={"successors": "following", "outputs": "ou
 
 
 class BundleRule(_Strict, omit_defaults=True):
-    """One rule; ``cut`` is null from version 4 on if that machine would be too large.
+    """One rule; ``cut`` is null if that machine would be too large, and left out if none was made.
 
     Without a ``trigger`` that is what the formula's form names.
     """
@@ -148,7 +149,7 @@ class BundleRule(_Strict, omit_defaults=True):
     tree: Any
     machine: MachineEntry
     hoa: str
-    cut: CutMachineEntry | None = None
+    cut: CutMachineEntry | msgspec.UnsetType | None = msgspec.UNSET
     trigger: Any = None
 
 
@@ -167,14 +168,18 @@ class BundleHeader(msgspec.Struct):
 
     format: Literal["rulec compiled rulebook"]
     version: int
+    steps: list[str] = []
 
 
 class BundleFile(_Strict, kw_only=True):
     """The whole file.
 
-    In version 5 it is for several ``steps``: a rule with bounds in seconds is there once for each.
+    Its first line is ``{``, its second ``sha256``: that of all bytes from the third line on, in
+    hexadecimal digits (``bundle_digest``). If it is for several ``steps``, a rule with bounds in
+    seconds is there once for each.
     """
 
+    sha256: str = ""
     format: str = FORMAT
     version: int = VERSION
     rulec: str

@@ -49,7 +49,7 @@ def placed(rulebook: CompiledRulebook, tables: TableWriter) -> MappedRulebook:
         machines.append(_placed(rule.machine, tables))
         rule.machine.letters = rule.machine.successors = rule.machine.outputs = ()
         cut.append(None)
-        if rule.cut is not None:
+        if rule.cut:
             cut[-1] = _placed(rule.cut, tables)
             rule.cut.letters = rule.cut.successors = rule.cut.outputs = ()
     prefixes = rulebook.prefixes
@@ -78,7 +78,7 @@ def rulebook_from(text: MappedRulebook, tables: MappedTables) -> CompiledRuleboo
         machine.letters = tables.row(places.letters)
         machine.successors = tables.rows(places.successors, places.width)
         machine.outputs = tables.truths(places.outputs, places.width)
-        if rule.cut is not None and cut is not None:
+        if rule.cut and cut is not None:
             rule.cut.letters = tables.row(cut.letters)
             rule.cut.successors = tables.rows(cut.successors, cut.width)
             # Only 0, 1 and 2 have been written.

@@ -1,0 +1,69 @@
+"""The digest of a compiled rulebook's file: its second line, over all bytes from the third on.
+
+A digest of the bytes, not of what they say: whoever wants to know whether a file is as it was
+written needs neither rulec nor JSON, but ``tail -n +3 FILE | sha256sum``. It tells damage, not
+forgery, for who changes a file on purpose can change its digest too.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterable
+from hashlib import sha256
+from pathlib import Path
+
+from rulec.automata.bundle.bundle_messages import CHANGED_BUNDLE, NO_DIGEST
+from rulec.diagnostics import RulecError, SourceLocation
+
+_BEFORE, _AFTER = b'{\n "sha256": "', b'",\n'
+_DIGITS = 64
+
+
+def with_digest(text: str) -> str:
+    """The text of a file, an indented JSON object, with a digest as its first field."""
+    rest = text.removeprefix("{\n").encode()
+    return b"".join((_BEFORE, _digest(rest), _AFTER, rest)).decode()
+
+
+def _digest(rest: bytes | memoryview) -> bytes:
+    return sha256(rest).hexdigest().encode()
+
+
+def has_digest(data: bytes) -> bool:
+    """Tell whether a file begins as one with a digest does."""
+    return data.startswith(_BEFORE)
+
+
+def check_digest(data: bytes, file: str) -> None:
+    """Refuse (R0410) a file with a digest that is not as it was written."""
+    end = len(_BEFORE) + _DIGITS
+    said, rest = data[len(_BEFORE) : end], memoryview(data)[end + len(_AFTER) :]
+    found = _digest(rest)
+    if said == found and data[end : end + len(_AFTER)] == _AFTER:
+        return
+    raise changed(
+        file,
+        f"this compiled rulebook is not as it was written: the SHA-256 of all that follows its "
+        f"second line is {found[:12].decode()}…, and that line says another",
+    )
+
+
+def changed(file: str, message: str) -> RulecError:
+    """R0410, with the command that makes the file anew."""
+    return CHANGED_BUNDLE.error(SourceLocation(file, 2), message, help=_way_out(file))
+
+
+def without_digest(file: str, version: int, steps: Iterable[str]) -> RulecError:
+    """R0411 for a file of an earlier version, with the command that makes it anew."""
+    return NO_DIGEST.error(
+        SourceLocation(file),
+        f"this compiled rulebook is of version {version}, which has no digest, so nothing tells "
+        "whether it is as it was written",
+        help=_way_out(file, steps),
+    )
+
+
+def _way_out(file: str, steps: Iterable[str] = ()) -> str:
+    path = Path(file)
+    words = ["rulec", "compile", path.stem, *(word for step in steps for word in ("--step", step))]
+    return f"make it anew from its source: `{shlex.join([*words, '-o', str(path.parent)])}`"
