@@ -84,7 +84,7 @@ def test_it_says_where_the_trace_of_another_step_is(folder, tmp_path, capsys):
 def test_the_file_is_read_back_as_it_was(compiled, folder):
     text = (folder / "soon.json").read_text()
     data = json.loads(text)
-    assert (data["version"], data["steps"]) == (5, ["1/2", "1/3"])
+    assert (data["version"], data["steps"]) == (6, ["1/2", "1/3"])
     assert [(rule["name"], rule["step_s"]) for rule in data["rules"]] == [
         ("soon", "1/2"),
         ("soon", "1/3"),
