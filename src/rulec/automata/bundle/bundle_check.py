@@ -71,14 +71,14 @@ def _check_visible(read: schema.BundleFile) -> None:
     declared = vocabulary.declarations
     enumerations = [item for item in declared if isinstance(item, schema.EnumerationEntry)]
     bound = [rule.variables for rule in read.rules] + [fact.variables for fact in read.facts]
-    names = chain(
-        (read.name, vocabulary.name, read.rulec, read.spot, read.at, *read.extends, *read.levels),
-        [name for rule in read.rules for name in (rule.name, rule.book)],
-        vocabulary.types,
-        [item.name for item in declared],
-        [value for item in enumerations for value in item.values],
-        (name for variables in bound for pair in variables for name in pair),
-    )
+    names = [
+        *(read.name, vocabulary.name, read.rulec, read.spot, read.at, *read.extends, *read.levels),
+        *[name for rule in read.rules for name in (rule.name, rule.book)],
+        *vocabulary.types,
+        *[item.name for item in declared],
+        *[value for item in enumerations for value in item.values],
+        *[name for variables in bound for pair in variables for name in pair],
+    ]
     for name in names:
         _require(name.isprintable(), f"the name {name!a} has a character that is not visible")
 
