@@ -8,6 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rulec.scenario.recorded.reference_line import BEYOND_M, reference_line
+from rulec.scenario.recorded.sure_feet import sure_feet_near
 
 RADIUS = 60.0
 offsets = st.floats(-20, 20)
@@ -120,3 +121,44 @@ def test_the_foot_is_the_nearest_of_all_pieces_however_the_line_winds(seed, step
         one, own = feet_one_by_one(line, place, every), range(low[k], high[k] + 1)
         assert whole[k] == pytest.approx(one, abs=1e-5, nan_ok=True)
         assert near[k] == pytest.approx(feet_one_by_one(line, place, own), abs=1e-5, nan_ok=True)
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.02, 0.2, 1.0]), st.sampled_from([0, 1e6]))
+def test_rows_of_places_have_the_nearest_feet_of_all_pieces_within_their_reach(seed, bend, offset):
+    """Straight, curved and winding lines: where the only foot is sure, and where all are tried."""
+    random = np.random.default_rng(seed)
+    headings = np.cumsum(random.normal(size=15) * bend) + random.uniform(-pi, pi)
+    steps = np.stack((np.cos(headings), np.sin(headings)), axis=1) * random.uniform(1, 20, (15, 1))
+    line = reference_line(np.cumsum(steps, axis=0) + offset)
+    around, reach = random.uniform(-30, line.length + 30, 8), random.uniform(5, 20, 8)
+    around[0] = np.nan
+    pieces = np.clip(np.searchsorted(line.arc, around, "right") - 1, 0, len(line.arc) - 1)
+    on_line = line.start[pieces] + (around - line.arc[pieces])[:, None] * line.ahead[pieces]
+    places = on_line[:, None] + random.normal(size=(8, 3, 2)) * 5
+    found = line.coordinates_of_rows(places, around, reach)
+    assert np.isnan(found[0]).all()
+    whole, every = line.coordinates(places[:, 0]), range(len(line.arc))
+    for row in range(1, 8):
+        expected = feet_one_by_one(line, places[row, 0], every)
+        assert whole[row] == pytest.approx(expected, abs=1e-5, nan_ok=True)
+        low, high = (
+            np.clip(np.searchsorted(line.arc, around[row] + way * reach[row], "right") - 1, 0, None)
+            for way in (-1, 1)
+        )
+        for place, own in zip(places[row], found[row], strict=True):
+            expected = feet_one_by_one(line, place, range(low, high + 1))
+            assert own == pytest.approx(expected, abs=1e-5, nan_ok=True)
+
+
+@pytest.mark.parametrize(("angle", "sure"), [(0.0, True), (0.3, True), (3.0, False)])
+def test_most_feet_beside_a_gentle_road_are_sure_without_trying_all_pieces(angle, sure):
+    """On an arc of 200 m, seen from within 8 m; where it winds at 8 m no foot is sure."""
+    radius = 200 / max(angle, 1e-9) if sure else 5.0
+    at = np.linspace(0, angle, 60) if angle else np.linspace(0, 200 / radius, 60)
+    line = reference_line(np.stack((radius * np.sin(at), radius * (1 - np.cos(at))), axis=1))
+    s = np.linspace(1, line.length - 1, 50)
+    pieces = np.searchsorted(line.arc, s, "right") - 1
+    left = np.stack((-line.ahead[pieces, 1], line.ahead[pieces, 0]), axis=1)
+    places = line.start[pieces] + (s - line.arc[pieces])[:, None] * line.ahead[pieces] + 8.1 * left
+    _, found = sure_feet_near(line.piece_fans, places[:, None], s, np.full(len(s), 10.0))
+    assert found.mean() > 0.9 if sure else not found.any()

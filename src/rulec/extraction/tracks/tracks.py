@@ -5,7 +5,7 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TypeAlias
@@ -125,21 +125,21 @@ _ARRAYS = tuple(x.name for x in fields(Tracks))[4:]
 def _bodies(tracks: Tracks, *, repeated: bool) -> Bodies:
     rows: list[NDArray[intp]] = []
     columns: list[NDArray[intp]] = []
-    outlines: list[Points] = []
+    outlines: list[Sequence[Points] | Floats] = []
     for row, body in enumerate(tracks.participants):
         at, own = _outlines_of(body, tracks.first, tracks.present[row], repeated=repeated)
         rows.append(np.full(len(at), row, dtype=intp))
         columns.append(at)
-        outlines.extend(own)
-    if not outlines:
+        outlines.append(own)
+    if not any(map(len, outlines)):
         none = np.empty(0, dtype=intp)
         return Bodies(none, none, JoinedOutlines(np.empty((0, 2)), none))
-    return Bodies(np.concatenate(rows), np.concatenate(columns), JoinedOutlines.of(outlines))
+    return Bodies(np.concatenate(rows), np.concatenate(columns), JoinedOutlines.of_bodies(outlines))
 
 
 def _outlines_of(
     body: Participant, first: int, present: Flags, *, repeated: bool
-) -> tuple[NDArray[intp], Iterable[Points]]:
+) -> tuple[NDArray[intp], Sequence[Points] | Floats]:
     """The columns of a participant's outlines, and these."""
     if body.standing:
         columns = np.arange(len(present) if repeated else 1)

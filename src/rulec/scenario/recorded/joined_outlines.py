@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import cached_property
 
 import numpy as np
 from numpy import float64, intp
@@ -27,6 +27,27 @@ class JoinedOutlines:
         """Join outlines, of which there is one at least."""
         return cls(np.concatenate(outlines), np.array([len(outline) for outline in outlines]))
 
+    @classmethod
+    def of_bodies(cls, bodies: Sequence[NDArray[float64] | Sequence[Points]]) -> JoinedOutlines:
+        """Join the outlines of bodies, of which there is one at least.
+
+        Those of a rigid body may be one array (axes: moment, corner, and x and y).
+        """
+        joined = [
+            cls(own.reshape(-1, 2), np.full(len(own), own.shape[1]))
+            if isinstance(own, np.ndarray)
+            else cls.of(own)
+            for own in bodies
+            if len(own)
+        ]
+        corners, counts = ([own.corners for own in joined], [own.counts for own in joined])
+        return cls(np.concatenate(corners), np.concatenate(counts))
+
+    @cached_property
+    def regular(self) -> bool:
+        """True if all have as many corners."""
+        return bool((self.counts == self.counts[0]).all())
+
     @cached_property
     def starts(self) -> NDArray[intp]:
         """The number of the first corner of each."""
@@ -40,19 +61,17 @@ class JoinedOutlines:
 
     @cached_property
     def reach(self) -> NDArray[float64]:
-        """How far (m) along a line the foot of each corner may be from that of its middle."""
+        """How far (m) along a line the feet of corners may be from their middle's, for each."""
         away = np.hypot(*(self.corners - np.repeat(self.middles, self.counts, axis=0)).T)
-        farthest = np.maximum.reduceat(away, self.starts) * _REACH_FACTOR + _REACH_MORE_M
-        reach: NDArray[float64] = np.repeat(farthest, self.counts)
+        reach: NDArray[float64] = (
+            np.maximum.reduceat(away, self.starts) * _REACH_FACTOR + _REACH_MORE_M
+        )
         return reach
 
     def least_and_greatest(
         self, values: NDArray[float64]
     ) -> tuple[NDArray[float64], NDArray[float64]]:
         """The bounds of the corners' values (a row of each kind): a row for each outline."""
-        if (self.counts == self.counts[0]).all():
-            corners = np.moveaxis(values.reshape(len(values), -1, self.counts[0]), -1, 0)
-            return reduce(np.minimum, corners).T, reduce(np.maximum, corners).T
         bounds = (f.reduceat(values, self.starts, axis=1).T for f in (np.minimum, np.maximum))
         least, greatest = bounds
         return least, greatest

@@ -40,6 +40,9 @@ _MARGIN_M = 5.0
 _FAR_M = 50.0
 _ABOUT_M = 20.0
 _HAIR_M = 0.01
+_AT_ONCE = 1 << 10
+"""Outlines that are looked at together: what is computed of them stays near at hand."""
+
 _Values = NDArray[float64]
 
 
@@ -70,13 +73,17 @@ class Lanes:
 
     def from_bounds(self, places: Points) -> Points:
         """How far (m) left of each bound (columns) places are."""
-        at = np.nan_to_num(places[:, 0])
-        before = pieces_at(self.s, at)
-        part = (at - self.s[before]) / (self.s[before + 1] - self.s[before])
-        part = np.clip(part, 0.0, 1.0)
+        at, off = places[:, 0], places[:, 1]
+        # NaN comes out as NaN, wherever it is put
+        before = np.clip(np.searchsorted(self.s, at, "right") - 1, 0, len(self.s) - 2)
+        start = self.s[before]
+        part = np.clip((at - start) / (self.s[before + 1] - start), 0.0, 1.0)
         # The axis of the bounds comes first in memory
         first, second = (np.take(self.bounds.T, number, axis=1) for number in (before, before + 1))
-        left_of: Points = (places[:, 1] - (first * (1 - part) + second * part)).T
+        first *= 1 - part
+        second *= part
+        first += second
+        left_of: Points = np.subtract(off, first, out=first).T
         return left_of
 
     def existing_at(self, s: _Values) -> NDArray[np.bool_]:
@@ -258,11 +265,27 @@ def outline_bounds(
         if expected
         else line.coordinates(outlines.middles)
     )
-    around = np.repeat(found[:, 0], outlines.counts)
-    feet = line.coordinates_near(outlines.corners, around, outlines.reach)
-    feet[np.isnan(around)] = np.nan
-    coordinates = np.concatenate((feet.T, across(feet).T))
-    return outlines.least_and_greatest(coordinates)
+    around = found[:, 0]
+    if not outlines.regular:
+        around, reach = (np.repeat(x, outlines.counts) for x in (around, outlines.reach))
+        feet = line.coordinates_near(outlines.corners, around, reach)
+        feet[np.isnan(around)] = np.nan
+        return outlines.least_and_greatest(_with_across(feet, across))
+    corners = outlines.corners.reshape(len(around), -1, 2)
+    rows = line.coordinates_of_rows(corners, around, outlines.reach)
+    parts = []
+    for begin in range(0, len(rows), _AT_ONCE):
+        own = rows[begin : begin + _AT_ONCE]
+        values = _with_across(own.reshape(-1, 2), across)
+        by_corner = np.moveaxis(values.reshape(len(values), *own.shape[:2]), -1, 0).copy()
+        parts.append((np.minimum.reduce(by_corner).T, np.maximum.reduce(by_corner).T))
+    least, greatest = (np.concatenate(bounds) for bounds in zip(*parts, strict=True))
+    return least, greatest
+
+
+def _with_across(feet: Points, across: Callable[[Points], Points]) -> _Values:
+    """Coordinates of places and what a function gives of them, a row each."""
+    return np.concatenate((feet.T, across(feet).T))
 
 
 def kept_off_touched(low: _Values, high: _Values, straight: _Values) -> tuple[_Values, _Values]:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from rulec.recordings.polylines import densified, without_repeats
 from rulec.recordings.recording import Points
 from rulec.scenario.recorded.line_fans import LineFans, line_fans
+from rulec.scenario.recorded.sure_feet import PieceFans, sure_feet, sure_feet_near
 
 BEYOND_M = 2000.0
 """How far the line goes on straight beyond its ends."""
@@ -66,12 +67,27 @@ class ReferenceLine:
 
     def coordinates(self, places: Points) -> Points:
         """Frenet coordinates ``s`` and ``d`` of places, a row each; NaN without a foot."""
-        low = np.zeros(len(places), dtype=intp)
-        return self._nearest(places, low, low + len(self.arc) - 1)
+        found, sure = sure_feet(self.piece_fans, places)
+        left = np.flatnonzero(~sure)
+        low = np.zeros(len(left), dtype=intp)
+        found[left] = self._nearest(places[left], low, low + len(self.arc) - 1)
+        return found
 
     def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
         """Frenet coordinates of feet within ``reach`` of a given ``s`` each."""
         return self._nearest(places, self._piece(around - reach), self._piece(around + reach))
+
+    def coordinates_of_rows(self, places: Points, around: _Values, reach: _Values) -> Points:
+        """The same of rows of as many places, with an ``s`` for each row; NaN for those of NaN.
+
+        Axes: row, place, and x and y or ``s`` and ``d``.
+        """
+        found, sure = sure_feet_near(self.piece_fans, places, around, reach)
+        rows, columns = np.divmod(np.flatnonzero(~sure), places.shape[1])
+        rows, columns = (x[~np.isnan(around[rows])] for x in (rows, columns))
+        own = around[rows], reach[rows]
+        found[rows, columns] = self.coordinates_near(places[rows, columns], *own)
+        return found
 
     def _piece(self, s: _Values) -> NDArray[intp]:
         return np.clip(np.searchsorted(self.arc, s, "right") - 1, 0, len(self.arc) - 1)
@@ -82,14 +98,15 @@ class ReferenceLine:
         return line_fans(self.start, self.ahead, self.lengths, slopes)
 
     @cached_property
-    def _columns(self) -> _Values:
+    def piece_fans(self) -> PieceFans:
+        """Its pieces, as they are needed to find feet without trying each."""
         own = self.lengths, self.first, self.change, self.arc
-        return np.stack((*self.ahead.T, *self.start.T, *own))
+        return PieceFans(np.stack((*self.ahead.T, *self.start.T, *own)))
 
     def _nearest(self, places: Points, low: NDArray[intp], high: NDArray[intp]) -> Points:
         """The coordinates of the nearest foot on one of the pieces from ``low`` to ``high``."""
         numbers, pieces = self._fans.candidates(places, low, high)
-        ux, uy, x, y, lengths, first, change, arc = np.take(self._columns, pieces, axis=1)
+        ux, uy, x, y, lengths, first, change, arc = np.take(self.piece_fans.columns, pieces, axis=1)
         dx, dy = places[numbers, 0] - x, places[numbers, 1] - y
         along = dx * ux + dy * uy
         across = ux * dy - uy * dx

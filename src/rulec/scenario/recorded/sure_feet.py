@@ -1,0 +1,158 @@
+"""Feet of places that are sure to be their only ones, so that no other piece needs to be tried.
+
+A place is before or behind the line through each corner that bounds the fans on either side. As
+long as it is nearer to all pieces than these lines meet, those that it is behind come first: then
+it is in one fan only, and a guess that proves right is the answer. What is not sure stays open.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy import bool_, float64, intp
+from numpy.typing import NDArray
+
+from rulec.recordings.recording import Points
+
+_INSIDE = 1e-3
+"""Whose foot is nearer to the end of a piece than such a part of it may have another."""
+
+_AT_ONCE = 1 << 13
+"""So many places are looked at together: what is computed of them stays near at hand."""
+
+_WIDEST = 64
+_FEWEST, _ROUNDS = 2, 2
+_Values = NDArray[float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PieceFans:
+    """Pieces of a line, a column each.
+
+    Rows: direction, start and length (m), the slope of the interpolated direction at the beginning
+    and by how much it changes, and the place along the line (m).
+    """
+
+    columns: _Values
+
+    @cached_property
+    def room(self) -> _Values:
+        """How far (m) from its start a place may be for the fan to have half its length at least.
+
+        The length of the piece is taken off.
+        """
+        lengths, change = self.columns[4], np.abs(self.columns[6])
+        with np.errstate(divide="ignore"):
+            room: _Values = lengths / (2 * change) - lengths
+        return room
+
+    @cached_property
+    def _rooms(self) -> dict[int, _Values]:
+        return {}
+
+    def room_around(self, width: int) -> _Values:
+        """The least room of the pieces up to so many away from each."""
+        if width not in self._rooms:
+            padded = np.pad(self.room, width, constant_values=np.inf)
+            windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1)
+            self._rooms[width] = windows.min(axis=1)
+        return self._rooms[width]
+
+    def at(self, s: _Values) -> NDArray[intp]:
+        """The numbers of the pieces at places along the line."""
+        arc = self.columns[7]
+        return np.clip(np.searchsorted(arc, s, "right") - 1, 0, len(arc) - 1)
+
+
+def sure_feet_near(
+    fans: PieceFans, places: Points, around: _Values, reach: _Values
+) -> tuple[Points, NDArray[bool_]]:
+    """Frenet coordinates of the places whose only foot within ``reach`` of ``around`` is found.
+
+    ``places`` are in rows of as many (axes: row, place, x and y), ``around`` and ``reach`` those
+    of each row. With flags of the places that are found.
+    """
+    found = np.full(places.shape, np.nan)
+    sure = np.zeros(places.shape[:2], dtype=bool)
+    step = max(1, _AT_ONCE // places.shape[1])
+    for begin in range(0, len(places), step):
+        part = slice(begin, begin + step)
+        near = _Near(places[part], around[part], reach[part])
+        _find(fans, near, found[part], sure[part])
+    return found, sure
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Near:
+    """Rows of places, and about where along the line the feet of each row are (m)."""
+
+    places: Points
+    around: _Values
+    reach: _Values
+
+
+def _find(fans: PieceFans, near: _Near, found: Points, sure: NDArray[bool_]) -> None:
+    """Put the coordinates of the places of a few rows that are sure where they belong."""
+    least, most = (fans.at(near.around + reach) for reach in (-near.reach, near.reach))
+    width = int((most - least).max())
+    if width > _WIDEST:
+        return
+    middle = fans.at(near.around)
+    x, y = np.moveaxis(near.places, -1, 0)
+    ux, uy, x0, y0, _, _, _, arc = np.take(fans.columns, middle, axis=1)[..., None]
+    dx, dy = x - x0, y - y0
+    along = dx * ux + dy * uy
+    # No piece in question begins farther away than that, but for its length
+    off = np.abs(ux * dy - uy * dx) + np.abs(along - (near.around[:, None] - arc))
+    safe = off < (fans.room_around(width)[middle] - near.reach)[:, None]
+    pieces = fans.at(arc + along)
+    safe &= (pieces >= least[:, None]) & (pieces <= most[:, None])
+    s, d, inside = _on(fans, x, y, pieces)
+    safe &= inside
+    np.copyto(found[..., 0], s, where=safe)
+    np.copyto(found[..., 1], d, where=safe)
+    sure[:] = safe
+
+
+def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
+    """Frenet coordinates of the places whose only foot on the whole line is found, and flags."""
+    found = np.full(places.shape, np.nan)
+    sure = np.zeros(len(places), dtype=bool)
+    # Pieces beyond the ends of the line begin or end at its first and its last corner
+    corners = fans.columns[2:4, 1:].T
+    middle, room = corners.mean(axis=0), float(fans.room.min())
+    farthest = float(np.abs(corners - middle).sum(axis=1).max())
+    if farthest >= room or len(corners) < _FEWEST:
+        return found, sure
+    chord = corners[-1] - corners[0]
+    ux, uy = (chord / np.hypot(*chord)).tolist()
+    first = float(fans.columns[7, 1])
+    for begin in range(0, len(places), _AT_ONCE):
+        part = slice(begin, begin + _AT_ONCE)
+        x, y = places[part].T
+        near = np.abs(x - middle[0]) + np.abs(y - middle[1]) < room - farthest
+        s = first + (x - corners[0, 0]) * ux + (y - corners[0, 1]) * uy
+        for _ in range(_ROUNDS):
+            s, d, inside = _on(fans, x, y, fans.at(s))
+        safe = near & inside
+        np.copyto(found[part, 0], s, where=safe)
+        np.copyto(found[part, 1], d, where=safe)
+        sure[part] = safe
+    return found, sure
+
+
+def _on(
+    fans: PieceFans, x: _Values, y: _Values, pieces: NDArray[intp]
+) -> tuple[_Values, _Values, NDArray[bool_]]:
+    """Frenet coordinates of places by one piece each, and flags of those well inside its fan."""
+    ux, uy, x0, y0, lengths, slope, change, arc = np.take(fans.columns, pieces, axis=1)
+    dx, dy = x - x0, y - y0
+    along = dx * ux + dy * uy
+    across = ux * dy - uy * dx
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = (along + across * slope) / (lengths - across * change)
+    inside = (part > _INSIDE) & (part < 1 - _INSIDE)
+    distance = np.hypot(along - part * lengths, across)
+    return arc + part * lengths, np.copysign(distance, across), inside
