@@ -8,6 +8,7 @@ import stat
 import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
+from contextvars import ContextVar
 from errno import EACCES, EISDIR
 from io import SEEK_CUR, SEEK_END, BufferedReader, RawIOBase
 from pathlib import Path
@@ -31,6 +32,39 @@ LARGEST_UNPACKED: Final = 4_000_000_000
 
 PACKED: Final = b"\x1f\x8b"
 """How files packed with gzip begin (RFC 1952)."""
+
+
+FileState = tuple[int, int]
+"""A file's size (bytes) and the time at which it was last changed (ns)."""
+
+_noted: ContextVar[dict[str, FileState] | None] = ContextVar("_noted", default=None)
+
+
+@contextmanager
+def files_read() -> Iterator[dict[str, FileState]]:
+    """What files are opened for reading in the block, and what they are like then."""
+    found: dict[str, FileState] = {}
+    token = _noted.set(found)
+    try:
+        yield found
+    finally:
+        _noted.reset(token)
+
+
+def note_read(path: str | Path) -> FileState | None:
+    """Say that a file counts as read here, perhaps before; what it is like, if it is there."""
+    try:
+        found = file_state(path)
+    except OSError:
+        return None
+    noted = _noted.get()
+    return found if noted is None else noted.setdefault(str(path), found)
+
+
+def file_state(path: str | Path) -> FileState:
+    """What a file is like. Raises OSError."""
+    found = Path(path).stat()
+    return found.st_size, found.st_mtime_ns
 
 
 @contextmanager
@@ -139,6 +173,7 @@ def opened(
         message = f"the file cannot be read: {reason_in_words(problem)}"
         place = SourceLocation(str(path))
         raise UNREADABLE_FILE.error(place, message, help=way_out, labels=labels) from None
+    note_read(path)
     with stream:
         if is_packed:
             with BufferedReader(_Unpacking(stream, path)) as unpacked:

@@ -3,7 +3,6 @@
 import os
 import random
 import re
-import shutil
 import subprocess
 import sys
 from itertools import pairwise
@@ -12,7 +11,7 @@ from pathlib import Path
 import duckdb
 import pyarrow
 import pytest
-from pyarrow import parquet
+from pyarrow import compute, parquet
 
 import rulec
 from rulec.batch.jobs import Jobs
@@ -153,6 +152,25 @@ def test_what_is_done_is_not_done_again_and_what_has_changed_is(folder_of, trace
     assert (more.before, more.units, more.tally.judged) == (5, 6, DRIVES + 1)
 
 
+def test_what_was_read_beside_a_table_counts_too(tmp_path):
+    """A map that a table names, not the command: with another one, units are judged again."""
+    table, roads = pyarrow.table(tracks([0, 1])), lanes(tmp_path)
+    named = table.append_column("map", [[str(roads)] * len(table)])
+    for number in (0, 1):
+        rows = named.filter(compute.equal(named["recording"], f"r{number:03d}"))
+        parquet.write_table(rows, tmp_path / f"{number}.parquet")
+    inputs = [tmp_path / "0.parquet", tmp_path / "1.parquet"]
+    run(inputs, tmp_path / "out")
+    judged = found_in(tmp_path / "out")
+    assert run(inputs, tmp_path / "out").before == 2
+    roads.write_text("lane,x,y\nr,0,0\nr,400,0\n")
+    assert run(inputs, tmp_path / "out").before == 0
+    assert found_in(tmp_path / "out") != judged
+    roads.unlink()
+    (why,) = run(inputs, tmp_path / "out").tally.reasons
+    assert "no such file" in why
+
+
 def test_a_damaged_file_of_findings_is_written_again(folder_of, expected, tmp_path):
     out = tmp_path / "out"
     run([folder_of], out)
@@ -172,6 +190,9 @@ def test_a_folder_of_another_fleet_is_refused(folder_of, tmp_path):
         run([folder_of], out, ends="complete")
     with pytest.raises(RulecError, match="its map is none, and would be"):
         run([folder_of], out, road_map=lanes(tmp_path))
+    some = FleetSettings(RequestedDrives(egos=("a",)))
+    with pytest.raises(RulecError, match="its egos is none, and would be `a`"):
+        run_fleet([str(folder_of)], fleet_rules(), out, some)
     with pytest.raises(RulecError, match=r"also has findings of `.*0.parquet` and 3 more"):
         run([sorted(folder_of.iterdir())[-1]], out)
     with pytest.raises(RulecError, match="no _manifest"):
@@ -228,4 +249,11 @@ def test_engines_that_are_not_installed_say_how_to_get_them(folder_of, tmp_path,
         with pytest.raises(RulecError, match="R0713") as raised:
             run([folder_of], tmp_path / engine, engine=engine)
         assert f"pip install 'rulec[{engine}]'" in raised.value.diagnostics[0].help
-        shutil.rmtree(tmp_path / engine)
+        assert not (tmp_path / engine).exists()
+
+
+def test_without_arrow_nothing_is_written(folder_of, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(RulecError, match=r"takes the package `pyarrow`.*R0706"):
+        run([folder_of], tmp_path / "out")
+    assert not (tmp_path / "out").exists()

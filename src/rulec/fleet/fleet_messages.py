@@ -6,6 +6,7 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.missing_package import missing_package
 from rulec.recordings.recording_messages import NET_MISSING
 
 CUT_DRIVE = Code(
@@ -110,9 +111,18 @@ def other_fleet(folder: Path, why: str) -> RulecError:
     )
 
 
-def engine_missing(extra: str, name: str) -> RulecError:
+def engine_missing(engine: str, package: str) -> RulecError:
+    otherwise = "use `--engine local`"
+    return missing_package(
+        ENGINE_MISSING, f"`--engine {engine}`", package, engine, otherwise=otherwise
+    )
+
+
+def java_missing(home: str | None) -> RulecError:
     return ENGINE_MISSING.error(
         None,
-        f"{name} is not installed",
-        help=f"`pip install 'rulec[{extra}]'`, or use `--engine local`",
+        f"there is no Java in `{home}`, which JAVA_HOME names"
+        if home
+        else "Spark takes Java 17, and there is no `java` on the path",
+        help="install Java 17 and let JAVA_HOME name its folder, or use `--engine local`",
     )

@@ -11,6 +11,7 @@ from typing import Any
 from rulec.diagnostics import RulecError
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
+from rulec.files import FileState, note_read
 from rulec.fleet.drive_rows import DriveRows
 from rulec.fleet.finding_columns import Row
 from rulec.fleet.fleet_messages import cut_drive, no_map
@@ -88,11 +89,11 @@ def recording_of(table: Any, name: str, roads: Roads) -> Recording:
     if chosen is None:
         raise no_map(name, "it has tracks, but no roads")
     if isinstance(chosen, str):
-        chosen = _map(chosen, rows.times.step_s)
+        chosen = _map(chosen, rows.times.step_s, note_read(chosen))
     return track_recording(name, [rows], chosen, form="tracks as a table", remarks=[remark])
 
 
 @lru_cache(maxsize=_MOST_MAPS)
-def _map(path: str, step_s: float) -> RoadMap:
-    """A map, read once in a process; its lights count in steps."""
+def _map(path: str, step_s: float, _: FileState | None) -> RoadMap:
+    """A map as it is now, read once in a process; its lights count in steps."""
     return read_map(Path(path), step_s)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.missing_package import missing_package
 
 JUDGED_OTHERWISE = Code(
     "R0715",
@@ -73,8 +74,4 @@ def twice(file: str, first: str, drive: str) -> RulecError:
 
 
 def no_scipy() -> RulecError:
-    return RATES_UNAVAILABLE.error(
-        None,
-        "exact intervals take the package `scipy`, which is not installed",
-        help="`pip install 'rulec[rates]'`",
-    )
+    return missing_package(RATES_UNAVAILABLE, "an exact interval", "scipy", "rates")

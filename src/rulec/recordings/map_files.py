@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rulec.files import opened
 from rulec.recordings import table_heads as heads
 from rulec.recordings.argoverse.argoverse_files import MAP as MAP_ARCHIVES
 from rulec.recordings.argoverse.argoverse_files import is_named
@@ -130,5 +131,7 @@ def read_map(path: str | Path, step_s: float) -> RoadMap:
     for form in MAP_FORMATS:
         if form.recognises(glance):
             return form.read(path, step_s)
-    why = f"it is XML of `{short(glance.root)}`" if glance.root else "it is of no known format"
+    with opened(path):
+        # A file that is not there, or must not be read, says so by itself.
+        why = f"it is XML of `{short(glance.root)}`" if glance.root else "it is of no known format"
     raise MAP.refused(path, why)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rulec.diagnostics import RulecError
-from rulec.files import make_folder, opened, written_whole
+from rulec.files import file_state, make_folder, opened, written_whole
 from rulec.fleet.fleet_messages import other_fleet
 from rulec.fleet.judged_by import JudgedBy
 from rulec.fleet.runs.work_units import WorkUnit
@@ -24,6 +24,9 @@ VERSION = 1
 
 STATE = b"rulec.unit"
 """The key of a file's metadata whose value says what its unit read."""
+
+READ = b"rulec.read"
+"""The key of a file's metadata with what else was read for it, such as maps, and its state then."""
 
 _SHORT = 12
 
@@ -51,12 +54,17 @@ class FleetFolder:
             return False
         pyarrow, parquet = arrow(str(path))
         try:
-            metadata = parquet.read_schema(path).metadata or {}
-            return bool(metadata.get(STATE) == unit.state().encode())
-        except (pyarrow.ArrowException, OSError):
+            metadata = parquet.read_metadata(path).metadata or {}
+            if metadata.get(STATE) != unit.state().encode():
+                return False
+            beside = json.loads(metadata[READ]).items()
+            return all(file_state(name) == tuple(then) for name, then in beside)
+        except (pyarrow.ArrowException, OSError, KeyError, ValueError):
             return False
 
-    def open(self, inputs: Sequence[str], source: RecordingSource) -> None:
+    def open(
+        self, inputs: Sequence[str], source: RecordingSource, egos: Sequence[str] = ()
+    ) -> None:
         """Make the folder, or go on in it with the same settings and at least the same inputs.
 
         Raises RulecError R0702, R0712 if it is another fleet's, R0701 for a map that is not there.
@@ -66,6 +74,7 @@ class FleetFolder:
             "map": _map(source.map_path),
             "input_format": source.form or "",
             "scenario": source.scenario_id or "",
+            "egos": "; ".join(egos),
         }
         manifest = self.path / MANIFEST
         if manifest.is_file():

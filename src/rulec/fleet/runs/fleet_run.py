@@ -2,37 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Literal
 
 from rulec.batch.jobs import Jobs
 from rulec.diagnostics import RulecError
 from rulec.extraction.selection import RequestedDrives
 from rulec.fleet.carried_rulebook import CompiledRules, carried
 from rulec.fleet.judged_by import JudgedBy, judged_by
+from rulec.fleet.runs.engine import Engine
 from rulec.fleet.runs.fleet_folder import FleetFolder
 from rulec.fleet.runs.fleet_inputs import fleet_inputs
 from rulec.fleet.runs.fleet_tally import FleetTally
-from rulec.fleet.runs.local_engine import judged_locally
-from rulec.fleet.runs.ray_engine import judged_by_ray
-from rulec.fleet.runs.spark_engine import judged_by_spark
+from rulec.fleet.runs.local_engine import judged_locally, local_engine
+from rulec.fleet.runs.ray_engine import ray_engine
+from rulec.fleet.runs.spark_engine import spark_engine
 from rulec.fleet.runs.unit_work import UnitWorker
 from rulec.fleet.runs.work_units import WorkUnit, work_units
 from rulec.recordings.recording_format import RecordingSource
+from rulec.trace.formats.arrow.parquet import arrow
 from rulec.trace.trace_model import Ending
 from rulec.value_display import short_repr
 
 EngineName = Literal["local", "ray", "spark"]
 ENGINES: tuple[EngineName, ...] = ("local", "ray", "spark")
 
-_Engine: TypeAlias = Callable[[UnitWorker, Sequence[WorkUnit], Jobs], Iterator[FleetTally]]
-_ENGINES: dict[EngineName, _Engine] = {
-    "local": judged_locally,
-    "ray": judged_by_ray,
-    "spark": judged_by_spark,
+_ENGINES: Mapping[EngineName, Callable[[], Engine]] = {
+    "local": local_engine,
+    "ray": ray_engine,
+    "spark": spark_engine,
 }
 
 
@@ -84,13 +85,16 @@ def run_fleet(
     done. Raises RulecError R0702, R0706 without pyarrow, R0712 for a folder of another fleet, R0713
     without the engine, and why there is nothing to judge if no input is a recording or a table.
     """
+    # Whatever is missing is said before anything is written.
+    arrow("the table of findings")
+    engine = _ENGINES[settings.engine]()
     inputs = fleet_inputs(arguments)
     if not inputs.paths:
         raise RulecError([one for problem in inputs.problems for one in problem.diagnostics])
     carried_rules = carried(rules)
     by = judged_by(carried_rules.read(), settings.wanted, settings.ends or "")
     kept = FleetFolder(folder, by)
-    kept.open(inputs.paths, settings.source)
+    kept.open(inputs.paths, settings.source, settings.wanted.egos)
     problems = list(inputs.problems)
     units: list[WorkUnit] = []
     for unit in work_units(inputs.tables, inputs.recordings):
@@ -104,7 +108,7 @@ def run_fleet(
     rest = [unit for unit in units if unit.digest not in before]
     results = judged_locally(worker, there, Jobs(1))
     if rest:
-        results = chain(results, _ENGINES[settings.engine](worker, rest, settings.jobs))
+        results = chain(results, engine(worker, rest, settings.jobs))
     tally = FleetTally()
     for done, own in enumerate(results, 1):
         tally.add(own)

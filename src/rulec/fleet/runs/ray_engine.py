@@ -11,6 +11,7 @@ from typing import Any
 
 from rulec.batch.jobs import Jobs
 from rulec.fleet.fleet_messages import engine_missing
+from rulec.fleet.runs.engine import Engine
 from rulec.fleet.runs.fleet_tally import FleetTally
 from rulec.fleet.runs.unit_work import UnitWorker
 from rulec.fleet.runs.work_units import WorkUnit
@@ -19,18 +20,20 @@ _BLOCKS = 16
 """So many tasks there are for each process: fewer leave some idle, more take time themselves."""
 
 
-def judged_by_ray(
-    worker: UnitWorker, units: Sequence[WorkUnit], jobs: Jobs
-) -> Iterator[FleetTally]:
-    """What each unit comes to, in the order in which they are done.
-
-    Ray judges a unit again whose worker fails. Raises RulecError R0713 without Ray.
-    """
+def ray_engine() -> Engine:
+    """Ray as an engine. Raises RulecError R0713 without it."""
     try:
         import ray  # an extra, and seconds
         import ray.data  # as above
     except ImportError:
-        raise engine_missing("ray", "Ray") from None
+        raise engine_missing("ray", "ray[data]") from None
+    return partial(_judged_by, ray)
+
+
+def _judged_by(
+    ray: Any, worker: UnitWorker, units: Sequence[WorkUnit], jobs: Jobs
+) -> Iterator[FleetTally]:
+    """What each unit comes to, in the order in which they are done."""
     own = not ray.is_initialized()
     for name in ("ray", "ray.data"):
         # What it does step by step is no business of who asked for findings.

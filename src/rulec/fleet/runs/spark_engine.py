@@ -4,38 +4,43 @@ from __future__ import annotations
 
 import os
 import pickle
+import shutil
 import sys
 from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import Any
 
 from rulec.batch.jobs import Jobs
-from rulec.fleet.fleet_messages import engine_missing
+from rulec.fleet.fleet_messages import engine_missing, java_missing
+from rulec.fleet.runs.engine import Engine
 from rulec.fleet.runs.fleet_tally import FleetTally
 from rulec.fleet.runs.unit_work import UnitWorker
 from rulec.fleet.runs.work_units import WorkUnit
 from rulec.trace.formats.arrow.parquet import arrow
 
 
-def judged_by_spark(
-    worker: UnitWorker, units: Sequence[WorkUnit], jobs: Jobs
-) -> Iterator[FleetTally]:
-    """What each unit comes to, in whatever order.
-
-    Spark judges a unit again whose worker fails. Raises RulecError R0713 without Spark.
-    """
+def spark_engine() -> Engine:
+    """Spark as an engine. Raises RulecError R0713 without it, or without Java."""
     try:
         from pyspark.sql import SparkSession  # an extra, and seconds
     except ImportError:
-        raise engine_missing("spark", "Spark") from None
+        raise engine_missing("spark", "pyspark") from None
+    running = SparkSession.getActiveSession()
+    home = os.environ.get("JAVA_HOME")
+    if running is None and shutil.which(f"{home}/bin/java" if home else "java") is None:
+        raise java_missing(home)
+    return partial(_judged_by, SparkSession, running)
+
+
+def _judged_by(
+    sessions: Any, running: Any, worker: UnitWorker, units: Sequence[WorkUnit], jobs: Jobs
+) -> Iterator[FleetTally]:
+    """What each unit comes to, in whatever order."""
     pyarrow, _ = arrow("the table of units")
     # Workers run the Python that runs here, not the first one on the path.
     os.environ.setdefault("PYSPARK_PYTHON", sys.executable)
-    running = SparkSession.getActiveSession()
-    builder = SparkSession.builder.appName("rulec fleet")
-    session = running or builder.master(f"local[{jobs.processes}]").config(
-        "spark.ui.enabled", "false"
-    )
-    spark = session.getOrCreate() if running is None else running
+    builder = sessions.builder.appName("rulec fleet").master(f"local[{jobs.processes}]")
+    spark = running or builder.config("spark.ui.enabled", "false").getOrCreate()
     sent = pickle.dumps(worker)
 
     def judged(table: Any) -> Any:

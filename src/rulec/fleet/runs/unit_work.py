@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
@@ -10,11 +11,11 @@ from pathlib import Path
 from rulec.diagnostics import RulecError
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
-from rulec.files import written_whole
+from rulec.files import files_read, written_whole
 from rulec.fleet.carried_rulebook import CarriedRulebook
 from rulec.fleet.drive_rows import DriveRows
 from rulec.fleet.finding_columns import Row, arrow_schema, arrow_table
-from rulec.fleet.runs.fleet_folder import STATE, FleetFolder
+from rulec.fleet.runs.fleet_folder import READ, STATE, FleetFolder
 from rulec.fleet.runs.fleet_tally import FleetTally, tally_of
 from rulec.fleet.runs.work_units import WorkUnit, table_of_unit
 from rulec.fleet.table_kind import kind_of
@@ -54,14 +55,16 @@ class UnitWorker:
 
     def _write(self, unit: WorkUnit, path: Path) -> None:
         _, parquet = arrow(str(path))
-        schema = arrow_schema().with_metadata({STATE: unit.state().encode()})
-        rows = self.rows(unit)
+        state, rows = unit.state(), self.rows(unit)
         with (
+            files_read() as read,
             written_whole(path) as stream,
-            parquet.ParquetWriter(stream, schema, compression="zstd") as writer,
+            parquet.ParquetWriter(stream, arrow_schema(), compression="zstd") as writer,
         ):
             while chunk := list(islice(rows, _ROWS_AT_ONCE)):
-                writer.write_table(arrow_table(chunk).replace_schema_metadata(schema.metadata))
+                writer.write_table(arrow_table(chunk))
+            beside = {name: then for name, then in sorted(read.items()) if name not in unit.paths}
+            writer.add_key_value_metadata({STATE: state, READ: json.dumps(beside)})
 
     def rows(self, unit: WorkUnit) -> Iterator[Row]:
         """The rows of a unit; what cannot be read is one."""

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from hashlib import blake2b, sha256
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +13,7 @@ from numpy import uint64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
+from rulec.files import file_state
 from rulec.fleet.fleet_messages import no_fleet_input
 from rulec.fleet.table_kind import TableKind, keys_of, kind_of
 from rulec.trace.formats.arrow.parquet import arrow
@@ -54,13 +54,14 @@ class WorkUnit:
         start = "" if self.piece is None else f"#{self.piece.row_groups[0]}"
         return sha256(f"{self.path}{start}".encode()).hexdigest()[:20]
 
+    @property
+    def paths(self) -> Sequence[str]:
+        """The files of its rows, or the one of its recording."""
+        return list(dict.fromkeys([self.path, *(piece.path for piece in self.further)]))
+
     def state(self) -> str:
-        """What it read, as far as names, sizes, times and places of rows tell."""
-        paths = dict.fromkeys([self.path, *(piece.path for piece in self.further)])
-        about = []
-        for path in paths:
-            found = Path(path).stat()
-            about.append((path, found.st_size, found.st_mtime_ns))
+        """What it reads, as far as names, sizes, times and places of rows tell."""
+        about = [(path, *file_state(path)) for path in self.paths]
         content = (about, self.piece, self.further, sorted(self.spread), sorted(self.others))
         return sha256(repr(content).encode()).hexdigest()
 

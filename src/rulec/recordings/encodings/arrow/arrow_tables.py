@@ -24,7 +24,7 @@ from rulec.recordings.encodings.arrow.nested_columns import (
     nested_column,
 )
 from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
-from rulec.trace.formats.arrow.parquet import unavailable
+from rulec.trace.formats.arrow.parquet import without_arrow
 
 MOST_ROWS = 5_000_000
 MOST_BYTES = 1_000_000_000
@@ -137,8 +137,7 @@ def _arrow(path: Path) -> Any:
         import pyarrow.ipc  # as above
         import pyarrow.parquet  # as above
     except ImportError:
-        message = f"`{path.name}` takes the package `pyarrow`, which is not installed"
-        raise unavailable(message, str(path), "`pip install 'rulec[parquet]'`") from None
+        raise without_arrow(f"`{path.name}`", str(path)) from None
     return pyarrow
 
 

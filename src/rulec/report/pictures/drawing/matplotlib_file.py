@@ -12,6 +12,7 @@ from itertools import pairwise
 from typing import Any, Literal
 
 from rulec.diagnostics import SourceLocation
+from rulec.diagnostics.missing_package import missing_package
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.picture_messages import PNG_UNAVAILABLE
 from rulec.report.pictures.drawing.styles import DARK, LIGHT, STYLES
@@ -47,9 +48,14 @@ def as_printed(picture: Picture, form: Printed, file: str, *, dark: bool = False
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
-        message = f"{form.upper()} takes the package `matplotlib`, which is not installed"
-        way_out = "`pip install 'rulec[pictures]'`, or write SVG or HTML"
-        raise PNG_UNAVAILABLE.error(SourceLocation(file), message, help=way_out) from None
+        raise missing_package(
+            PNG_UNAVAILABLE,
+            form.upper(),
+            "matplotlib",
+            "pictures",
+            SourceLocation(file),
+            otherwise="write SVG or HTML",
+        ) from None
     largest = max(picture.width, picture.height)
     if largest > MOST_DOTS:
         message = (

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.missing_package import missing_package
 from rulec.files import opened
 from rulec.trace.formats.stream_lines import packed
 from rulec.trace.formats.table_reader import (
@@ -40,7 +41,8 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     """
     if not stream.seekable():
         message = "Parquet has its table of contents at the end, so it cannot be read from a pipe"
-        raise unavailable(message, file, "give a file, or write JSON Lines into the pipe")
+        way_out = "give a file, or write JSON Lines into the pipe"
+        raise PARQUET_UNAVAILABLE.error(SourceLocation(file), message, help=way_out)
     pyarrow, parquet = arrow(file)
     refused = _no_parquet(stream, file)
     if refused is not None:
@@ -218,11 +220,11 @@ def arrow(file: str) -> tuple[Any, Any]:
         import pyarrow  # an extra, and 0.1 s
         from pyarrow import parquet  # an extra, and 0.1 s
     except ImportError:
-        message = "Parquet takes the package `pyarrow`, which is not installed"
-        raise unavailable(message, file, "`pip install 'rulec[parquet]'`") from None
+        raise without_arrow("Parquet", file) from None
     return pyarrow, parquet
 
 
-def unavailable(message: str, file: str, help_text: str) -> RulecError:
-    """Parquet cannot be read or written here (R0706)."""
-    return PARQUET_UNAVAILABLE.error(SourceLocation(file), message, help=help_text)
+def without_arrow(what: str, file: str) -> RulecError:
+    """What takes Arrow cannot be read or written here (R0706)."""
+    place = SourceLocation(file)
+    return missing_package(PARQUET_UNAVAILABLE, what, "pyarrow", "parquet", place)

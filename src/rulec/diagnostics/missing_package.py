@@ -1,0 +1,24 @@
+"""The message that a package is not there which is installed on request."""
+
+from __future__ import annotations
+
+from rulec.diagnostics.code import Code
+from rulec.diagnostics.diagnostic import RulecError
+from rulec.diagnostics.source_text import SourceLocation
+
+
+def missing_package(
+    code: Code,
+    what: str,
+    package: str,
+    extra: str,
+    place: SourceLocation | None = None,
+    *,
+    otherwise: str = "",
+) -> RulecError:
+    """Say that ``what`` takes a package, which of rulec's extras has it, and what else to do."""
+    return code.error(
+        place,
+        f"{what} takes the package `{package}`, which is not installed",
+        help=f"`pip install 'rulec[{extra}]'`" + (f", or {otherwise}" if otherwise else ""),
+    )

@@ -1,0 +1,14 @@
+"""What an engine is: who judges units of work, in whatever processes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeAlias
+
+from rulec.batch.jobs import Jobs
+from rulec.fleet.runs.fleet_tally import FleetTally
+from rulec.fleet.runs.unit_work import UnitWorker
+from rulec.fleet.runs.work_units import WorkUnit
+
+Engine: TypeAlias = Callable[[UnitWorker, Sequence[WorkUnit], Jobs], Iterator[FleetTally]]
+"""What each unit comes to, in any order; one whose worker fails is judged again."""
