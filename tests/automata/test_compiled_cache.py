@@ -12,6 +12,7 @@ from rulec.api.rulebook_compilation import machines
 from rulec.automata import compiled_cache, compiler, prefix_machines
 from rulec.automata.bundle.mapped_tables import MappedTables, TableWriter, mapped
 from rulec.diagnostics import RulecError
+from support.builders.rulebook_projects import project_in
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"
 BASE = "rulebook base\nuse words\nhard rule first { require always (q implies once p) }\n"
@@ -28,13 +29,7 @@ hard rule second {
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "cache"))
-    project = tmp_path / "project"
-    project.mkdir()
-    monkeypatch.chdir(project)
-    for name, text in (("words", WORDS), ("base", BASE), ("book", BOOK)):
-        (project / f"{name}.rules").write_text(text)
-    return project
+    return project_in(tmp_path, monkeypatch, words=WORDS, base=BASE, book=BOOK)
 
 
 @pytest.fixture

@@ -132,6 +132,32 @@ def test_what_is_wrong_is_said(files, case, capsys):
     assert code in capsys.readouterr().err
 
 
+PLACES = {
+    ("-u", "NOSUCH", "wet"): ["there is no vocabulary `NOSUCH`"],
+    ("-u", "road hard", "wet"): ["there is no vocabulary `road hard`"],
+    ("built_up and dry",): [" --> the formula:1:14", "1 | built_up and dry"],
+    ("(v: lorry)\n not near(",): [" --> the formula:2:11", "2 |  not near("],
+    ("(v: lorry) gap(v) < 5 m",): [" --> the formula:1:5", "1 | (v: lorry) gap(v) < 5 m"],
+}
+
+
+@pytest.mark.parametrize("case", PLACES)
+def test_only_what_somebody_has_written_is_shown(files, case, capsys):
+    *options, formula = case
+    assert main(["find", *options, "--", formula, files[1]]) == 2
+    told = capsys.readouterr().err
+    shown = [line for line in told.splitlines() if line.startswith((" -->", "1 |", "2 |"))]
+    assert PLACES[case] == (shown or [told.splitlines()[0].partition(": ")[2]])
+    assert "what_is_asked" not in told
+
+
+def test_a_name_that_the_words_lack(files, capsys):
+    assert main(["find", "(v: lorry) built_up", files[1]]) == 2
+    assert "the formula says nothing about `v`" in capsys.readouterr().err
+    assert main(["find", "built_up", files[1]]) == 2
+    assert "which vocabulary `road` does not know" in capsys.readouterr().err
+
+
 def test_a_trace_that_does_not_fit_is_said_and_others_are_asked(files, tmp_path, capsys):
     book, drives = files
     odd = tmp_path / "odd.jsonl"

@@ -108,7 +108,7 @@ def test_output_of_questions_and_examples_does_not_depend_on_processes(
     assert "no.rules" in found[0][2]
 
 
-@pytest.mark.parametrize("ending", ["jsonl", "csv"])
+@pytest.mark.parametrize("ending", ["jsonl", "csv", "parquet"])
 def test_drives_are_written_alike_by_any_number_of_processes(ending, drives, monkeypatch, capsys):
     monkeypatch.chdir(drives)
     command = ["traces", "drives/a.xml", "--recorded", "-r", "./tiny.rules"]
@@ -117,9 +117,46 @@ def test_drives_are_written_alike_by_any_number_of_processes(ending, drives, mon
         assert capsys.readouterr().out == f"wrote 3 drives to {jobs}.{ending}\n"
     assert Path(f"1.{ending}").read_bytes() == Path(f"2.{ending}").read_bytes()
     assert main([*command, "-o", f"few.{ending}", "-j", "2", "--limit", "2"]) == 0
-    assert Path(f"1.{ending}").read_bytes().startswith(Path(f"few.{ending}").read_bytes())
+    if ending != "parquet":
+        assert Path(f"1.{ending}").read_bytes().startswith(Path(f"few.{ending}").read_bytes())
     assert main(["verify", f"few.{ending}", "-r", "./tiny.rules"]) in (0, 1)
     assert "2 traces: " in capsys.readouterr().out
+
+
+NUMBERS = {
+    "-1": "'--jobs': it has to be a whole number from 0 to 256; 0 is one for each processor",
+    "x": "it has to be a whole number from 0 to 256",
+    "257": "it has to be a whole number from 0 to 256",
+    "1.5": "it has to be a whole number from 0 to 256",
+    "": "it has to be a whole number from 0 to 256",
+}
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_a_number_of_processes_that_is_none_is_refused(number, capsys):
+    assert main(["verify", "x.xml", "-r", "de", "-j", number]) == 2
+    assert NUMBERS[number] in capsys.readouterr().err
+
+
+def test_a_number_from_the_environment_says_so(drives, monkeypatch, capsys):
+    monkeypatch.setenv("RULEC_JOBS", "x")
+    command = ["verify", "drives/a.xml", "-r", "./tiny.rules"]
+    monkeypatch.chdir(drives)
+    assert main(command) == 2
+    assert "RULEC_JOBS is `x`, and has to be a whole number from 0 to" in capsys.readouterr().err
+    for number in ("0", ""):
+        monkeypatch.setenv("RULEC_JOBS", number)
+        assert main(command) == 1
+
+
+def test_processes_for_maneuvers_are_refused_and_those_of_the_environment_are_not_meant(
+    tmp_path, monkeypatch, capsys
+):
+    command = ["traces", "s1", "-o", str(tmp_path / "t.jsonl")]
+    assert main([*command, "-j", "2"]) == 2
+    assert "-j is for drives: add --recorded." in capsys.readouterr().err
+    monkeypatch.setenv("RULEC_JOBS", "2")
+    assert main(command) == 0
 
 
 def processes_of(group):

@@ -8,6 +8,8 @@ from xml.etree import ElementTree
 import pytest
 
 from rulec.cli.main import main
+from rulec.report.verdict_findings import found_in_drives, found_in_traces
+from support.builders.recorded_cars import three_cars
 
 SHARED = {"rulebook": "de", "rulebook_hash": "abcdefgh1", "rulec": "1.0", "file": "a.xml"}
 
@@ -130,6 +132,30 @@ def test_findings_of_traces_have_their_exposure(tmp_path, ending, capsys):
     assert rule["perhaps_exposed_h"] == pytest.approx(4 / 3600)
     assert rule["hours"] == pytest.approx(5 / 3600)
     assert rule["km"] is None
+
+
+def test_with_exposure_nothing_is_looked_for_twice(tmp_path, monkeypatch, capsys):
+    """One violation of a trace and three of a recording, whose evidence is one each."""
+    looked = []
+
+    def counted(module, name):
+        original = getattr(module, name)
+        monkeypatch.setattr(module, name, lambda *all_: looked.append(name) or original(*all_))
+
+    counted(found_in_traces, "explain")
+    counted(found_in_drives, "evidence_of")
+    (tmp_path / "lights.rules").write_text(BOOK)
+    (tmp_path / "slow.rules").write_text(
+        "rulebook slow use road hard rule r { require always speed < 1 km/h }"
+    )
+    drives = tmp_path / "drives.jsonl"
+    drives.write_text(json.dumps(DRIVES[0]))
+    for book, file in (("lights", drives), ("slow", three_cars(tmp_path))):
+        command = ["verify", str(file), "-r", str(tmp_path / f"{book}.rules"), "--explain", "0"]
+        for more in ([], ["--exposure"]):
+            looked.clear()
+            assert main([*command, *more, "-o", str(tmp_path / "found.jsonl")]) == 1
+            assert len(looked) == (1 if book == "lights" else 3)
 
 
 def test_exposure_goes_to_tables(tmp_path, capsys):

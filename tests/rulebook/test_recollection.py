@@ -11,6 +11,7 @@ import pytest
 from rulec.rulebook import loader
 from rulec.rulebook.batch import batch_check, check_cache
 from rulec.rulebook.batch.check_cache import CheckQuestion, cache_folder, recall, remember
+from support.builders.rulebook_projects import project_in
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"
 BASE = "rulebook base\nuse words\nhard rule first { require p }\n"
@@ -19,13 +20,7 @@ BOOK = "rulebook book\nextends base\nhard rule second { require always q }\n"
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "cache"))
-    project = tmp_path / "project"
-    project.mkdir()
-    monkeypatch.chdir(project)
-    for name, text in (("words", WORDS), ("base", BASE), ("book", BOOK)):
-        (project / f"{name}.rules").write_text(text)
-    return project
+    return project_in(tmp_path, monkeypatch, words=WORDS, base=BASE, book=BOOK)
 
 
 @pytest.fixture

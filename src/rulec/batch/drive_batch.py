@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from io import BytesIO
-from typing import Any
+from typing import Any, TypeVar
 
 from rulec.batch.batch_messages import process_lost
 from rulec.batch.jobs import Jobs
@@ -22,6 +22,8 @@ from rulec.trace import Trace
 from rulec.trace.formats.trace_files import Format, with_bounds, write_traces
 from rulec.trace.vocabulary_projection import MEASURED
 from rulec.vocabulary import Vocabulary
+
+Piece = TypeVar("Piece")
 
 
 @dataclass(frozen=True)
@@ -93,7 +95,27 @@ def drives_in_order(
     ``lost`` whose process was killed, and by which signal, so that another one does it again.
     Raises RulecError R0708 if that was killed, too.
     """
-    for _, piece in in_order(drives.written, drives.selected.egos, jobs, tell, lost):
+    yield from _in_order(drives.written, drives, jobs, tell, lost)
+
+
+def traces_in_order(
+    drives: WrittenDrives,
+    jobs: Jobs,
+    tell: Callable[[int], object],
+    lost: Callable[[str, int | None], object],
+) -> Generator[Trace, None, None]:
+    """Each drive as a trace, as ``drives_in_order``."""
+    yield from _in_order(drives.traces, drives, jobs, tell, lost)
+
+
+def _in_order(
+    work: Callable[[str], Iterator[Piece]],
+    drives: WrittenDrives,
+    jobs: Jobs,
+    tell: Callable[[int], object],
+    lost: Callable[[str, int | None], object],
+) -> Iterator[Piece]:
+    for _, piece in in_order(work, drives.selected.egos, jobs, tell, lost):
         if isinstance(piece, LostTask):
             raise process_lost(str(drives.source.path), piece.signal_number, "read")
         yield piece

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -22,12 +22,13 @@ from rulec.report.verdicts import recording_table, verdict_report
 if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
     from rulec.report.verdict_findings.found_in_drives import DriveFindings
-    from rulec.report.verdict_findings.verdict_finding import FoundInRecording
+    from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
 
 RowMaker: TypeAlias = Callable[
-    [DriveVerdict | NoDrive, RecordingVerdicts, str], Iterator[Mapping[str, object]]
+    [DriveVerdict | NoDrive, RecordingVerdicts, str, "Sequence[VerdictFinding] | None"],
+    Iterator[Mapping[str, object]],
 ]
-"""What makes rows of a drive of a file; it is sent to processes."""
+"""What makes rows of a drive of a file, and of what was found of it; it is sent to processes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,10 +143,9 @@ class _RecordingJudge:
                     yield DriveProblem(answer.answer.error)
                 else:
                     explained = self._explained(answer)
-            if self._findings is not None:
-                self._findings.add(answer, explained)
+            own = None if self._findings is None else self._findings.add(answer, explained)
             if self._settings.to_rows is not None:
-                rows += self._settings.to_rows(answer, verdicts, self._file)
+                rows += self._settings.to_rows(answer, verdicts, self._file, own)
             if self._settings.lines:
                 # JSON of explanations and evidence, 30 ms: only where it is wanted.
                 from rulec.report.verdicts import recording_json

@@ -56,19 +56,22 @@ class TraceRun:
             rows: list[Mapping[str, object]] = []
             left, traces_before = self.to_explain, self.counts.total()
             for traces, place, answer in _answers(file, form, self.rules, assumed):
+                before = len(findings)
                 if isinstance(answer, NotJudged):
                     self._not_judged(file, answer, findings)
                 else:
                     left -= self._judged(file, (traces, place, answer), left, findings)
                 if self.to.to_rows is not None:
-                    rows += self._rows(file, (traces, place, answer))
+                    rows += self._rows(file, (traces, place, answer), findings[before:])
             if self.to.wants_findings:
                 drives = self.counts.total() - traces_before
                 self.to.found(FoundInRecording(file, "", drives, tuple(findings), tuple(rows)))
         self.to.text(verdict_report.summary(self.counts, self.not_judged))
 
-    def _rows(self, file: str, answer: Answer) -> Iterator[Mapping[str, object]]:
-        """The rows of a trace."""
+    def _rows(
+        self, file: str, answer: Answer, found: Sequence[VerdictFinding]
+    ) -> Iterator[Mapping[str, object]]:
+        """The rows of a trace, and of what was found of it."""
         to_rows = self.to.to_rows
         assert to_rows is not None, "they are wanted"
         traces, place, verdict = answer
@@ -78,7 +81,7 @@ class TraceRun:
             return
         trace = cast("Trace", traces[place])
         used = rulebook_for(traces, place, self.rules)
-        yield from to_rows.of_trace(trace, verdict, own, used)
+        yield from to_rows.of_trace(trace, verdict, own, used, found=found)
 
     def _not_judged(self, file: str, answer: NotJudged, findings: list[VerdictFinding]) -> None:
         self.not_judged += 1

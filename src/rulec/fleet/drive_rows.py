@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from math import hypot
 
@@ -52,9 +52,16 @@ class DriveRows:
             yield from self.of_answer(answer, verdicts, file)
 
     def of_answer(
-        self, answer: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, file: str
+        self,
+        answer: DriveVerdict | NoDrive,
+        verdicts: RecordingVerdicts,
+        file: str,
+        found: Sequence[VerdictFinding] | None = None,
     ) -> Iterator[Row]:
-        """The rows of a drive of a recording, or of a vehicle that has none."""
+        """The rows of a drive of a recording, or of a vehicle that has none.
+
+        What was ``found`` of the drive is looked for only if that has not been done before.
+        """
         recording = verdicts.recording
         own = {
             "file": file,
@@ -66,7 +73,9 @@ class DriveRows:
             named = {"vehicle": answer.ego, "ego": answer.ego}
             yield self.of_nothing({**own, **named}, answer.why)
         else:
-            yield from self._of_drive(answer, verdicts, own)
+            if found is None:
+                found = DriveFindings(verdicts, file).add(answer)
+            yield from self._of_drive(answer, own, found)
 
     def of_trace(
         self,
@@ -74,12 +83,18 @@ class DriveRows:
         verdict: Verdict,
         own: Row,
         used: CompiledRulebook,
+        *,
+        found: Sequence[VerdictFinding] | None = None,
     ) -> Iterator[Row]:
-        """The rows of a trace; ``own`` are columns that name it, ``used`` fits its step."""
+        """The rows of a trace; ``own`` are columns that name it, ``used`` fits its step.
+
+        What was ``found`` of it is looked for only if that has not been done before.
+        """
         times = (0.0, round((len(trace.states) - 1) * trace.step_s, 9))
         yield self._judged(own, verdict, trace, times)
         yield from self._rules(own, verdict, trace)
-        found = trace_findings(str(own.get("file", "")), trace, verdict, used, [])
+        if found is None:
+            found = list(trace_findings(str(own.get("file", "")), trace, verdict, used, []))
         at_s = [
             round((len(trace.states) - 1 if one.step is None else one.step) * trace.step_s, 9)
             for one in verdict.violations
@@ -91,7 +106,7 @@ class DriveRows:
         return {**self.shared, **own, "kind": "drive", "outcome": "not_judged", "because": why}
 
     def _of_drive(
-        self, result: DriveVerdict, verdicts: RecordingVerdicts, own: Row
+        self, result: DriveVerdict, own: Row, found: Sequence[VerdictFinding]
     ) -> Iterator[Row]:
         drive, verdict = result.drive, result.answer
         own = {**own, "vehicle": drive.arrays.id, "ego": drive.ego}
@@ -104,11 +119,8 @@ class DriveRows:
             "distance_m": driven_m(drive),
         }
         yield from self._rules(own, verdict, drive.arrays)
-        # Of one drive alone: it says also what is not judged in this one.
-        findings = DriveFindings(verdicts, str(own["file"]))
-        findings.add(result, [])
         at_s = [drive.time_s(violation.step) for violation in verdict.violations]
-        yield from self._findings(own, verdict, at_s, iter(findings.whole().findings))
+        yield from self._findings(own, verdict, at_s, found)
 
     def _judged(
         self,
@@ -150,7 +162,7 @@ class DriveRows:
             yield row
 
     def _findings(
-        self, own: Row, verdict: Verdict, at_s: list[float], found: Iterator[VerdictFinding]
+        self, own: Row, verdict: Verdict, at_s: list[float], found: Sequence[VerdictFinding]
     ) -> Iterator[Row]:
         """A row for each violation, with when it was lost, and for each that is open."""
         lost = iter(zip(verdict.violations, at_s, strict=True))

@@ -11,7 +11,16 @@ from rulec.diagnostics import Diagnostic, RulecError, Source
 from rulec.logic.bounds import NotAMultipleError
 from rulec.rulebook.asked_formula import FormulaQuery
 from rulec.rulebook.elaborate.rule_messages import no_multiple
-from rulec.rulebook.loader import find, parse_all, parse_rulebook, resolve_trees
+from rulec.rulebook.formula_places import AskedParts
+from rulec.rulebook.loader import (
+    Trees,
+    find,
+    load_vocabulary,
+    parse_all,
+    parse_rulebook,
+    resolve_trees,
+)
+from rulec.rulebook.rulebook_model import Rulebook
 from rulec.syntax import parse
 from rulec.syntax.parser import parse_formula
 
@@ -19,11 +28,12 @@ _HEAD = re.compile(r"\s*(\(\s*\w+\s*(?::\s*\w+\s*)(?:,\s*\w+\s*(?::\s*\w+\s*)?)*
 """Variables with their types, as in the head of a rule; no formula begins so."""
 
 _NAME = "what_is_asked"
+_SAID = "the formula"
 
 
 def bound_between_states(query: FormulaQuery, error: NotAMultipleError) -> RulecError:
     """The error (R0407) that a bound of the formula is no multiple of a trace's step."""
-    return RulecError([no_multiple(query.rule, error)])
+    return RulecError([_in_words(no_multiple(query.rule, error))])
 
 
 def read_query(
@@ -40,51 +50,68 @@ def read_query(
     Raises RulecError with all that is wrong with it.
     """
     head = _HEAD.match(text)
-    variables, formula = (head[1], text[head.end() :]) if head else ("", text)
-    # That it is one formula, and nothing else.
-    parse_formula(formula, "the formula")
+    begin = head.end() if head else 0
+    formula = text[begin:]
+    asked = Source(_SAID, text)
+    folders = [Path(one) for one in search_path]
+    program = Source(_SAID, formula)
+    parts: tuple[tuple[int, int, int], ...] = ((0, begin, len(formula)),)
     try:
-        parts = text.strip(), variables, formula
-        return _query(parts, (rulebook, vocabulary), search_path, at)
+        # That it is one formula, and nothing else.
+        parse_formula(formula, _SAID)
+        trees = parse_all(find(rulebook, folders)) if rulebook else None
+        words = vocabulary
+        if trees is None:
+            first = f"rulebook {_NAME} use {_word(vocabulary, folders)}\n"
+        else:
+            base = trees.books[-1].name
+            words = rulebook if base is None else base.text
+            first = f"rulebook {_NAME}" + ("" if base is None else f" extends {words}") + "\n"
+        first += f"soft rule {_NAME} "
+        second = f"{head[1] if head else ''} {{\n  require "
+        program = Source(_SAID, f"{first}{second}{formula}\n}}\n")
+        parts = ((len(first + second), begin, len(formula)),)
+        if head:
+            parts = (*parts, (len(first), head.start(1), len(head[1])))
+        found = _resolved(program, trees, folders, at)
     except RulecError as error:
-        raise RulecError([_said_of_a_formula(one) for one in error.diagnostics]) from None
-
-
-def _said_of_a_formula(problem: Diagnostic) -> Diagnostic:
-    """The diagnostic, with the way out where a formula has its variables."""
-    if problem.help is None or "behind the rule's name" not in problem.help:
-        return problem
-    return replace(problem, help=problem.help.replace("behind the rule's name", _BEFORE))
-
-
-_BEFORE = "before the formula"
-
-
-def _query(
-    parts: tuple[str, str, str],
-    words: tuple[str, str],
-    search_path: Sequence[str | Path],
-    at: str,
-) -> FormulaQuery:
-    (text, variables, formula), (rulebook, vocabulary) = parts, words
-    rule = f"soft rule {_NAME} {variables} {{\n  require {formula}\n}}\n"
-    name = "the formula"
-    if not rulebook:
-        source = f"rulebook {_NAME} use {vocabulary}\n{rule}"
-        found = parse_rulebook(source, name, [Path(one) for one in search_path], at)
-    else:
-        trees = parse_all(find(rulebook, search_path))
-        base = trees.books[-1].name
-        extends = "" if base is None else f" extends {base.text}"
-        parsed, mistakes = parse(Source(name, f"rulebook {_NAME}{extends}\n{rule}"))
-        asked = replace(
-            trees,
-            name=name,
-            books=(*trees.books, parsed),
-            mistakes=(*mistakes, *trees.mistakes),
-        )
-        # The law is that of the rulebook's day.
-        law = trees.books[-1].law
-        found = resolve_trees(asked, at or (law.as_of if law else "")).rulebook
+        places = AskedParts(asked, program, parts)
+        raise RulecError([places.said(_in_words(one)) for one in error.diagnostics]) from None
     own = next(one for one in found.rules if one.name == _NAME)
-    return FormulaQuery(text, own, found.vocabulary, found.semantics, found.traffic)
+    named = replace(found.vocabulary, name=words)
+    return FormulaQuery(text.strip(), own, named, found.semantics, found.traffic)
+
+
+def _in_words(problem: Diagnostic) -> Diagnostic:
+    """The diagnostic without the rule's name, and with the way out where variables stand."""
+    return replace(
+        problem,
+        message=problem.message.replace(f" of `{_NAME}`", ""),
+        help=problem.help.replace("behind the rule's name", "before the formula"),
+    )
+
+
+def _word(vocabulary: str, folders: Sequence[Path]) -> str:
+    """The name of a vocabulary. Raises RulecError R0703 for what can be none."""
+    if re.fullmatch(r"[^\W\d]\w*", vocabulary) is None:
+        try:
+            load_vocabulary(vocabulary, folders)
+        except RulecError as error:
+            unplaced = [replace(one, place=None, expected="") for one in error.diagnostics]
+            raise RulecError(unplaced) from None
+    return vocabulary
+
+
+def _resolved(program: Source, trees: Trees | None, folders: Sequence[Path], at: str) -> Rulebook:
+    if trees is None:
+        return parse_rulebook(program.text, program.name, folders, at)
+    parsed, mistakes = parse(program)
+    asked = replace(
+        trees,
+        name=program.name,
+        books=(*trees.books, parsed),
+        mistakes=(*mistakes, *trees.mistakes),
+    )
+    # The law is that of the rulebook's day.
+    law = trees.books[-1].law
+    return resolve_trees(asked, at or (law.as_of if law else "")).rulebook

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import click
+from click.core import ParameterSource
 
 import rulec
 from rulec.batch.jobs import Jobs
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from rulec.trace.formats.trace_files import Format
 
 MOST_TRACES = 10_000_000
+_ALOUD = 100
+"""After so many traces it is said how many there are."""
 
 Piece = TypeVar("Piece")
 
@@ -66,7 +69,11 @@ def command(
         _write_drives(Path(scenario), to, jobs, rulebook=rulebook, limit=limit, options=options)
         return
     about = {name: options.pop(name) for name in ("thresholds", "assumed", "as_recorded")}
-    if option := scenario_options.given_drives_option(about):
+    option = scenario_options.given_drives_option(about)
+    context = click.get_current_context()
+    if option is None and shared.is_from(context, "jobs", ParameterSource.COMMANDLINE):
+        option = "-j"
+    if option:
         raise click.UsageError(f"{option} is for drives: add --recorded.")
     # Maneuvers and the formats of traces, 130 ms: not for --help, and not for recordings.
     from rulec.monitoring.state_validation import partial_names
@@ -111,7 +118,7 @@ def _write_drives(
     options: dict[str, Any],
 ) -> None:
     # numpy and shapely, 200 ms: only for recordings.
-    from rulec.batch.drive_batch import WrittenDrives, drives_in_order
+    from rulec.batch.drive_batch import WrittenDrives, drives_in_order, traces_in_order
     from rulec.trace.formats.trace_files import write_traces
 
     if (option := _given_maneuvers_option(options)) is not None:
@@ -135,18 +142,17 @@ def _write_drives(
             count += 1
             yield piece
 
+    lost = partial(print_lost, "wrote the drives of")
     with (
         progress(f"writing {to.path}", len(vehicles)) as tell,
         output_stream(to) as (stream, name),
     ):
         if to.form == "parquet":
             # Its rows have to be together.
-            told = _counted_aloud(vehicles, tell, 1)
-            traces = chain.from_iterable(map(drives.traces, told))
-            write_traces(counted(traces), stream, name, "parquet", kinds, partial=True)
+            with closing(traces_in_order(drives, jobs, tell, lost)) as traces:
+                write_traces(counted(traces), stream, name, "parquet", kinds, partial=True)
         else:
             stream.write(drives.head)
-            lost = partial(print_lost, "wrote the drives of")
             with closing(drives_in_order(drives, jobs, tell, lost)) as pieces:
                 for piece in counted(pieces):
                     stream.write(piece)
@@ -156,22 +162,20 @@ def _write_drives(
 def _given_maneuvers_option(options: Mapping[str, Any]) -> str | None:
     """A given option that means nothing for recorded drives, if any."""
     context = click.get_current_context()
-    typed = click.core.ParameterSource.COMMANDLINE
     names = options.keys() - _OF_DRIVES
     return next(
         (
             parameter.opts[0]
             for parameter in context.command.params
-            if parameter.name in names and context.get_parameter_source(parameter.name) is typed
+            if parameter.name in names
+            and shared.is_from(context, parameter.name, ParameterSource.COMMANDLINE)
         ),
         None,
     )
 
 
-def _counted_aloud(
-    items: Iterable[Piece], tell: Callable[[float], None], every: int = 100
-) -> Iterator[Piece]:
+def _counted_aloud(items: Iterable[Piece], tell: Callable[[float], None]) -> Iterator[Piece]:
     for number, item in enumerate(items):
-        if number % every == 0:
+        if number % _ALOUD == 0:
             tell(number)
         yield item

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import click
+from click.core import ParameterSource
 
 from rulec.batch.jobs import Jobs, chosen_jobs
 from rulec.cli.options.output_options import endings_of, output_options
@@ -138,8 +139,21 @@ def rules_option(help_text: str) -> Callable[[Decorated], Decorated]:
     return click.option("--rule", "patterns", multiple=True, metavar="PATTERN", help=help_text)
 
 
-def _jobs(context: click.Context, parameter: click.Parameter, value: int | None) -> Jobs:
-    return chosen_jobs(value)
+def _jobs(context: click.Context, parameter: click.Parameter, value: str | None) -> Jobs:
+    if value is None:
+        return chosen_jobs(None)
+    number = int(value) if re.fullmatch(r"[0-9]{1,9}", value) else MOST_JOBS + 1
+    if number <= MOST_JOBS:
+        return chosen_jobs(number)
+    wanted = f"has to be a whole number from 0 to {MOST_JOBS}; 0 is one for each processor"
+    if is_from(context, "jobs", ParameterSource.ENVIRONMENT):
+        raise click.UsageError(f"RULEC_JOBS is `{value}`, and {wanted}.")
+    raise click.BadParameter(f"it {wanted}")
+
+
+def is_from(context: click.Context, field: str, source: ParameterSource) -> bool:
+    """Whether the value of a parameter comes from the command line, or from elsewhere."""
+    return context.get_parameter_source(field) is source
 
 
 def jobs_option(what: str) -> Callable[[Decorated], Decorated]:
@@ -147,7 +161,6 @@ def jobs_option(what: str) -> Callable[[Decorated], Decorated]:
     return click.option(
         "-j",
         "--jobs",
-        type=click.IntRange(0, MOST_JOBS),
         callback=_jobs,
         envvar="RULEC_JOBS",
         metavar="N",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -28,8 +28,18 @@ class DriveFindings:
     _not_judged: dict[str, dict[str, RuleNotJudged]] = field(default_factory=dict)
     _drives: Counter[bool] = field(default_factory=Counter)
 
-    def add(self, result: DriveVerdict | NoDrive, explained: list[Explanation]) -> None:
-        """Take what was found of a drive; ``explained`` are its first violations."""
+    def add(
+        self, result: DriveVerdict | NoDrive, explained: Sequence[Explanation] = ()
+    ) -> Sequence[VerdictFinding]:
+        """Take what was found of a drive; ``explained`` are its first violations.
+
+        It is what is violated, then what is open, in the order of the verdict.
+        """
+        before = len(self._found)
+        self._take(result, explained)
+        return self._found[before:]
+
+    def _take(self, result: DriveVerdict | NoDrive, explained: Sequence[Explanation]) -> None:
         if isinstance(result, NoDrive):
             own = self._own(vehicle=result.ego, because=result.why)
             self._found.append(VerdictFinding(outcome="not_judged", **own))
