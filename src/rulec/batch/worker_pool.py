@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from time import monotonic
@@ -135,6 +136,8 @@ class _Pool(Generic[Task, Result]):
         self._received: dict[int, int] = {}
         self._known: dict[int, int] = {}
         """Of tasks that are done again, how many of their results have come before."""
+        # To start it lets interrupts through (Python 3.11): before they are kept from workers.
+        resource_tracker.ensure_running()
 
     def results(self, number: int) -> Iterator[Result | LostTask | _Raised]:
         """The results of a task; those of later ones are kept meanwhile."""
