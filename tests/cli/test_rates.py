@@ -140,7 +140,12 @@ def test_with_exposure_nothing_is_looked_for_twice(tmp_path, monkeypatch, capsys
 
     def counted(module, name):
         original = getattr(module, name)
-        monkeypatch.setattr(module, name, lambda *all_: looked.append(name) or original(*all_))
+
+        def noting(*given, **named):
+            looked.append(name)
+            return original(*given, **named)
+
+        monkeypatch.setattr(module, name, noting)
 
     counted(found_in_traces, "explain")
     counted(found_in_drives, "evidence_of")

@@ -13,7 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.selection import RequestedDrives
 from rulec.fleet.carried_rulebook import CompiledRules, carried
 from rulec.fleet.judged_by import JudgedBy, judged_by
-from rulec.fleet.runs.engine import Engine
+from rulec.fleet.runs.fleet_engine import Engine
 from rulec.fleet.runs.fleet_folder import FleetFolder
 from rulec.fleet.runs.fleet_inputs import fleet_inputs
 from rulec.fleet.runs.fleet_tally import FleetTally

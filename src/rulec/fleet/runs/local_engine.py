@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from rulec.batch.jobs import Jobs
 from rulec.batch.worker_pool import LostTask, in_order
-from rulec.fleet.runs.engine import Engine
+from rulec.fleet.runs.fleet_engine import Engine
 from rulec.fleet.runs.fleet_tally import FleetTally
 from rulec.fleet.runs.unit_work import UnitWorker
 from rulec.fleet.runs.work_units import WorkUnit

@@ -12,7 +12,7 @@ from typing import Any
 
 from rulec.batch.jobs import Jobs
 from rulec.fleet.fleet_messages import engine_missing, java_missing
-from rulec.fleet.runs.engine import Engine
+from rulec.fleet.runs.fleet_engine import Engine
 from rulec.fleet.runs.fleet_tally import FleetTally
 from rulec.fleet.runs.unit_work import UnitWorker
 from rulec.fleet.runs.work_units import WorkUnit
