@@ -7,7 +7,7 @@ and greatest in what they can still come to need be kept: what lies between them
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, TypeAlias
@@ -103,13 +103,21 @@ class OutcomeMachine:
     @cached_property
     def below(self) -> tuple[int, ...]:
         """For each state those, as bits, from which no word comes to more."""
-        below = [0] * len(self.above)
-        for state, above in enumerate(self.above):
-            while above:
-                lowest = above & -above
-                below[lowest.bit_length() - 1] |= 1 << state
-                above ^= lowest
-        return tuple(below)
+        size = len(self.above)
+        width = (size + 7) // 8
+        packed = b"".join([above.to_bytes(width, "little") for above in self.above])
+        rows = np.frombuffer(packed, dtype=np.uint8).reshape(size, width)
+        order = np.unpackbits(rows, axis=1, count=size, bitorder="little")
+        columns = np.packbits(order.T, axis=1, bitorder="little")
+        return tuple([int.from_bytes(column.tobytes(), "little") for column in columns])
+
+    def least(self, states: int) -> int:
+        """The least of these states, all as bits; of equivalent ones the first."""
+        return _foremost(states, self.below, self.above)
+
+    def greatest(self, states: int) -> int:
+        """The greatest of these states, all as bits; of equivalent ones the first."""
+        return _foremost(states, self.above, self.below)
 
     def extremes(self, states: Iterable[int]) -> frozenset[int]:
         """The least and the greatest of these states; of equivalent ones the first."""
@@ -132,6 +140,29 @@ class OutcomeMachine:
                 if above[state] & bits == 1 << state or below[state] & bits == 1 << state
             ]
         )
+
+
+def bits_of(mask: int) -> Iterator[int]:
+    """The places of the bits that are set, ascending."""
+    while mask:
+        lowest = mask & -mask
+        yield lowest.bit_length() - 1
+        mask ^= lowest
+
+
+def _foremost(states: int, beyond: Sequence[int], before: Sequence[int]) -> int:
+    """Those of some states that no other of them is beyond, as bits; of equivalent ones the first.
+
+    ``beyond`` and ``before`` are, for each state, itself and those that are.
+    """
+    left = states
+    if not states & (states - 1):
+        return states
+    for state in bits_of(states):
+        others = beyond[state] & left & ~(1 << state)
+        if others & ~before[state] or others & ((1 << state) - 1):
+            left ^= 1 << state
+    return left
 
 
 def of_complete_words(machine: MealyMonitor) -> OutcomeMachine:

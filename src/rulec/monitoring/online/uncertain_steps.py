@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine
+from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine, bits_of
 from rulec.monitoring.online.four_valued import (
     WORST_FIRST,
     FourValued,
@@ -20,7 +20,6 @@ from rulec.monitoring.online.four_valued import (
     within,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
-from rulec.monitoring.uncertainty.state_letters.letter_diagram import bits_of
 
 MOST_STEPS = 1 << 16
 """Steps that are kept before all are forgotten."""

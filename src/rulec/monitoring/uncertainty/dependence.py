@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from itertools import combinations, groupby, product
 from typing import TypeAlias
 
-from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 from rulec.monitoring.uncertainty.prospects import Prospects
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
-from rulec.monitoring.uncertainty.state_letters.letter_diagram import bits_of
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 
 MOST_REMEMBERED = 1 << 14
@@ -172,7 +171,7 @@ class RunPairs:
         if found is None:
             machine = self._machine
             targets = _behind(machine, state, classes)
-            found = [*bits_of(_foremost(targets, machine.below, machine.above))]
+            found = [*bits_of(machine.least(targets))]
             self._least[key] = found
         return found
 
@@ -183,7 +182,7 @@ class RunPairs:
             machine, targets = self._machine, 0
             for state in bits_of(states):
                 targets |= _behind(machine, state, classes)
-            found = self._greatest[key] = _foremost(targets, machine.above, machine.below)
+            found = self._greatest[key] = machine.greatest(targets)
         return found
 
     def _furthest(self, rows: Mapping[int, int]) -> _Pairs:
@@ -202,7 +201,7 @@ class RunPairs:
         }
         if len(rows) == 1:
             ((one, others),) = rows.items()
-            return frozenset([(one, _foremost(others, above, below))])
+            return frozenset([(one, machine.greatest(others))])
         firsts = sum(1 << one for one in rows)
         reach = {one: _reach(others, below) for one, others in rows.items()}
         for one, others in rows.items():
@@ -212,7 +211,7 @@ class RunPairs:
             for other in bits_of(better):
                 others &= ~reach[other]
             if others:
-                found.append((one, _foremost(others, above, below)))
+                found.append((one, machine.greatest(others)))
         return frozenset(found)
 
     def agree(self, pairs: _Pairs, choices: int) -> bool:
@@ -267,21 +266,6 @@ def _reach(states: int, below: Sequence[int]) -> int:
     for state in bits_of(states):
         found |= below[state]
     return found
-
-
-def _foremost(states: int, beyond: Sequence[int], before: Sequence[int]) -> int:
-    """Those of some states that no other of them is beyond, as bits; of equivalent ones the first.
-
-    ``beyond`` and ``before`` are, for each state, itself and those that are.
-    """
-    left = states
-    if not states & (states - 1):
-        return states
-    for state in bits_of(states):
-        others = beyond[state] & left & ~(1 << state)
-        if others & ~before[state] or others & ((1 << state) - 1):
-            left ^= 1 << state
-    return left
 
 
 class Dependence:

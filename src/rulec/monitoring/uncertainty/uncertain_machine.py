@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
+from functools import cached_property
 from itertools import product, zip_longest
 from math import prod
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -18,6 +20,7 @@ from rulec.automata.outcome_machine import (
     VIOLATED,
     OutcomeMachine,
     SetMonitor,
+    bits_of,
     of_complete_words,
 )
 from rulec.automata.thresholds import scale
@@ -250,26 +253,39 @@ class UncertainMachine:
         return tuple(lacking)
 
     def _can_fire(self, untold: frozenset[str]) -> bool:
-        masks = self._classes_in_the_dark(untold)
-        reached = {self.monitor.start}
-        for here in (waiting := [self.monitor.start]):
-            for classes in masks:
-                step = self.monitor.step(here, classes)
-                if step.best == VIOLATED:
+        """Whether all completions of some word violate the rule."""
+        machine = self.machine
+        letters = [list(bits_of(classes)) for classes in self._classes_in_the_dark(untold)]
+        # If they do from the least states, they do from all.
+        start = machine.least(sum(1 << state for state in machine.starts))
+        reached = {start}
+        for here in (waiting := [start]):
+            states = list(bits_of(here))
+            for symbols in letters:
+                pairs = list(product(states, symbols))
+                if all(machine.outputs[state][symbol] == VIOLATED for state, symbol in pairs):
                     return True
-                if step.states not in reached:
-                    reached.add(step.states)
-                    waiting.append(step.states)
+                targets = {machine.successors[state][symbol] for state, symbol in pairs}
+                after = machine.least(sum(1 << target for target in targets))
+                if after not in reached:
+                    reached.add(after)
+                    waiting.append(after)
         return False
 
+    @cached_property
+    def _table(self) -> NDArray[np.intp]:
+        """The classes by the digits of reads; the last read, which counts most, is the first."""
+        return np.array(self.machine.letters).reshape([read.size for read in self._reads[::-1]])
+
     def _classes_in_the_dark(self, untold: frozenset[str]) -> frozenset[int]:
-        """The sets of classes, as bits, that letters may have, by the reads that are told."""
-        # The last read, whose digit counts most, is the first axis.
-        reads = self._reads[::-1]
+        """The least sets of classes, as bits, that letters may have, by the reads that are told.
+
+        What all words of larger ones come to, all words of a smaller one do, too.
+        """
+        table, reads = self._table, self._reads[::-1]
         dark = tuple(
             [n for n, read in enumerate(reads) if not untold.isdisjoint(names_of_read(read))]
         )
-        table = np.array(self.machine.letters).reshape([read.size for read in reads])
         masks: list[int] = []
         for first in range(0, self.machine.n_classes, _BITS):
             bits = np.zeros(_BITS + 1, dtype=np.uint64)
@@ -278,7 +294,8 @@ class UncertainMachine:
             part = bits[np.where(inside, table - first, _BITS)]
             united = np.bitwise_or.reduce(part, axis=dark).ravel().tolist()
             masks = [mask | more << first for mask, more in zip_longest(masks, united, fillvalue=0)]
-        return frozenset(masks) - {0}
+        every = frozenset(masks) - {0}
+        return frozenset(x for x in every if not any(y & x == y != x for y in every))
 
 
 def _is_open(letters: Letters, read: int) -> bool:

@@ -8,9 +8,9 @@ from itertools import product
 from typing import TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
-from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram, bits_of
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
 from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters, read_digits
 
 MOST_KEPT = 1 << 16

@@ -8,26 +8,18 @@ are met.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 
 MOST_STEPS = 1 << 18
 """Steps of one letter that are kept before all are forgotten."""
 
 Numbers = NDArray[np.intp] | int
-
-
-def bits_of(mask: int) -> Iterator[int]:
-    """The places of the bits that are set, ascending."""
-    while mask:
-        lowest = mask & -mask
-        yield lowest.bit_length() - 1
-        mask ^= lowest
 
 
 class LetterDiagram:
