@@ -12,6 +12,7 @@ from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.logic.formula import QuantityTerm
 from rulec.logic.free_names import names_in, variables_of
 from rulec.trace import Value
+from rulec.vocabulary.written_numbers import WrittenNumber
 
 EXACT_IN_FLOATS = 1 << 53
 """Whole numbers up to this size are floats, too, and their decimals are themselves."""
@@ -19,6 +20,8 @@ EXACT_IN_FLOATS = 1 << 53
 
 def exact(value: Fraction | float) -> Fraction:
     """Exact value of a decimal: 0.1 is a tenth, not a float."""
+    if type(value) is WrittenNumber:
+        return value.exact
     return _decimal(value) if isinstance(value, float) else Fraction(value)
 
 
@@ -80,6 +83,8 @@ class ThresholdScale:
     def digit(self, value: Value) -> int:
         """The digit of the quantity's value."""
         assert not isinstance(value, str), "check_state has refused it"
+        if type(value) is WrittenNumber:
+            return self.read.digit(value.exact)
         if isinstance(value, float) or -EXACT_IN_FLOATS <= value <= EXACT_IN_FLOATS:
             return bisect_right(self.floors, value)
         return self.read.digit(Fraction(value))

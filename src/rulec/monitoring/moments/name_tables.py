@@ -5,11 +5,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.automata.thresholds import EXACT_IN_FLOATS
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize, one_value
 from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.constant_values import with_constants
@@ -19,7 +21,8 @@ from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.trace import Trace
 from rulec.trace.trace_columns import Array, Key, TraceColumns
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.vocabulary.written_numbers import WrittenNumber
 
 Flags = NDArray[np.bool_]
 
@@ -172,9 +175,17 @@ def _columns_of(trace: Trace, vocabulary: Vocabulary) -> TraceColumns:
     try:
         return columnize(cells, vocabulary)
     except UnencodableError:
-        # Something is said of some states only: of others it is unknown.
+        # Something is said of some states only: of others it is unknown. Or numbers are no floats.
         plain = replace(trace, states=tuple([_spelled(s, trace, vocabulary) for s in trace.states]))
         return columnize(group_traces([plain]).cells, vocabulary)
+
+
+def _between_floats(value: Any) -> PartialValue:
+    """A number that no float stands for, as what lies between two of them."""
+    if type(value) is int and abs(value) > EXACT_IN_FLOATS:
+        value = WrittenNumber(Fraction(value))
+    said: PartialValue = value
+    return Interval(*value.neighbours) if isinstance(value, WrittenNumber) else said
 
 
 def _spelled(state: Mapping[str, Any], trace: Trace, vocabulary: Vocabulary) -> dict[str, Any]:
@@ -191,5 +202,5 @@ def _spelled(state: Mapping[str, Any], trace: Trace, vocabulary: Vocabulary) -> 
             rows = [(*row, item) for row in rows for item in own]
         for row in rows:
             value = value_in(state, name, row, declaration)
-            said[name, row] = UNKNOWN if value is None else value
+            said[name, row] = UNKNOWN if value is None else _between_floats(value)
     return dict(with_values({}, said))

@@ -14,6 +14,7 @@ from rulec.rulebook.names.declaration_messages import twice
 from rulec.rulebook.rulebook_model import Example, ExampleState, Variable
 from rulec.rulebook.rules import example_messages as say
 from rulec.syntax import tree
+from rulec.vocabulary.written_numbers import number_of
 
 Key = tuple[str, tuple[str, ...]]
 """A declaration, and the objects that it is asked about."""
@@ -112,7 +113,7 @@ def _number(fact: tree.StateLiteral, quantity: ltl.QuantityTerm, scope: Scope) -
         scope.report(say.other_dimension(fact, quantity, given, unit))
         return None
     try:
-        value = float(given.cases[0][1].constant / unit.factor)
+        value = number_of(given.cases[0][1].constant / unit.factor)
     except OverflowError:
         scope.report(say.too_large(fact, quantity, unit))
         return None

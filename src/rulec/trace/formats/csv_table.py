@@ -15,6 +15,7 @@ from rulec.trace.formats import table_reader as tables
 from rulec.trace.formats.stream_lines import foreign, not_utf8, placed
 from rulec.trace.trace_model import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
+from rulec.vocabulary.written_numbers import WrittenNumber, number_written
 
 LARGE_BYTES = 1 << 22
 """Of a smaller file the rows are read sooner than Arrow is."""
@@ -164,7 +165,7 @@ def _not_utf8(stream: IO[bytes], place: SourceLocation, reason: UnicodeDecodeErr
 def _value(cell: str) -> PartialValue:
     if cell in _WORDS_OF_VALUES:
         return _WORDS_OF_VALUES[cell]
-    return float(cell) if _NUMBER.fullmatch(cell) else cell
+    return number_written(cell) if _NUMBER.fullmatch(cell) else cell
 
 
 def write_csv(
@@ -187,6 +188,8 @@ def _cell(value: tables.Cell) -> str:
             return ""
         case bool():
             return "true" if value else "false"
+        case WrittenNumber():
+            return str(value)
         case float():
             return float.__repr__(value)
         case list():

@@ -12,6 +12,7 @@ import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats import json_line_problems
+from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_float
 from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
 from rulec.trace.trace_model import Ending, State, Trace
@@ -126,6 +127,8 @@ def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
 
 
 def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trace | RulecError:
+    if may_be_no_float(line):
+        return _as_written(line, place)
     if read_state.pays and len(line) <= json_line_problems.LONGEST_LINE_BYTES:
         with suppress(ValueError, RecursionError):  # msgspec's errors are, too
             outline = _OUTLINE_DECODER.decode(line)
@@ -135,12 +138,29 @@ def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trac
     record = _TRACE.read(line, place)
     if isinstance(record, RulecError):
         return record
+    return _of_record(record, place)
+
+
+def _of_record(record: _Record, place: SourceLocation) -> Trace | RulecError:
     states: list[State] = []
     try:
         states.extend(from_json(state, record.objects) for state in record.states)
     except ValueError as wrong:
         return _TRACE.bad(f"in state {len(states)} {wrong}", place, _INTERVAL)
     return _made(record, states, place)
+
+
+def _as_written(line: bytes, place: SourceLocation) -> Trace | RulecError:
+    """The trace of a line with numbers that are perhaps no floats."""
+    record = _TRACE.read(line, place)
+    if isinstance(record, RulecError):
+        return record
+    try:
+        written = exactly(line)
+    except ValueError as wrong:
+        return _TRACE.bad(str(wrong), place)
+    record.step_s, record.states = written.get("step_s", record.step_s), written["states"]
+    return _of_record(record, place)
 
 
 def _made(record: _Header, states: Sequence[State], place: SourceLocation) -> Trace:
@@ -182,7 +202,7 @@ class _StateReader(dict[bytes, State]):
 
 def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
     """Write traces, one a line, and return how many."""
-    encoder = msgspec.json.Encoder()
+    encoder = msgspec.json.Encoder(enc_hook=as_written)
     count = 0
     for count, trace in enumerate(traces, 1):  # noqa: B007 - the count is the result
         fields: dict[str, object] = {"id": trace.id, "step_s": trace.step_s}
@@ -238,6 +258,12 @@ def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
             if isinstance(record, RulecError):
                 yield record
             else:
+                try:
+                    if may_be_no_float(line):
+                        record.state = exactly(line)["state"]
+                except ValueError as wrong:
+                    yield _STATE.bad(str(wrong), place)
+                    continue
                 try:
                     state = from_json(record.state, record.objects)
                 except ValueError as wrong:

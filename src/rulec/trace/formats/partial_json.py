@@ -7,6 +7,7 @@ from typing import Any
 
 from rulec.trace.trace_model import State
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from rulec.vocabulary.written_numbers import WrittenNumber
 
 BOUNDS = frozenset({"from", "to"})
 
@@ -28,7 +29,7 @@ def _value_of(value: Any, name: str, named: frozenset[str]) -> Any:
         return value
     if value and value.keys() <= BOUNDS and not value.keys() <= named:
         low, high = value.get("from"), value.get("to")
-        if not all(type(end) in (int, float) for end in (low, high)):
+        if not all(type(end) in (int, float, WrittenNumber) for end in (low, high)):
             raise ValueError(f"`{name}` is an interval without a number for `from` or `to`")
         try:
             return Interval(low, high)  # type: ignore[arg-type]

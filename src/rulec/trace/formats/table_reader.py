@@ -12,6 +12,7 @@ from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
 from rulec.trace.trace_messages import NOT_A_TABLE
 from rulec.trace.trace_model import Ending, State, Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.vocabulary.written_numbers import WrittenNumber
 
 TRACE, STEP, STEP_S = "trace", "step", "step_s"
 OBJECT, TYPE, OTHER = "object", "type", "other"
@@ -33,6 +34,8 @@ Row = tuple[int, Sequence[Any]]
 
 Cell = PartialValue | list[str] | None
 """What is written into a table."""
+
+_NUMBERS = (int, float, WrittenNumber)
 
 _MOST_REMEMBERED = 1 << 16
 _MOST_STATES = 1 << 16
@@ -198,8 +201,8 @@ class _Building:
     def _last(self, step_s: Any, number: int) -> None:
         if is_empty(step_s):
             return
-        value = self.table.value(step_s)
-        if type(value) not in (int, float):
+        value = self._value(step_s, number)
+        if type(value) not in _NUMBERS:
             raise self._problem(f"`step_s` is {_shown(step_s)}; it is a number of seconds", number)
         if self.step_s is not None and self.step_s != value:
             message = f"`step_s` is {_shown(step_s)}; in the rows before it is {self.step_s:g}"
@@ -276,7 +279,7 @@ class _Building:
             for name in table.names:
                 cell = table.cell(cells, name)
                 if not is_empty(cell):
-                    self._say(state, name, path, table.value(cell), number)
+                    self._say(state, name, path, self._value(cell, number), number)
             for name, (low, high) in table.intervals.items():
                 if not (is_empty(cells[low]) and is_empty(cells[high])):
                     interval = self._interval(name, cells[low], cells[high], number)
@@ -307,8 +310,8 @@ class _Building:
     def _interval(self, name: str, low: Any, high: Any, number: int) -> Interval:
         bounds: list[Any] = []
         for end, cell in ((FROM, low), (TO, high)):
-            value = None if is_empty(cell) else self.table.value(cell)
-            if type(value) not in (int, float):
+            value = None if is_empty(cell) else self._value(cell, number)
+            if type(value) not in _NUMBERS:
                 message = f"`{name}{end}` is {_shown(cell)}; it is a number"
                 raise self._problem(message, number, _BOUNDS)
             bounds.append(value)
@@ -316,6 +319,12 @@ class _Building:
             return Interval(*bounds)
         except ValueError as wrong:
             raise self._problem(f"`{name}`: {wrong}", number) from None
+
+    def _value(self, cell: Any, number: int) -> PartialValue:
+        try:
+            return self.table.value(cell)
+        except ValueError as wrong:
+            raise self._problem(str(wrong), number) from None
 
     def _twice(self, name: str, path: Sequence[str], number: int) -> RulecError:
         about = f" for `{', '.join(path)}`" if path else ""

@@ -25,6 +25,7 @@ from rulec.trace.formats.table_reader import (
 )
 from rulec.trace.trace_model import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
+from rulec.vocabulary.written_numbers import WrittenNumber, number_written
 
 Piece = Any
 """A record batch."""
@@ -33,6 +34,8 @@ NUMBER = r"\A[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\z"
 """A number in a text, as ``csv_table`` knows it."""
 
 _FEW = 1 << 10
+_SHORT = 15
+"""Numbers of so many characters are floats, but for those with an exponent."""
 
 
 def cut(
@@ -86,8 +89,10 @@ def _block(
     partial = _partial_rows(whole, table)
     try:
         columns = columns_of(whole, table)
-    except blocks.OddTableError:
+    except (blocks.OddTableError, ValueError):  # a number that cannot be
         return list(traces_in(_rows([whole], first), table, file))
+    for column in columns.values():
+        partial |= _no_floats(column)
     starts = np.append(blocks.trace_starts(coded(whole.column(table.at[TRACE]))), len(whole))
 
     def rows(start: int, stop: int) -> Iterator[Row]:
@@ -114,6 +119,14 @@ def _partial_rows(piece: Piece, table: Table) -> NDArray[np.bool_]:
             if compute.any(is_mark).as_py():
                 rows |= is_mark.fill_null(False).to_numpy(zero_copy_only=False)
     return rows
+
+
+def _no_floats(column: blocks.Column) -> NDArray[np.bool_] | bool:
+    """The rows with numbers that no float stands for."""
+    if isinstance(column, blocks.Numbers):
+        return False
+    which = [type(value) is WrittenNumber for value in column.values]
+    return np.array(which).take(column.codes) & column.given if any(which) else False
 
 
 def _rows(pieces: Iterable[Piece], first: int) -> Iterator[Row]:
@@ -175,8 +188,21 @@ def _read(texts: blocks.Coded, value: Callable[[str], PartialValue]) -> blocks.C
         written = pyarrow.array([text or "0" for text in texts.values])
         if compute.all(compute.match_substring_regex(written, NUMBER)).as_py():
             try:
-                numbers = written.cast(pyarrow.float64()).to_numpy()
-                return blocks.Numbers(numbers.take(texts.codes, mode="clip"), texts.given)
+                numbers = written.cast(pyarrow.float64())
+                if _are_floats(written, numbers):
+                    numbers = numbers.to_numpy()
+                    return blocks.Numbers(numbers.take(texts.codes, mode="clip"), texts.given)
             except pyarrow.ArrowInvalid:  # such as `.5`, which Arrow does not read
                 pass
     return blocks.Coded(texts.codes, [value(text) if text else "" for text in texts.values])
+
+
+def _are_floats(texts: Any, numbers: Any) -> bool:
+    """Whether each text is the decimal that its float stands for."""
+    long = compute.greater(compute.binary_length(texts), _SHORT)
+    long = compute.or_(long, compute.match_substring(texts, "e", ignore_case=True))
+    doubtful = compute.and_(long, compute.not_equal(numbers.cast(pyarrow.string()), texts))
+    return not any(
+        isinstance(number_written(text), WrittenNumber)
+        for text in texts.filter(doubtful).to_pylist()
+    )

@@ -1,0 +1,58 @@
+"""Numbers in JSON that no float stands for."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from typing import Any
+
+import msgspec
+
+from rulec.vocabulary.written_numbers import WrittenNumber, number_written
+
+_DIGIT = ord("0")
+_DIGITS = bytes(_DIGIT if chr(byte) in "0123456789" else 32 for byte in range(256))
+_MANY = b"0" * 16
+"""Fewer digits than these are those of a float, but for tiny ones."""
+
+_LONG = re.compile(rb"[0-9](?:\.?[0-9]){15,}(?:[eE][-+]?[0-9]+)?")
+_TINY = re.compile(rb"[eE]-0*(?:29[0-9]|[3-9][0-9]{2}|[0-9]{4})")
+
+
+def may_be_no_float(line: bytes) -> bool:
+    """Whether there are numbers in JSON that are other decimals than those of floats.
+
+    It says so, too, of a text that looks like one.
+    """
+    digits = line.translate(_DIGITS, b".")
+    if _MANY in digits and not all(map(_is_own, _LONG.findall(line))):
+        return True
+    return (b"e-" in line or b"E-" in line) and _TINY.search(line) is not None
+
+
+def _is_own(written: bytes) -> bool:
+    """Whether a decimal is the very one that its float is written as."""
+    text = written.decode()
+    return float.__repr__(float(text)) == text
+
+
+def exactly(line: bytes) -> dict[str, Any]:
+    """An object in JSON, which is one, with all numbers as they are written.
+
+    Raises ValueError for a number that is too long, or too near to 0.
+    """
+    decoded: dict[str, Any] = json.loads(line, parse_float=number_written, parse_int=_whole)
+    return decoded
+
+
+def _whole(text: str) -> float:
+    number = number_written(text)
+    return int(text) if math.isinf(number) else number
+
+
+def as_written(value: object) -> object:
+    """What an encoder writes for a number that no float stands for."""
+    if isinstance(value, WrittenNumber):
+        return msgspec.Raw(str(value).encode())
+    raise NotImplementedError

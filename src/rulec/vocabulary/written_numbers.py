@@ -1,0 +1,108 @@
+"""Numbers that count as they are written, also where no float stands for them.
+
+A float stands for the decimal that Python writes for it, the shortest that is nearest to it. Most
+numbers in files are such decimals.
+"""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+_FEW_DIGITS = 15
+"""Of so many digits every decimal that is neither huge nor tiny is a float's own."""
+
+_MOST_DIGITS = 1000
+"""Digits, and powers of ten below 1, of a number that is read exactly."""
+
+
+class WrittenNumber(float):
+    """A number that no float stands for: ``exact``, and as a float the nearest one.
+
+    It equals what is exactly so large; nothing that a float stands for is.
+    """
+
+    __slots__ = ("exact", "text")
+    exact: Fraction
+    text: str
+
+    def __new__(cls, exact: Fraction, text: str = "") -> WrittenNumber:
+        """The number, and how it was written, if it was. OverflowError if it is too large."""
+        self = super().__new__(cls, exact)
+        self.exact = exact
+        self.text = text or float.__repr__(self)
+        return self
+
+    def __repr__(self) -> str:
+        return self.text
+
+    __str__ = __repr__
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return WrittenNumber, (self.exact, self.text)
+
+    def __hash__(self) -> int:
+        return hash(self.exact)
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, int | Fraction | WrittenNumber):
+            return bool(self.exact == _exact(other))
+        return False
+
+    def __lt__(self, other: Any) -> bool:
+        return bool(self.exact < _exact(other))
+
+    def __le__(self, other: Any) -> bool:
+        return bool(self.exact <= _exact(other))
+
+    def __gt__(self, other: Any) -> bool:
+        return bool(self.exact > _exact(other))
+
+    def __ge__(self, other: Any) -> bool:
+        return bool(self.exact >= _exact(other))
+
+    def __neg__(self) -> WrittenNumber:
+        return WrittenNumber(-self.exact, self.text[1:] if self.text[0] == "-" else f"-{self.text}")
+
+    @property
+    def neighbours(self) -> tuple[float, float]:
+        """The two floats next to each other between whose decimals it lies."""
+        near = float(self)
+        if _exact(near) < self.exact:
+            return near, math.nextafter(near, math.inf)
+        return math.nextafter(near, -math.inf), near
+
+
+def _exact(number: Any) -> Any:
+    if isinstance(number, WrittenNumber):
+        return number.exact
+    if isinstance(number, float) and math.isfinite(number):
+        return Fraction(float.__repr__(number))
+    return number
+
+
+def number_of(exact: Fraction) -> float:
+    """The number with this exact value. OverflowError if it is too large."""
+    number = float(exact)
+    return number if Fraction(float.__repr__(number)) == exact else WrittenNumber(exact)
+
+
+def number_written(text: str) -> float:
+    """The number that a decimal says, infinite if it is too large.
+
+    Raises ValueError if it has too many digits, or is too near to 0.
+    """
+    number = float(text)
+    if len(text) <= _FEW_DIGITS and "e" not in text and "E" not in text:
+        return number
+    if not math.isfinite(number):
+        return number
+    decimal = Decimal(text)
+    if decimal == Decimal(float.__repr__(number)):
+        return number
+    if len(text) > _MOST_DIGITS or decimal.adjusted() < -_MOST_DIGITS:
+        shown = text if len(text) <= 40 else f"{text[:40]}…"
+        raise ValueError(f"the number {shown} has too many digits, or is too near to 0")
+    return WrittenNumber(Fraction(decimal), text)
