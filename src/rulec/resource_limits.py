@@ -48,14 +48,14 @@ class ResourceLimit:
             place: the input that asks for them.
             whose: what they are of, such as "rule `gap`".
         """
-        most = self.value()
-        if amount > most:
-            raise self.exceeded(
-                f"{amount:,}" if amount < 10**18 else "10^18 and more", place, whose
-            )
+        if amount > self.value():
+            raise self.exceeded(place, whose, f"{amount:,}" if amount < 10**18 else "over 10^18")
 
-    def exceeded(self, amount: str, place: SourceLocation | None, whose: str = "") -> RulecError:
-        """The error of an amount, in words, that is beyond the limit in force."""
+    def exceeded(
+        self, place: SourceLocation | None, whose: str = "", amount: str = ""
+    ) -> RulecError:
+        """The error of an amount, in words if it is known, that is beyond the limit in force."""
+        amount = amount or f"more than {self.value():,}"
         of = f"{whose}: " if whose else ""
         return OVER_LIMIT.error(
             place,
@@ -70,14 +70,22 @@ CHOICES: Final = ResourceLimit(
     "choices of objects for a rule's variables",
     "give the rule fewer variables or narrower types, or the trace fewer objects",
 )
-TIME_STEPS: Final = ResourceLimit(
-    "time_steps",
-    1_000_000,
-    "time steps from the first to the last",
-    "cut the recording into shorter ones, or look for a wrong time in it",
+STEPS: Final = ResourceLimit(
+    "steps",
+    30,
+    "steps of traces that its rules would be compiled for, beside the first",
+    "bring the traces to one step, or compile the rulebook for the steps that count, with "
+    "`rulec compile --step`",
 )
 
-LIMITS: Final = {limit.name: limit for limit in (CHOICES, TIME_STEPS)}
+CUBES: Final = ResourceLimit(
+    "cubes",
+    500,
+    "alternatives of one condition in its automaton's picture",
+    "`rulec compile` writes it to a file all the same; or say its demands in rules of their own",
+)
+
+LIMITS: Final = {limit.name: limit for limit in (CHOICES, STEPS, CUBES)}
 """All limits that can be lifted."""
 
 

@@ -2,10 +2,13 @@
 
 from itertools import product
 
+import pytest
 from hypothesis import given
 
 from rulec.automata.guards import edges, literals
-from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, Read
+from rulec.diagnostics import RulecError
+from rulec.resource_limits import in_force
 from support.builders.rulebooks import book as book_of
 from support.builders.rulebooks import compile_here
 from support.builders.rulebooks import rule as rule_of
@@ -97,3 +100,15 @@ def test_what_is_easily_said_is_said_in_one_cube():
     assert literals(go.cubes, sizes) == 3
     assert stay.otherwise
     assert not go.otherwise
+
+
+def test_a_condition_of_too_many_cubes_is_refused_before_it_is_put_together():
+    reads = tuple(Read(f"p{number}", ()) for number in range(12))
+    parity = tuple(letter.bit_count() % 2 for letter in range(1 << 12))
+    machine = MealyMonitor(
+        reads, parity, ((0, 1), (1, 1)), ((True, False), (False, False)), None, None
+    )
+    with in_force(["cubes=20"]), pytest.raises(RulecError, match="R0718") as refused:
+        edges(machine, "rule `odd`")
+    (said,) = refused.value.diagnostics
+    assert said.message.startswith("rule `odd`: more than 20 alternatives")

@@ -7,13 +7,14 @@ import pytest
 
 from rulec import compile_rulebook, find_maneuvers
 from rulec.api.rulebook_compilation import machines
-from rulec.automata import step_compilation
+from rulec.automata import compiler, step_compilation
 from rulec.automata.step_compilation import StepCompiler
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Bound, Unary, UnaryOperator
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.planning.product.graph_instances import instances
+from rulec.resource_limits import in_force
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Signal, Vocabulary
@@ -210,3 +211,36 @@ def test_maneuvers_of_another_step_than_the_compiled_rulebooks():
         find_maneuvers("s1", compile_rulebook(BOOK, step_s=0.5))
     (problem,) = caught.value.diagnostics
     assert (problem.code, problem.place) == ("R0507", SourceLocation("s1"))
+
+
+def test_a_step_that_fits_no_bound_starts_no_process(monkeypatch):
+    every = StepCompiler(book(ANSWERED))
+    every(ONE)
+    monkeypatch.setattr(compiler, "_worker", None)  # which would not be called in vain
+    for number in range(1, 40):
+        with pytest.raises(RulecError, match="R0407"):
+            every(Fraction(3, 10) + Fraction(1, 10**5 * number))
+
+
+def test_steps_that_hardly_differ_are_compiled_together_where_bounds_are_rounded(compiled):
+    every = StepCompiler(book(ANSWERED))
+    for number in range(1, 40):
+        every.rounded(Fraction(3, 10) + Fraction(1, 10**5 * number))
+    assert len(compiled) <= 2
+
+
+def test_there_is_a_limit_on_the_steps_that_are_compiled_for(compiled):
+    every = StepCompiler(book(ANSWERED))
+    with in_force(["steps=2"]):
+        for number in (1, 2, 4):
+            every(Fraction(1, number))
+        with pytest.raises(RulecError, match="R0718") as refused:
+            every(Fraction(1, 5))
+    (said,) = refused.value.diagnostics
+    assert "--limit steps=NUMBER" in said.help
+    assert len(compiled) == 3
+
+
+def test_a_bound_of_too_many_steps_is_refused_without_trying():
+    with pytest.raises(RulecError, match="one of its bounds has more than 10,000 steps"):
+        StepCompiler(book(ANSWERED))(Fraction(1, 10**5))

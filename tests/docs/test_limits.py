@@ -8,6 +8,7 @@ import pytest
 from rulec import files
 from rulec.automata import compiler, spot_worker
 from rulec.cli.main import main
+from rulec.recordings import recording
 from rulec.report.findings.code_registry import all_codes
 from rulec.resource_limits import LIMITS, MOST_DIGITS
 from rulec.rulebook.arithmetic import size_limits
@@ -26,8 +27,11 @@ FIXED = {
     "digits of a number in compiled files and saved monitors": MOST_DIGITS,
     "seconds of processor time for a rule's automaton": compiler.CPU_LIMIT_S,
     "bytes of memory for it": spot_worker.MEMORY_LIMIT_BYTES,
+    "steps of a bound, which are states of it": spot_worker.MOST_STEPS_AHEAD,
     "bytes of a packed file, unpacked": files.LARGEST_UNPACKED,
     "bytes of one line of traces": json_line_problems.LONGEST_LINE_BYTES,
+    "time steps of a recording, from the first to the last": recording.MOST_STEPS,
+    "time steps of a recording for one that is in it": recording.SPARSEST,
     "bytes of a scenario in TOML": scenario_files.LARGEST_BYTES,
     "obstacles of a scenario": schema.MOST_OBSTACLES,
     "layers of a scenario's graph": time_grid.MAX_LAYERS,

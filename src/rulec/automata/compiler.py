@@ -110,6 +110,8 @@ def build_all(
     """
     compiled: list[CompiledRule] = []
     problems = list(formulas.problems)
+    if problems and not formulas.rules:
+        raise RulecError(problems)  # there is nothing to compile, so no process is started
     answers, spot = answers_to([_job(rulebook, rule, cpu_limit_s) for rule in formulas.rules])
     for lowered, answer in zip(formulas.rules, answers, strict=True):
         if isinstance(answer, Done):

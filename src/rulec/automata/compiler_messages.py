@@ -76,6 +76,8 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
             return _contradiction(rule, instances)
         case Failed("letters"):
             why = "it reads too many signals, enumerations and numbers at once"
+        case Failed("steps"):
+            why = "one of its bounds has more than 10,000 steps"
     # Seconds or steps, it is the number of them that makes it large.
     has_bounds = any(operation.bound is not None for operation in operations_of(rule.formula))
     more = "; each bound takes as many states as it has steps" if has_bounds else ""

@@ -14,6 +14,7 @@ from functools import reduce
 from operator import or_
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
+from rulec.resource_limits import CUBES
 
 Cube = tuple[frozenset[int], ...]
 """For each of a machine's reads the digits that are allowed."""
@@ -35,9 +36,13 @@ class GuardedEdge:
     otherwise: bool = False
 
 
-def edges(machine: MealyMonitor) -> tuple[GuardedEdge, ...]:
-    """Guarded edges of a monitor by source state, except from sinks."""
-    cover = _Covers(machine)
+def edges(machine: MealyMonitor, whose: str = "") -> tuple[GuardedEdge, ...]:
+    """Guarded edges of a monitor by source state, except from sinks.
+
+    Raises RulecError R0718, which names ``whose`` they are, for an edge of more cubes than the
+    limit `cubes`: those of a parity, for one, are half of all letters.
+    """
+    cover = _Covers(machine, whose)
     guarded_edges: list[GuardedEdge] = []
     for source, row in enumerate(machine.successors):
         if source in (machine.rejecting_sink, machine.accepting_sink):
@@ -75,7 +80,8 @@ class _Covers:
     ``of_class`` are the letters of each class; no matter whether those of ``_free`` are covered.
     """
 
-    def __init__(self, machine: MealyMonitor) -> None:
+    def __init__(self, machine: MealyMonitor, whose: str) -> None:
+        self._whose, self._most = whose, CUBES.value()
         self.sizes = [read.size for read in machine.reads]
         total = len(machine.letters)
         self._everything = (1 << total) - 1
@@ -100,6 +106,8 @@ class _Covers:
             chosen: dict[Cube, int] = {}
             remaining = onset
             while remaining:
+                if len(chosen) == self._most:
+                    raise CUBES.exceeded(None, self._whose)
                 letter = (remaining & -remaining).bit_length() - 1
                 primes = {self._prime(letter, onset | self._free, order) for order in self._orders}
                 best = max(primes, key=lambda cube: self._worth(cube, remaining))

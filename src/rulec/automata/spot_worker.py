@@ -13,6 +13,7 @@ import time
 import traceback
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import repeat
 from typing import Literal
 
@@ -104,6 +105,8 @@ def verdict(machine: MealyMonitor, numbers: list[int]) -> bool:
 
 MEMORY_LIMIT_BYTES = 2 << 30
 MOST_LETTERS = 1 << 16
+MOST_STEPS_AHEAD = 10_000
+"""An automaton has a state for each step of a bound, at least; no more can be built in time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,13 +144,13 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """Reason for no monitor: ``letters``, ``memory``, ``check``, ``facts`` or ``bug``.
+    """Reason for no monitor: ``letters``, ``steps``, ``memory``, ``check``, ``facts`` or ``bug``.
 
     ``facts``: those of ``contradiction`` cannot hold together. ``bug`` is anything that nobody
     thought of, with the traceback.
     """
 
-    why: Literal["letters", "memory", "check", "facts", "bug"]
+    why: Literal["letters", "steps", "memory", "check", "facts", "bug"]
     traceback: str = ""
     contradiction: tuple[AxiomInstance, ...] = ()
 
@@ -185,6 +188,8 @@ def _answer(job: Job) -> Done | Failed:
 
     if count_letters(job.reads) > MOST_LETTERS:
         return Failed("letters")
+    if _farthest_step(job.formula) > MOST_STEPS_AHEAD:
+        return Failed("steps")
     axioms = []
     for group in job.groups:
         axiom = spot_bridge.projected(group.known, propositions_of(job.formula))
@@ -204,6 +209,13 @@ def _answer(job: Job) -> Done | Failed:
     if translation.alive is not None:
         remarks.append(f'finite words: "{translation.alive}" is true as long as the word lasts')
     return Done(machine, spot_bridge.in_hoa(translation.automaton, job.name, remarks))
+
+
+def _farthest_step(formula: Formula) -> Fraction:
+    """The last step that a bound of a formula in steps names."""
+    bounds = [operation.bound for operation in operations_of(formula)]
+    ends = [bound.high or bound.low for bound in bounds if bound is not None]
+    return max(ends, default=Fraction(0))
 
 
 def _contradiction(group: AxiomGroup) -> tuple[AxiomInstance, ...]:

@@ -12,6 +12,8 @@ from rulec.automata.compiler import RulebookFormulas, build_all, lower
 from rulec.automata.prefix_machines import prefix_machines
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import Rounding, in_steps
+from rulec.logic.formula import Formula
+from rulec.resource_limits import STEPS
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 
 MOST_STEPS = 100
@@ -30,7 +32,8 @@ class StepCompiler:
         self._machines: dict[tuple[str, Fraction | None], CompiledRule] = {}
         self._answers: dict[Fraction, CompiledRulebook | RulecError] = {}
         self._header: CompiledRulebook | None = None
-        self._roundings: dict[tuple[str, Fraction], StepCompiler] = {}
+        self._roundings: dict[tuple[Formula, ...], StepCompiler] = {}
+        self._built = 0
 
     def __reduce__(self) -> tuple[Callable[[Rulebook], StepCompiler], tuple[Rulebook]]:
         return StepCompiler, (self.rulebook,)
@@ -38,7 +41,8 @@ class StepCompiler:
     def __call__(self, step_s: Fraction) -> CompiledRulebook:
         """The rulebook for traces whose states are ``step_s`` seconds apart.
 
-        Raises RulecError: as ``build_automata``; R0407 for a bound that is no multiple of the step.
+        Raises RulecError: as ``build_automata``; R0407 for a bound that is no multiple of the step,
+        R0718 for more steps than the limit `steps`.
         """
         if step_s not in self._answers:
             if len(self._answers) >= MOST_STEPS:
@@ -63,16 +67,14 @@ class StepCompiler:
         return down, up
 
     def _rounded(self, step_s: Fraction, rounding: Rounding) -> CompiledRulebook:
-        rules = tuple(
-            [
-                replace(rule, formula=in_steps(rule.formula, step_s, rounding))
-                for rule in self.rulebook.rules
-            ]
-        )
-        key = rounding.__name__, step_s
-        if key not in self._roundings:
-            self._roundings[key] = StepCompiler(replace(self.rulebook, rules=rules))
-        return self._roundings[key](step_s)
+        # Steps that hardly differ, such as those of a clock that is not steady, round alike.
+        formulas = tuple([in_steps(rule.formula, step_s, rounding) for rule in self.rulebook.rules])
+        if formulas not in self._roundings:
+            _check_steps(len(self._roundings), self.rulebook)
+            rules = zip(self.rulebook.rules, formulas, strict=True)
+            rounded = tuple([replace(rule, formula=formula) for rule, formula in rules])
+            self._roundings[formulas] = StepCompiler(replace(self.rulebook, rules=rounded))
+        return self._roundings[formulas](step_s)
 
     def at_own_steps(self, rules: Sequence[Rule] | None = None) -> CompiledRulebook:
         """Compile rules for their examples' steps, all by default. Raises RulecError."""
@@ -85,6 +87,9 @@ class StepCompiler:
         pairs = zip(formulas.rules, keys, strict=True)
         missing = tuple([formula for formula, key in pairs if key not in machines])
         if missing or formulas.problems or self._header is None:
+            if missing and self._header is not None:
+                _check_steps(self._built, self.rulebook)
+                self._built += 1
             built = build_all(self.rulebook, replace(formulas, rules=missing))
             self._header = replace(
                 built, source=self.rulebook, recompile=self, prefixes=prefix_machines
@@ -94,6 +99,11 @@ class StepCompiler:
 
     def _compiled(self, rules: Sequence[Rule], step_s: Fraction | None) -> CompiledRulebook:
         return self.built(lower(replace(self.rulebook, rules=tuple(rules)), step_s))
+
+
+def _check_steps(before: int, rulebook: Rulebook) -> None:
+    """Raise RulecError R0718 if one more step is too many."""
+    STEPS.within(before + 1, None, f"rulebook `{rulebook.name}`")
 
 
 def build_automata(formulas: RulebookFormulas, steps: StepCompiler) -> CompiledRulebook:

@@ -88,7 +88,7 @@ class _Search:
             self._tried += 1
             if self._tried > self._most:
                 whose = f"rule `{self._rule.name}`"
-                raise CHOICES.exceeded("there are more", self._reader.place, whose)
+                raise CHOICES.exceeded(self._reader.place, whose)
             longer = {**chosen, variable: item}
             if not self._is_idle(longer):
                 yield from self._extended(longer, fitting)

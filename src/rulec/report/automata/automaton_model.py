@@ -61,6 +61,6 @@ def automaton_of(rule: CompiledRule, vocabulary: Vocabulary) -> Automaton:
                 edge.otherwise,
                 edge.accepted,
             )
-            for edge in edges(machine)
+            for edge in edges(machine, f"rule `{rule.name}`")
         ),
     )
