@@ -175,6 +175,31 @@ quantity speed in km/h
         ("hard rule r { require never wet unless red and green }", ["R0805 exception"]),
         ("hard rule r { require always (red and slow implies wet) }", []),
         ("option on_ice = off hard rule r { require never wet unless on_ice and fog }", []),
+        *[
+            (f"option off_road = off hard rule r {{ require {formula} }}", ["R0801 nothing"])
+            for formula in (
+                "never (wet then false then wet)",
+                "always (wet or true)",
+                "always (wet implies true)",
+                "always (off_road implies wet)",
+                "never wet when false",
+                "never wet unless true",
+            )
+        ],
+        (
+            (
+                "hard rule r { require always wet } "
+                "hard rule s { require never wet unless red and green }"
+            ),
+            ["R0805 exception", "R0804 cannot both be kept at all"],
+        ),
+        (
+            (
+                "hard rule r { require never wet } "
+                "hard rule s { require never (wet and fog) unless red and green }"
+            ),
+            ["R0805 exception", "R0803 `s` adds nothing"],
+        ),
     ],
 )
 def test_findings(rules, expected, tmp_path):

@@ -52,7 +52,7 @@ automaton
     otherwise       stays        accepted
   state 1: violated for good: whatever follows, the trace is rejected
 
-shortest traces
+a shortest rejected trace, and an accepted one close to it
   accept { f(p) }
   reject { R_pc and f(p) }
 """

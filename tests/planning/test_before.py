@@ -119,11 +119,17 @@ def test_a_past_that_leads_elsewhere_is_refused():
     half = refused(Trace("t", 0.5, {"o1": "vehicle"}, (BEHIND,), place=place))
     assert (half.code, half.place) == ("R0511", place)
     assert "steps of 0.5 s" in half.message
-    other = refused(Trace("t", 1.0, {"o1": "pedestrian"}, (BEHIND,)))
-    assert (other.code, other.message) == (
-        "R0511",
-        "`o1` was a `pedestrian` and now is a `vehicle`",
+
+
+def test_who_is_of_another_type_now_is_somebody_else():
+    """Behind ego as `o1` is, only the one that goes on may not be passed on the right."""
+    state = {**BEHIND, "CONGESTED": False}
+    vehicle, pedestrian = (
+        rulec.find_maneuvers("s3", "esterle2019", after=Trace("t", 1.0, {"o1": kind}, (state,)))
+        for kind in ("vehicle", "pedestrian")
     )
+    nobody = rulec.find_maneuvers("s3", "esterle2019", after=Trace("t", 1.0, {}, ({},)))
+    assert vehicle.satisfying < pedestrian.satisfying == nobody.satisfying
 
 
 def test_a_past_judged_by_other_rules_is_refused():

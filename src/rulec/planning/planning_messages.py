@@ -25,8 +25,8 @@ UNFITTING_PAST = Code(
     "R0511",
     title="a past does not lead up to a scenario",
     why="With `--after` the maneuvers of a scenario go on where a trace has ended: the first layer "
-    "is the state after its last one. So there is one such trace, its states are as far apart "
-    "as the layers, and who is in both is of the same type in both.",
+    "is the state after its last one. So there is one such trace, and its states are as far "
+    "apart as the layers.",
     bad=_FIRST_HALF + "rulec maneuvers s2 -r esterle2019 --after past.jsonl",
     good=_FIRST_HALF + "rulec maneuvers s2 -r esterle2019 --after past.jsonl --step 0.5",
     kind="command",

@@ -49,9 +49,6 @@ def past_of(
         for name, kind in graph.objects.items()
         if name not in graph.present or graph.present[name][0] == 0
     }
-    for name, kind in monitor.objects.items():
-        if there.get(name, kind) != kind:
-            raise _no_way(f"`{name}` was a `{kind}` and now is a `{there[name]}`", place)
     try:
         past = monitor.past(there)
     except ValueError:

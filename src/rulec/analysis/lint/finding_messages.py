@@ -11,7 +11,8 @@ CANNOT_BE_VIOLATED = Code(
     "R0801",
     title="nothing can violate a rule",
     why="Whatever happens, the rule is kept: it forbids nothing. An enumeration has one value at a "
-    "time, a number is on one side of a limit, and facts hold; all that is taken into account.",
+    "time, a number is on one side of a limit, and facts hold; all that is taken into account. So "
+    "are `true`, `false` and options as they stand: a rule may be one that an option switches on.",
     bad="rulebook example\nlight is one of red, green\n"
     "hard rule r { require always (red or green) }\n",
     good="rulebook example\nlight is one of red, green\nhard rule r { require always green }\n",

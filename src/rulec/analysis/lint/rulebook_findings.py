@@ -7,7 +7,13 @@ from dataclasses import replace
 
 from rulec.analysis.diff.rule_comparison import RuleComparison
 from rulec.analysis.lint import finding_messages
-from rulec.analysis.lint.antecedents import Antecedent, antecedents, has_constant, occurrence
+from rulec.analysis.lint.antecedents import (
+    Antecedent,
+    AntecedentKind,
+    antecedents,
+    has_constant,
+    occurrence,
+)
 from rulec.analysis.lint.conflict_findings import conflict_questions, conflicts
 from rulec.analysis.lint.questions import ComparedRules, Question, RuleAnswers, Spread
 from rulec.analysis.shared_compilation import AnalyzedRule, compile_shared
@@ -58,10 +64,14 @@ def rulebook_findings(
             for asked_name, (conditioned, antecedent) in conditions.items()
             if conditioned is rule
         ]
-        alone = [*_idle(rule, occurring, answers)] or [*_alone(rule, answers)]
-        if not alone:
-            good.append(name)
-        diagnostics += alone
+        idle = [*_idle(rule, occurring, answers)]
+        diagnostics += [diagnostic for _, diagnostic in idle]
+        # Without an exception that never holds a rule means what it means with it.
+        if all(kind == "unless" for kind, _ in idle):
+            alone = [*_alone(rule, answers)]
+            diagnostics += alone
+            if not alone:
+                good.append(name)
         tell(number)
     diagnostics += _needless(good, by_name, answers)
     hard = [name for name in good if by_name[name].strength == "hard"]
@@ -107,7 +117,7 @@ def _others(name: str, left: Sequence[str], rules: Mapping[str, Rule]) -> list[s
 
 def _idle(
     rule: Rule, occurring: Sequence[tuple[Antecedent, str]], answers: RuleAnswers
-) -> Iterator[Diagnostic]:
+) -> Iterator[tuple[AntecedentKind, Diagnostic]]:
     what = {
         "implies": "what stands before `implies`",
         "phase": "the first phase",
@@ -118,29 +128,36 @@ def _idle(
         try:
             occurs = answers.can_be_kept(asked_name)
         except UndecidedError as problem:
-            yield finding_messages.undecided_diagnostic(
-                rule, f"{what[trigger.kind]} can ever hold", problem
-            )
+            question = f"{what[trigger.kind]} can ever hold"
+            yield trigger.kind, finding_messages.undecided_diagnostic(rule, question, problem)
             continue
         if not occurs:
-            yield finding_messages.NEVER_TRIGGERED.at(
-                rule.span,
-                f"{what[trigger.kind]} of rule `{rule.name}` never holds: "
-                f"`{formula_text(trigger.formula)}`",
-                help="no state of the world can be like that; say what is meant, or leave it out",
-                severity="warning",
+            message = f"{what[trigger.kind]} of rule `{rule.name}` never holds: "
+            yield (
+                trigger.kind,
+                finding_messages.NEVER_TRIGGERED.at(
+                    rule.span,
+                    message + f"`{formula_text(trigger.formula)}`",
+                    help="no state of the world can be like that; say what is meant, or leave it "
+                    "out",
+                    severity="warning",
+                ),
             )
 
 
 def _alone(rule: Rule, answers: RuleAnswers) -> Iterator[Diagnostic]:
     try:
         if not answers.can_be_violated(rule.name):
-            if has_constant(rule.formula):
-                return  # an option has switched it off
             yield finding_messages.CANNOT_BE_VIOLATED.at(
                 rule.span,
                 f"nothing can violate rule `{rule.name}`",
-                help="it holds in every trace that can be; say what it is to forbid",
+                help="it holds in every trace that can be"
+                + (
+                    ", since what is constant in it, such as an option, counts as it stands"
+                    if has_constant(rule.formula)
+                    else ""
+                )
+                + "; say what it is to forbid",
                 severity="warning",
             )
         elif not answers.can_be_kept(rule.name):

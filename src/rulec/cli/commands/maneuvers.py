@@ -100,6 +100,7 @@ def command(
     ranked = None if n_ranked is None else maneuvers.ranked(n_ranked)
     shown = [*(listed or ()), *(rank.maneuver for rank in (*(best or ()), *(ranked or ())))]
     uncertain = any(obstacle.alternatives for obstacle in scene.obstacles)
+    uncertain = uncertain or (worlds and to.form == "json")
     answers = ManeuverAnswers(
         listed=listed,
         best=best,

@@ -221,6 +221,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     """Write the counts and what was asked for."""
     graph, scenario = maneuvers.graph, maneuvers.graph.scenario
     several = any(obstacle.alternatives for obstacle in scenario.obstacles)
+    several = several or answers.worlds is not None
     return as_line(
         filled(
             ManeuversDocument,

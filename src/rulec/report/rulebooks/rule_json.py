@@ -34,7 +34,7 @@ class RuleData(JsonPart, frozen=True, kw_only=True):
     """A rule, in English and as a formula.
 
     If it is the only one, it has its automaton, for steps of ``step_s`` unless that is null, and
-    the shortest traces that it accepts and rejects, null where there are none.
+    a shortest trace that it rejects and one close to it that it accepts, null where there are none.
     """
 
     name: str

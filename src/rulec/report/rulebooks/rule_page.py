@@ -184,7 +184,10 @@ def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -
         ("in English", _sentences(page.rule, vocabulary, width)),
         ("formula", _indented(formula)),
         ("automaton", _indented(automaton.split("\n"))),
-        ("shortest traces", _indented(list(_examples(page)))),
+        (
+            "a shortest rejected trace, and an accepted one close to it",
+            _indented(list(_examples(page))),
+        ),
     ]
     blocks = [f"{styled(title, 'bold')}\n{text}" for title, text in sections]
     return "\n\n".join([head(page.rule, rulebook, width), *blocks])
