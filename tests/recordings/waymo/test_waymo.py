@@ -65,6 +65,17 @@ def test_bounds_are_lines_and_edges_where_there_are_some(junction):
     assert junction.lanelets["5"].left[:, 0] == pytest.approx(-1.8)
 
 
+@pytest.mark.parametrize(("away_m", "mark"), [(-2.0, "solid"), (-4.0, None)])
+def test_a_mark_is_where_its_line_is(tmp_path, away_m, mark):
+    """A line beside which there is more room than a lane has is not the lane's bound."""
+    features = [
+        w.lane(1, w.straight(-60, -10), right_lines=[(0, 10, 21, 2)]),
+        w.road_line(21, w.straight(-60, -10, away_m, 10.0), kind=2),
+    ]
+    lanelets = read(tmp_path, w.crossing(features=features, lights=[])).lanelets
+    assert lanelets["1"].right_mark == mark
+
+
 def test_neighbours_and_junctions(junction):
     lanelets = junction.lanelets
     assert (lanelets["1"].left_of, lanelets["7"].right_of) == ("7", "1")

@@ -17,7 +17,7 @@ from rulec.recordings.lane_centres.lane_pieces import (
     neighbours_of_pieces,
     pieces_of_lanes,
 )
-from rulec.recordings.lane_centres.lane_widths import HalfWidths, half_widths
+from rulec.recordings.lane_centres.lane_widths import HalfWidths, at_their_lines, half_widths
 from rulec.recordings.lane_centres.road_features import (
     BoundaryPart,
     CentreLane,
@@ -43,6 +43,7 @@ def centre_lanelets(features: RoadFeatures, *, has_lights: bool) -> dict[str, La
     some that nobody saw.
     """
     features = replace(features, lanes=_sound_lanes(features.lanes))
+    features = replace(features, lanes=at_their_lines(features))
     lanes = features.lanes
     inside = junction_stretches(features)
     pieces = pieces_of_lanes(lanes, inside)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,12 @@ import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.recordings.lane_centres.road_features import CentreLane, LaneSide, RoadFeatures
+from rulec.recordings.lane_centres.road_features import (
+    BoundaryPart,
+    CentreLane,
+    LaneSide,
+    RoadFeatures,
+)
 from rulec.recordings.polylines import parallel_line
 
 Widths = NDArray[float64]
@@ -76,6 +82,40 @@ def _by_side(
             halves = _sound(shapely.distance(points[own], centres[beside.lane]) / 2)
             found[own] = np.where(np.isnan(found[own]), halves, found[own])
     return found
+
+
+def at_their_lines(features: RoadFeatures) -> dict[str, CentreLane]:
+    """The lanes with those parts of their boundaries whose line is where the bound is.
+
+    Where a line is farther away than a bound may be, as beside a slip road, its mark is not there.
+    """
+    lines = {name: shapely.LineString(points) for name, points in features.lines.items()}
+
+    def at_lines(lane: CentreLane, side: LaneSide) -> LaneSide:
+        points = shapely.points(lane.centre[:, :2])
+        parts = (part for known in side.boundaries for part in _near_its_line(known, points, lines))
+        return replace(side, boundaries=tuple(parts))
+
+    return {
+        name: lane
+        if lane.area is not None
+        else replace(lane, left=at_lines(lane, lane.left), right=at_lines(lane, lane.right))
+        for name, lane in features.lanes.items()
+    }
+
+
+def _near_its_line(
+    part: BoundaryPart, points: NDArray[np.object_], lines: Mapping[str, shapely.LineString]
+) -> Iterator[BoundaryPart]:
+    """The parts of a boundary along which its line is neither too near nor too far."""
+    if part.line not in lines:
+        yield part
+        return
+    away = shapely.distance(points[part.start : part.end + 1], lines[part.line])
+    near = np.concatenate(([False], ~np.isnan(_sound(away)), [False]))
+    edges = np.flatnonzero(np.diff(near.astype(np.int8))).reshape(-1, 2) + part.start
+    for start, end in edges.tolist():
+        yield replace(part, start=start, end=end - 1)
 
 
 def _by_area(lane: CentreLane) -> HalfWidths:
