@@ -109,6 +109,8 @@ def test_every_word_is_one_of_a_vocabulary_and_numbers_have_its_unit():
         **load_rulebook("esterle2019").vocabulary.declarations,
         **load_rulebook("de").vocabulary.declarations,
         **load_rulebook("us-ca").vocabulary.declarations,
+        **load_rulebook("nl").vocabulary.declarations,
+        **load_rulebook("pl").vocabulary.declarations,
     }
     (drive,) = Drives(
         recording([straight(1, 0, 99)], [vehicle(1, {0: (9, 0), 1: (19, 0)})]), "right"

@@ -195,8 +195,8 @@ def test_a_drive_of_one_state():
 def test_one_whose_track_ends_may_still_be_on_the_near_lane(x, unknown):
     """It drives 20 or 70 m ahead of ego at its speed, and is recorded for two states."""
     lanes = [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
-    other = steady(8, x, 0, 10.0, steps=2)
-    assert signals(lanes, ego(100, y=4), other)["near_lane_is_free"][2] == unknown
+    others = [steady(8, x, 0, 10.0, steps=2), steady(9, 0, 4, 10.0)]
+    assert signals(lanes, ego(100, y=4), *others)["near_lane_is_free"][2] == unknown
 
 
 @pytest.mark.parametrize(
@@ -218,6 +218,25 @@ def test_a_place_in_the_near_lane(ahead, behind, free):
     lanes = [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
     places = [(number, *at) for number, at in ((8, ahead), (9, behind)) if at]
     others = [steady(number, 100 + x, 0, mps) for number, x, mps in places]
+    others.append(steady(6, 0, 4, 10.0))
     assert signals(lanes, ego(100, y=4), *others)["near_lane_is_free"][0] == str(free)
     # At the kerb nothing keeps it away
     assert signals(lanes, ego(100), *others)["near_lane_is_free"][0] == "True"
+
+
+def test_nobody_sees_what_comes_behind_the_last_one():
+    lanes = [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
+    assert signals(lanes, ego(100, y=4))["near_lane_is_free"][0] == "?"
+    # But who is there is there
+    beside = steady(8, 100, 0, 10.0)
+    assert signals(lanes, ego(100, y=4), beside)["near_lane_is_free"][0] == "False"
+
+
+@pytest.mark.parametrize(("mark", "free"), [("solid", "False"), ("broken", "True")])
+def test_nobody_goes_to_the_near_lane_across_a_solid_line(mark, free):
+    lanes = [
+        straight(1, 0, 600, left_of=2),
+        replace(straight(2, 0, 600, 4, right_of=1), right_mark=mark),
+    ]
+    behind = steady(9, 0, 4, 10.0)
+    assert signals(lanes, ego(100, y=4), behind)["near_lane_is_free"][0] == free

@@ -256,3 +256,27 @@ def test_the_faster_ego_is_the_farther_queues_are_looked_for(mps):
     others = [steady(8, -apart, 0, speed=mps, steps=4), steady(9, apart, 0, speed=mps, steps=4)]
     queue = flow_signals(context_of(recording(road, [ego, *others])))
     assert queue.world["dense_all_lanes"].all()
+
+
+@pytest.mark.parametrize(("mps", "queue"), [(10, True), (17, False)])
+def test_ego_is_in_the_queue_on_its_own_lane(mps, queue):
+    """Three in a lane, ego among them, at 36 or 61 km/h; nobody on the other one."""
+    ego = steady(7, 0, 4, speed=mps)
+    assert first(*line(mps, 2, y=4.0), ego=ego)["own_lane_queue"] == queue
+    assert not first(*line(mps, 2), ego=ego)["own_lane_queue"]
+
+
+def test_overtaking_begins_when_ego_pulls_out():
+    """Ego, at 20 m/s, goes to the left lane from 2 to 3 s; one at 10 m/s was 90 m ahead at 0 s."""
+    ways = {k: (10.0 * k, min(max(k - 4, 0) * 2.0, 4.0)) for k in range(12)}
+    slow = vehicle(8, {k: (90 + 5.0 * k, 0) for k in range(12)}, speed=10)
+    context = context_of(recording(lanes(2), [vehicle(7, ways, speed=20), slow]))
+    signals = flow_signals(context)
+    overtakes = signals.world["overtaking"].tolist()
+    begins = signals.world["begins_to_overtake"].tolist()
+    assert not overtakes[3]
+    assert overtakes[8]
+    assert begins[: overtakes.index(True)] == [True] * overtakes.index(True)
+    # Who stays behind does not
+    stays = context_of(recording(lanes(2), [steady(7, 0, 0, speed=20), slow]))
+    assert not flow_signals(stays).world["begins_to_overtake"].any()

@@ -146,6 +146,14 @@ def test_a_solid_line_lies_under_ego_from_thirty_centimetres_on(y, solid):
     assert marks(y, "solid", "solid")[0]["on_solid_line"] is solid
 
 
+def test_who_is_parked_on_a_line_does_not_cross_it():
+    road = lanes(2)
+    road[0] = replace(road[0], left_mark="solid")
+    parked, drives = (steady(7, 0, 1.4, speed=mps) for mps in (0, 10))
+    found = [lane_mark_signals(context_of(recording(road, [ego]))) for ego in (parked, drives)]
+    assert [bool(x.world["on_solid_line"][0]) for x in found] == [False, True]
+
+
 def test_of_two_lines_the_one_on_ego_s_side_counts():
     # Ego's middle is in the right lane, at whose side the line is broken
     known, _ = marks(1.5, "broken", "solid")

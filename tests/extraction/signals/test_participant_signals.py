@@ -185,3 +185,18 @@ def test_who_crosses_goes_on_crossing(ways, goes):
     car = replace(walker, type="car")
     context = context_of(recording(lanes(1), [ego, car], step_s=0.1))
     assert not participant_signals(context).about["goes_across"][0, -1]
+
+
+def test_who_is_behind_another_one_is_not_followed():
+    signals = participant_signals(context(steady(8, 30, 0), steady(9, 15, 0), steady(6, 20, 4)))
+    assert signals.about["one_between"][:, 0].tolist() == [True, False, False]
+
+
+@pytest.mark.parametrize(
+    ("y", "moves_on", "parked"), [(-2.6, False, True), (-2.6, True, False), (-1.4, False, False)]
+)
+def test_who_stands_beside_the_lanes_all_the_time_is_parked(y, moves_on, parked):
+    """Its middle is 0.6 m outside of a lane, or within it, where one may wait."""
+    ways = [20.0 + (10.0 * max(k - 4, 0) if moves_on else 0.0) for k in range(8)]
+    other = vehicle(8, {k: (x, y) for k, x in enumerate(ways)}, speed=0)
+    assert about(other)["parked"] == parked

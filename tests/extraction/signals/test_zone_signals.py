@@ -103,6 +103,13 @@ def test_a_queue_on_the_lane_beside_is_not_ahead():
     assert exit_clear(lanes, STOPS, going(8, (125,) * 7, 4.0)) == [True] * 7
 
 
+@pytest.mark.parametrize(("y", "clear"), [(-2.5, True), (-1.0, False)])
+def test_one_that_stands_at_the_edge_leaves_room_beside_it(y, clear):
+    """Of the 4 m of ego's lane it takes 0.5 m, or 2 m: ego, which is 2 m wide, wants 2.4 m."""
+    found = exit_clear(road(), STOPS, going(8, (125,) * 7, y))
+    assert (False not in found) == clear
+
+
 def test_a_recording_that_ends_before_ego_is_through():
     queue = going(8, (125, 125))
     assert exit_clear(road(), (90, 105), queue) == ["?", "?"]

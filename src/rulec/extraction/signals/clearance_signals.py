@@ -8,15 +8,18 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumns, Wanted
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import Side
+from rulec.recordings.recording import Lanelet, LaneMark, Side
 
 _BESIDE_M = 0.5
 """A vehicle needs so much more room than it is wide."""
 
 _OBSTACLE_M = 30.0
+
+_SOLID = frozenset({"solid", "double_solid"})
 
 _UNSEEN_S = 5.0
 """For so long one whose track has ended is thought to drive on as before."""
@@ -46,9 +49,10 @@ def _on_far_lane(context: DriveContext) -> SignalColumns:
 
 
 def _on_near_lane(context: DriveContext) -> SignalColumns:
+    free = _near_lane_is_free(context)
     return SignalColumns(
-        {"near_lane_is_free": _near_lane_is_free(context)},
-        unknown={"near_lane_is_free": _perhaps_on_near_lane(context)},
+        {"near_lane_is_free": free},
+        unknown={"near_lane_is_free": free & _perhaps_on_near_lane(context)},
     )
 
 
@@ -183,7 +187,10 @@ def _far_lane_is_free(context: DriveContext) -> Flags:
 
 
 def _near_lane_is_free(context: DriveContext) -> Flags:
-    """Flags of states in which ego, in the next lane to the kerb, would be at safe distances."""
+    """Flags of states in which ego, in the next lane to the kerb, would be at safe distances.
+
+    It cannot go there across a solid line, as beside lanes for who turns off.
+    """
     limits = context.thresholds
     inside, there = _on_next_lane(context, context.side)
     station, gap = relations.station(context), relations.gap(context)
@@ -192,20 +199,27 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     behind, ahead = np.where(leads, own, other), np.where(leads, other, own)
     safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * limits.braking_mps2)
     taken = inside & ((station == relations.BESIDE) | (gap < safe))
-    free: Flags = ~there | ~taken.any(axis=0)
+    parted = own_lanelets(context).flags(lambda lanelet: _near_mark(lanelet, context) in _SOLID)
+    free: Flags = ~there | ~(taken.any(axis=0) | parted)
     return free
+
+
+def _near_mark(lanelet: Lanelet, context: DriveContext) -> LaneMark | None:
+    return lanelet.right_mark if context.side == "right" else lanelet.left_mark
 
 
 def _perhaps_on_near_lane(context: DriveContext) -> Flags:
     """Flags of states in which one may be near ego on the next lane to the kerb, but is not seen.
 
     Its track ended less than ``_UNSEEN_S`` ago, or begins so soon, in sight of ego; it drives on as
-    it did. Where all traffic is recorded, nobody drives unseen.
+    it did. Behind ego nobody is seen where it is the last one of all that are recorded on its road.
+    Where all traffic is recorded, nobody drives unseen.
     """
-    perhaps = np.zeros(context.states, dtype=bool)
     if "arrivals" in context.recording.complete:
-        return perhaps
+        return np.zeros(context.states, dtype=bool)
     lane, there = _next_lane(context, context.side)
+    behind = context.going_along & (relations.station(context) == relations.IN_FRONT_OF)
+    perhaps: Flags = there & ~behind.any(axis=0)
     others, states, step_s = context.extents, np.arange(context.states), context.recording.step_s
     rows = np.flatnonzero(context.driving_along.any(axis=1))
     seen = context.driving_along[rows]

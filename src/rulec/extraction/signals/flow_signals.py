@@ -27,6 +27,9 @@ from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, next_
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 
+_DRIFT_MPS = 0.2
+"""Who moves sideways by less keeps its lane."""
+
 _SETS_OFF_MPS2 = 2.0
 """Vehicles gain speed about so hard when they set off."""
 
@@ -64,9 +67,38 @@ def _far_lane_queue(context: DriveContext) -> SignalColumns:
     return SignalColumns({"far_lane_queue": queue}, unknown={"far_lane_queue": more & ~fewer})
 
 
+def _own_lane_queue(context: DriveContext) -> SignalColumns:
+    """Whether ego is in a slow queue, by its lane; for all that is as wrong as may be, too."""
+    queues, speed_kmh = queues_by_lane(context)
+    slow = queues & (speed_kmh < context.thresholds.slow_queue_kmh)
+    queue, fewer, more = (
+        slow[reading][np.arange(context.states), context.ego_lane] for reading in READINGS
+    )
+    return SignalColumns({"own_lane_queue": queue}, unknown={"own_lane_queue": more & ~fewer})
+
+
 def _overtaking(context: DriveContext) -> SignalColumns:
     overtakes, unsure = _overtakes(context)
     return SignalColumns({"overtaking": overtakes}, unknown={"overtaking": unsure & ~overtakes})
+
+
+def _begins_to_overtake(context: DriveContext) -> SignalColumns:
+    """Whether ego overtakes within ``parting_s``, so that it pulls out for that by now.
+
+    Unknown where the drive ends before.
+    """
+    overtakes, unsure = _overtakes(context)
+    horizon = round(context.thresholds.parting_s / context.recording.step_s)
+    states = np.arange(context.states)
+    begins, perhaps = (
+        next_state(flags, context.states + horizon) <= states + horizon
+        for flags in (overtakes, overtakes | unsure)
+    )
+    moves_out = np.abs(context.ego_extents.across[0]) > _DRIFT_MPS
+    ends = moves_out & (states + horizon >= context.states)
+    return SignalColumns(
+        {"begins_to_overtake": begins}, unknown={"begins_to_overtake": (perhaps | ends) & ~begins}
+    )
 
 
 def _being_overtaken(context: DriveContext) -> SignalColumns:
@@ -243,6 +275,8 @@ _PASSES: Passes = {
     ("congested", "CONGESTED", "walking_pace_flow"): _slow_traffic,
     ("dense_all_lanes",): _dense_all_lanes,
     ("far_lane_queue",): _far_lane_queue,
+    ("own_lane_queue",): _own_lane_queue,
     ("overtaking",): _overtaking,
+    ("begins_to_overtake",): _begins_to_overtake,
     ("being_overtaken",): _being_overtaken,
 }

@@ -9,7 +9,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, named_values
@@ -153,8 +153,12 @@ def _marked_lanes(context: DriveContext) -> SignalColumns:
 def _lines_under_ego(context: DriveContext) -> SignalColumns:
     """Whether ego is on a solid line, breaks one on its own side, and is that a single one.
 
-    Unknown where places, or the map, decide it, or marks are not told.
+    Unknown where places, or the map, decide it, or marks are not told. Who stands all through its
+    drive crosses none: it is parked on the one at the edge.
     """
+    names = ("on_solid_line", "broken_on_own_side", "single_line")
+    if (context.ego.speed[0] * KMH < context.thresholds.standing_kmh).all():
+        return SignalColumns(dict.fromkeys(names, np.zeros(context.states, dtype=bool)))
     place, offsets = context.tolerances.place_m, context.map_offset_m
     unmoved, low, high = (
         np.zeros(context.states),
@@ -178,7 +182,6 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     others_found = _under(context, np.concatenate([lines[where] for where, lines in tried]), states)
     differs = (others_found[:, :-1] != found[states, :-1]).any(axis=1)
     not_told[states[differs]] = True
-    names = ("on_solid_line", "broken_on_own_side", "single_line")
     return SignalColumns(
         dict(zip(names, found.T, strict=False)), unknown=dict.fromkeys(names, not_told)
     )

@@ -144,6 +144,25 @@ def _precedes(context: DriveContext) -> SignalColumns:
     return SignalColumns(about={"precedes": (ahead == nearest) & np.isfinite(ahead)})
 
 
+def _one_between(context: DriveContext) -> SignalColumns:
+    """Whether a vehicle that is ahead in ego's lane itself is nearer than another one ahead.
+
+    It is if it is farther from that one than places may be wrong, which is unknown otherwise.
+    """
+    _, surely, perhaps = relations.ahead_in_lane(context)
+    drives = context.tracks.of_type("vehicle")[:, None] & ~_comes_towards(context)
+    gap, place = relations.gap(context), context.tolerances.place_m
+    nearest, may_be = (
+        np.where(ahead & drives, gap, np.inf).min(axis=0, initial=np.inf)
+        for ahead in (surely, perhaps)
+    )
+    between = perhaps & (gap > nearest + place)
+    return SignalColumns(
+        about={"one_between": between},
+        unknown={"one_between": ~between & perhaps & (gap > may_be - place) & (gap > may_be)},
+    )
+
+
 def _oncoming(context: DriveContext) -> SignalColumns:
     return SignalColumns(about={"oncoming": _comes_towards(context)})
 
@@ -211,7 +230,27 @@ def _stopped(context: DriveContext) -> SignalColumns:
 
 def _parked(context: DriveContext) -> SignalColumns:
     parked = [body.standing for body in context.tracks.participants]
-    return SignalColumns(about={"parked": _constant(context, parked)})
+    return SignalColumns(about={"parked": _constant(context, parked) | _stays_aside(context)})
+
+
+def _stays_aside(context: DriveContext) -> Flags:
+    """Flags of vehicles that stand beside the lanes of ego's road all the time they are recorded.
+
+    By their middles: those who wait in a lane do not, however long.
+    """
+    tracks, lanes = context.surroundings.tracks, context.existing_lanes
+    least = context.thresholds.standing_kmh / KMH
+    rows = context.tracks.rows
+    moves = (tracks.present[rows] & (tracks.speed[rows] >= least)).any(axis=1)
+    stays: Flags = ~moves & context.tracks.of_type("vehicle")
+    aside = np.zeros(context.relevant.shape, dtype=bool)
+    first, end = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
+    still = np.flatnonzero(stays)
+    if len(still):
+        others = context.extents.part(still, slice(None))
+        out = (others.middle_from(first) < 0) | (others.middle_from(end) > 0)
+        aside[still] = (out | ~context.relevant[still]).all(axis=1, keepdims=True)
+    return aside
 
 
 def _two_wheeled(context: DriveContext) -> SignalColumns:
@@ -240,6 +279,7 @@ _PASSES: Passes = {
     ("speed_difference",): _speed_difference,
     ("safe_gap",): _safe_gap,
     ("precedes",): _precedes,
+    ("one_between",): _one_between,
     ("oncoming",): _oncoming,
     ("goes_across",): _goes_across,
     ("stopped",): _stopped,

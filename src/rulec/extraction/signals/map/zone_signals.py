@@ -209,7 +209,23 @@ def _ahead_on_lane(context: DriveContext) -> Flags:
     """Flags of who goes ego's way ahead of it, and reaches into its lane."""
     on_lane = context.touched[:, np.arange(context.states), context.ego_lane]
     ahead: Flags = on_lane & context.going_along & (relations.station(context) == relations.BEHIND)
-    return ahead
+    return ahead & ~_left_aside(context, ahead)
+
+
+def _left_aside(context: DriveContext, ahead: Flags) -> Flags:
+    """Flags of those ahead who stand all the time and leave ego room to pass them in its lane."""
+    aside, limits = np.zeros(ahead.shape, dtype=bool), context.thresholds
+    tracks, rows = context.surroundings.tracks, np.flatnonzero(ahead.any(axis=1))
+    whole = context.tracks.rows[rows]
+    moves = tracks.present[whole] & (tracks.speed[whole] * KMH >= limits.standing_kmh)
+    still = rows[~moves.any(axis=1)]
+    if len(still):
+        others, own = context.extents.part(still, slice(None)), context.ego_extents
+        left, _ = others.from_bound(context.ego_lane)
+        _, right = others.from_bound(context.ego_lane + 1)
+        room = own.d_max[0] - own.d_min[0] + 2 * limits.touching_m
+        aside[still] = np.maximum(left, -right) >= room
+    return aside
 
 
 def _shared(context: DriveContext, start: float, end: float) -> float:
