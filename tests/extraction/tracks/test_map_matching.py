@@ -1,7 +1,8 @@
 """The likeliest lanelets of a track: single states, whole drives, and where a drive breaks."""
 
+from dataclasses import replace
 from itertools import groupby, pairwise
-from math import atan2, pi, radians
+from math import atan2, hypot, pi, radians
 
 import numpy as np
 import pytest
@@ -9,8 +10,9 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rulec.extraction.tracks.lane_candidates import NEAR_M, SIGMA_M, candidates
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
-from rulec.extraction.tracks.map_matching import NEAR_M, SIGMA_M, MapMatching, candidates
+from rulec.extraction.tracks.map_matching import BETA_M, BREAK_COST, CHANGE_COST, MapMatching
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.recordings.recording import Participant, TrackState
@@ -27,7 +29,7 @@ def costs(x=50.0, y=0.0, heading=0.0):
     """The costs of the lanelets 1, from y = -2 to 2, and 2, that leads the other way beside it."""
     lanes = [straight(1, 0, 100), straight(2, 100, 0, y=4)]
     found = found_for(lanes, vehicle(7, {0: (x, y)}, heading=heading))
-    return {name: one.cost for name, one in found[0][0].items()} if found else {}
+    return dict(zip((found.names[k] for k in found.lanes), found.costs.tolist(), strict=True))
 
 
 def matched(lanes, body):
@@ -62,14 +64,15 @@ def test_a_lane_that_leads_the_other_way_does_not_match():
 
 
 def test_standing_participants_and_other_surfaces_have_no_match():
-    assert found_for([straight(1, 0, 100)], vehicle(7, {0: (50, 0)}, standing=True)) == {}
+    standing = found_for([straight(1, 0, 100)], vehicle(7, {0: (50, 0)}, standing=True))
+    assert len(standing.rows) == 0
     pavement = straight(1, 0, 100, types=frozenset({"sidewalk"}))
-    assert found_for([pavement], vehicle(7, {0: (50, 0)})) == {}
+    assert len(found_for([pavement], vehicle(7, {0: (50, 0)})).rows) == 0
 
 
 def test_columns_come_in_order_and_without_gaps_filled():
     body = vehicle(7, {0: (50, 0), 1: (50, 90), 2: (60, 0), 5: (70, 0)})
-    assert [*found_for([straight(1, 0, 100)], body)[0]] == [0, 2, 5]
+    assert found_for([straight(1, 0, 100)], body).columns.tolist() == [0, 2, 5]
 
 
 def test_a_change_of_lanes_counts_once_and_where_it_is():
@@ -147,6 +150,67 @@ def test_a_noisy_drive_through_a_grid_is_matched_to_its_chain(drive):
     assert found == chain
     # Each lanelet once and in its order: no state flips back
     assert [name for name, _ in groupby(lanelets)] == [name for name in chain if name in lanelets]
+
+
+def cheapest_by_hand(found, tracks, graph, row):
+    """The lanelets of a participant by column, every candidate tried after each one before."""
+    paths, before = {}, None
+    for state in np.flatnonzero(found.rows == row):
+        column, own = found.columns[state], slice(found.first[state], found.first[state + 1])
+        options = [
+            (found.names[lane], cost, s)
+            for lane, cost, s in zip(found.lanes[own], found.costs[own], found.along[own])  # noqa: B905
+        ]
+        if before is None or not tracks.present[row, before:column].all():
+            yield from least(paths)
+            paths = {name: (cost, [name], s) for name, cost, s in options}
+        else:
+            moved = hypot(*(getattr(tracks, k)[row, [before, column]] @ [-1, 1] for k in "xy"))
+            weight = min(1.0, moved / (2 * SIGMA_M))
+            paths = {
+                name: (*further(paths, graph, name, s, moved, weight * cost), s)
+                for name, cost, s in options
+            }
+        before = column
+    yield from least(paths)
+
+
+def further(paths, graph, name, s, moved, cost):
+    ways = []
+    for start, (so_far, path, since) in paths.items():
+        through, way = np.inf, graph.way(start, name)
+        if way is not None:
+            off = abs(way.length + s - since - moved) - way.sideways
+            through = max(0.0, off) / BETA_M + CHANGE_COST * way.changes
+        ways.append((so_far + min(through, BREAK_COST) + cost, [*path, name]))
+    return min(ways, key=lambda one: one[0])
+
+
+def least(paths):
+    return min(paths.values(), key=lambda one: (one[0], one[1][-1]))[1] if paths else []
+
+
+@settings(max_examples=settings().max_examples // 5)
+@given(noisy_drives(), noisy_drives(), st.sets(st.integers(0, 60)), st.integers(0, 2**32 - 1))
+def test_many_drives_at_once_take_the_cheapest_paths_of_each(one, other, gaps, seed):
+    """Drives of any length with gaps, one of them far off its lanes, on a grid with crossings."""
+    random, bodies = np.random.default_rng(seed), []
+    for number, (_, body) in enumerate((one, other)):
+        kept = {k: state for k, state in body.states.items() if k not in gaps or number}
+        off = random.normal(size=(len(kept), 2)) * 1.5 * number
+        states = {
+            k: replace(state, x=state.x + dx, y=state.y + dy)
+            for (k, state), (dx, dy) in zip(kept.items(), off.tolist(), strict=True)
+        }
+        outlines = {k: rectangle(own.x, own.y, 4, 2, own.heading) for k, own in states.items()}
+        bodies.append(replace(body, id=str(number), states=states, outlines=outlines))
+    bodies = [body for body in bodies if body.states]
+    found = recording(GRID, bodies)
+    tracks, graph = tracks_of(found, USUAL), LaneletGraph(found)
+    own, matching = candidates(found, tracks), MapMatching(found, tracks, graph)
+    for row in range(len(bodies)):
+        lanelets = [part.chain[k] for part in matching.of(row) for k in part.places]
+        assert lanelets == list(cheapest_by_hand(own, tracks, graph, row))
 
 
 def test_the_grid_is_consistent():

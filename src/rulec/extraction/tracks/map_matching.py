@@ -15,33 +15,19 @@ recording jumps or somebody leaves a lanelet sideways, the drive breaks for a hi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby
-from math import hypot, inf, pi, radians
-from typing import NamedTuple
+from math import hypot
 
 import numpy as np
-import shapely
-from numpy import intp
+from numpy import bool_, intp
 from numpy.typing import NDArray
 
+from rulec.extraction.tracks.lane_candidates import SIGMA_M, LaneCandidates, candidates
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
-from rulec.extraction.tracks.tracks import Tracks
-from rulec.recordings.recording import Lanelet, Recording, is_lane
-from rulec.scenario.recorded.reference_line import turn
-from rulec.scenario.recorded.route import directions_at, lanelet_area
-
-NEAR_M = 3.0
-"""The farthest that a vehicle may be beside a lanelet that it is matched to."""
-
-_AROUND_M = NEAR_M + 0.1
-"""Who is not even so near to the rectangle around a lanelet is not near it."""
-
-SIGMA_M = 1.0
-SIGMA_RAD = radians(20)
-"""Standard deviations of vehicles about the middle and the direction of their lanelet."""
+from rulec.extraction.tracks.tracks import Floats, Tracks
+from rulec.recordings.recording import Recording
 
 BETA_M = 2.0
 """The mean difference of the way along lanelets and the way moved."""
@@ -52,16 +38,8 @@ CHANGE_COST = 5.0
 BREAK_COST = 50.0
 """The cost of going on where no lanelet leads to."""
 
-
-class Candidate(NamedTuple):
-    """A lanelet that a state may be on: the cost of its distance, and the place along it (m)."""
-
-    cost: float
-    along: float
-
-
-Candidates = Mapping[int, Mapping[str, Candidate]]
-"""Column -> lanelet -> candidate, of one participant."""
+_AT_ONCE = 1 << 19
+"""So many transitions are computed together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,151 +63,183 @@ class MapMatching:
         self._tracks = tracks
         self._graph = graph
         self._candidates = candidates(recording, tracks)
-        self._found: dict[int, tuple[MatchedStretch, ...]] = {}
+
+    @cached_property
+    def _paths(self) -> tuple[NDArray[intp], NDArray[bool_]]:
+        """The lane of each state, and where a stretch begins."""
+        found = self._candidates
+        places = np.stack((self._tracks.x, self._tracks.y), axis=-1)[found.rows, found.columns]
+        absent = np.cumsum(~self._tracks.present, axis=1)[found.rows, found.columns]
+        begins = np.ones(len(found.rows), dtype=bool)
+        begins[1:] = (np.diff(found.rows) != 0) | (np.diff(absent) != 0)
+        return likeliest_paths(found, places, begins, self._graph)
 
     def of(self, row: int) -> tuple[MatchedStretch, ...]:
         """The stretches of a participant, parted at gaps in its recording."""
-        if row not in self._found:
-            absent = np.cumsum(~self._tracks.present[row])
-            own = self._candidates.get(row, {})
-            places = np.stack((self._tracks.x[row], self._tracks.y[row]), axis=1)
-            self._found[row] = tuple(
-                stretch
-                for _, columns in groupby(own, key=lambda column: int(absent[column]))
-                for stretch in likeliest_path({k: own[k] for k in columns}, places, self._graph)
-            )
-        return self._found[row]
+        lanes, begins = self._paths
+        first, last = np.searchsorted(self._candidates.rows, [row, row + 1]).tolist()
+        starts = (np.flatnonzero(begins[first:last]) + first).tolist()
+        ends = [*starts[1:], last][: len(starts)]
+        return tuple(self._stretch(*part, lanes) for part in zip(starts, ends, strict=True))
+
+    def _stretch(self, start: int, end: int, lanes: NDArray[intp]) -> MatchedStretch:
+        names, own = self._candidates.names, lanes[start:end]
+        chain, added = [names[own[0]]], np.zeros(end - start, dtype=intp)
+        for change in (np.flatnonzero(np.diff(own)) + 1).tolist():
+            way = self._graph.way(names[own[change - 1]], names[own[change]])
+            assert way is not None, "a stretch goes on only along ways"
+            chain += way.lanelets
+            added[change] = len(way.lanelets)
+        columns = self._candidates.columns[start:end]
+        return MatchedStretch(
+            tuple(columns.tolist()), tuple(chain), tuple(np.cumsum(added).tolist())
+        )
 
     @cached_property
     def lanelets(self) -> NDArray[intp]:
         """The numbers of lanelets, in the file's order, by participant and column; -1 for none."""
         numbers = {name: number for number, name in enumerate(self.recording.lanelets)}
         found = np.full(self._tracks.present.shape, -1, dtype=intp)
-        for row in self._candidates:
-            for stretch in self.of(row):
-                found[row, stretch.columns] = [numbers[stretch.chain[k]] for k in stretch.places]
+        own = np.array([numbers[name] for name in self._candidates.names], dtype=intp)
+        lanes, _ = self._paths
+        found[self._candidates.rows, self._candidates.columns] = own[lanes]
         return found
 
 
-def candidates(recording: Recording, tracks: Tracks) -> dict[int, Candidates]:
-    """The lanelets near each moving participant that lead its way, by row and column."""
-    lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
-    moving = np.array([not body.standing for body in tracks.participants], dtype=bool)
-    rows, columns = np.nonzero(tracks.present & moving[:, None])
-    if not lanes or not len(rows):
-        return {}
-    places = np.stack((tracks.x[rows, columns], tracks.y[rows, columns]), axis=1)
-    points, headings = shapely.points(places), tracks.heading[rows, columns]
-    areas = [lanelet_area(lanelet) for lanelet in lanes]
-    low, high = np.split(shapely.bounds(areas), 2, axis=1)
-    found = []
-    for lanelet, area, *corners in zip(
-        lanes, areas, low - _AROUND_M, high + _AROUND_M, strict=True
-    ):
-        around = np.flatnonzero(((places >= corners[0]) & (places <= corners[1])).all(axis=1))
-        shapely.prepare(area)
-        near = around[shapely.dwithin(area, points[around], NEAR_M)]
-        found.append(_candidates_on(lanelet, near, points[near], headings[near]))
-    at, costs, along = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    names = np.repeat(np.arange(len(lanes)), [len(own) for own, _, _ in found])
-    # By place, lanelets in the order of the file
-    order = np.argsort(at, kind="stable")
-    by_row: dict[int, dict[int, dict[str, Candidate]]] = {}
-    for row, column, lane, cost, s in zip(
-        *(x[order].tolist() for x in (rows[at], columns[at], names, costs, along)), strict=True
-    ):
-        own = by_row.setdefault(row, {}).setdefault(column, {})
-        own[lanes[lane].id] = Candidate(cost, s)
-    return {**by_row}
+@dataclass(frozen=True, eq=False, slots=True)
+class _Transitions:
+    """What it costs to get to candidates (second axis) of states from those before (third axis).
+
+    ``off`` for the difference of ways, ``changes`` for those of lanes; ``own`` for the candidate.
+    What stands for no candidate costs infinitely much.
+    """
+
+    off: Floats
+    changes: Floats
+    own: Floats
 
 
-def _candidates_on(
-    lanelet: Lanelet,
-    near: NDArray[intp],
-    points: NDArray[np.object_],
-    headings: NDArray[np.float64],
-) -> tuple[NDArray[intp], NDArray[np.float64], NDArray[np.float64]]:
-    """Those ``near`` a lanelet that may be on it, their costs, and their places along it (m)."""
-    middle = shapely.LineString(lanelet.centre)
-    along = shapely.line_locate_point(middle, points)
-    angle = np.abs(turn(directions_at(lanelet, along), headings))
-    fits = angle < pi / 2
-    away = shapely.distance(middle, points[fits])
-    costs = ((away / SIGMA_M) ** 2 + (angle[fits] / SIGMA_RAD) ** 2) / 2
-    return near[fits], costs, along[fits]
+def likeliest_paths(
+    found: LaneCandidates, places: Floats, begins: NDArray[bool_], graph: LaneletGraph
+) -> tuple[NDArray[intp], NDArray[bool_]]:
+    """The lanes of the cheapest path through each run of states, and where no way leads on.
+
+    ``places`` are those of the states (m), ``begins`` flags of the first ones of runs, which are
+    flagged in the answer, too.
+    """
+    if not len(begins):
+        return np.empty(0, dtype=intp), begins
+    starts = np.flatnonzero(begins)
+    lengths = np.diff(starts, append=len(begins))
+    # All runs go step by step together, the longest first: those that go on are the first ones
+    longest = np.argsort(-lengths, kind="stable")
+    starts, lengths = starts[longest], lengths[longest]
+    going = np.searchsorted(-lengths, -np.arange(int(lengths[0])), "left").tolist()
+    width = int(found.counts.max())
+    back = np.zeros((len(begins), width), dtype=intp)
+    broken = np.zeros((len(begins), width), dtype=bool)
+    reached = _padded(found, starts, found.costs)
+    for states, to in _steps(found, places, (starts, going), graph):
+        earlier = reached[: len(states), None, :]
+        through = earlier + to.off
+        through += to.changes
+        breaks = earlier + BREAK_COST
+        least = np.minimum(through, breaks)
+        best = least.argmin(axis=2)
+        chosen = best + np.arange(0, least.size, width).reshape(best.shape)
+        back[states], broken[states] = best, (through > breaks).ravel()[chosen]
+        reached[: len(states)] = least.ravel()[chosen] + to.own
+    lanes, parted = np.empty(len(begins), dtype=intp), begins.copy()
+    own = np.array(
+        [
+            # As cheap ones by their name
+            min((cost, found.names[found.lanes[first + k]], k) for k, cost in enumerate(costs))[2]
+            for first, costs in _ends(found, starts + lengths - 1, reached)
+        ]
+    )
+    for step in range(len(going) - 1, -1, -1):
+        count = going[step]
+        states, chosen = starts[:count] + step, own[:count]
+        lanes[states] = found.lanes[found.first[states] + chosen]
+        parted[states] |= broken[states, chosen]
+        own[:count] = back[states, chosen]
+    return lanes, parted
 
 
-@dataclass(frozen=True, slots=True)
-class _PathEnd:
-    """The cheapest path to a lanelet: its cost, and the end before; no way on is a break."""
-
-    cost: float
-    lanelet: str
-    before: _PathEnd | None
-    way: tuple[str, ...] | None
-
-
-def likeliest_path(
-    found: Candidates, places: NDArray[np.float64], graph: LaneletGraph
-) -> Iterator[MatchedStretch]:
-    """The stretches of the cheapest path through the candidates, ``places`` by column."""
-    ends: dict[str, _PathEnd] = {}
-    earlier: Mapping[str, Candidate] = {}
-    last = -1
-    for column, options in found.items():
-        moved = hypot(*(places[column] - places[last])) if ends else inf
-        ends = {
-            name: _step(ends, earlier, (name, option), moved, graph)
-            for name, option in options.items()
-        }
-        earlier, last = options, column
-    if ends:
-        yield from _stretches(min(ends.values(), key=lambda end: (end.cost, end.lanelet)), found)
+def _ends(
+    found: LaneCandidates, last: NDArray[intp], reached: Floats
+) -> Iterator[tuple[int, list[float]]]:
+    """The first candidate and the costs of all of each run's last state."""
+    counts = found.counts[last].tolist()
+    for first, count, costs in zip(found.first[last].tolist(), counts, reached, strict=True):
+        yield first, costs[:count].tolist()
 
 
-def _step(
-    ends: Mapping[str, _PathEnd],
-    earlier: Mapping[str, Candidate],
-    to: tuple[str, Candidate],
-    moved: float,
+def _steps(
+    found: LaneCandidates,
+    places: Floats,
+    runs: tuple[NDArray[intp], list[int]],
     graph: LaneletGraph,
-) -> _PathEnd:
-    """The cheapest path on to a candidate of the next state."""
-    name, option = to
-    best: _PathEnd | None = None
-    least, way = inf, None
-    for start, end in ends.items():
-        cost = end.cost + BREAK_COST
-        found = graph.way(start, name)
-        own = None
-        if found is not None:
-            ahead = found.length + option.along - earlier[start].along
-            # Who changes lanes moves sideways, too
-            off = max(0.0, abs(ahead - moved) - (found.sideways if found.changes else 0.0))
-            through = end.cost + off / BETA_M + CHANGE_COST * found.changes
-            if through <= cost:
-                cost, own = through, found.lanelets
-        if cost < least:
-            best, least, way = end, cost, own
-    if best is None:
-        return _PathEnd(option.cost, name, None, None)
-    weight = min(1.0, moved / (2 * SIGMA_M))
-    return _PathEnd(least + weight * option.cost, name, best, way)
+) -> Iterator[tuple[NDArray[intp], _Transitions]]:
+    """The second state of each run, then the third, and so on, with the transitions to them.
+
+    ``runs`` are where each starts, and how many go on up to each step.
+    """
+    starts, going = runs
+    states = np.concatenate([starts[:count] + step for step, count in enumerate(going)])
+    states = states[len(starts) :]
+    width = int(found.counts.max())
+    size = max(1, _AT_ONCE // width**2)
+    ends = np.cumsum(going[1:]).tolist()
+    done = step = 0
+    while step < len(ends):
+        # Whole steps, one at least
+        last = max(step + 1, int(np.searchsorted(ends, done + size, "right")))
+        block = states[done : ends[last - 1]]
+        to = _transitions(found, places, block, graph)
+        for end, count in zip(ends[step:last], going[step + 1 : last + 1], strict=True):
+            part = slice(end - count - done, end - done)
+            yield block[part], _Transitions(to.off[part], to.changes[part], to.own[part])
+        done, step = ends[last - 1], last
 
 
-def _stretches(end: _PathEnd, found: Candidates) -> Iterator[MatchedStretch]:
-    path: list[_PathEnd] = []
-    reached: _PathEnd | None = end
-    while reached is not None:
-        path.append(reached)
-        reached = reached.before
-    path.reverse()
-    columns = list(found)
-    starts = [k for k, one in enumerate(path) if one.way is None]
-    for start, stop in zip(starts, [*starts[1:], len(path)], strict=True):
-        part = path[start:stop]
-        chain, at = [part[0].lanelet], [0]
-        for one in part[1:]:
-            chain += one.way or ()
-            at.append(len(chain) - 1)
-        yield MatchedStretch(tuple(columns[start:stop]), tuple(chain), tuple(at))
+def _padded(found: LaneCandidates, states: NDArray[intp], values: Floats) -> Floats:
+    """The values of all candidates of some states, a row each."""
+    number, counts = np.arange(int(found.counts.max())), found.counts[states][:, None]
+    at = found.first[states][:, None] + np.minimum(number, counts - 1)
+    return np.where(number < counts, values[at], np.inf)
+
+
+def _transitions(
+    found: LaneCandidates, places: Floats, states: NDArray[intp], graph: LaneletGraph
+) -> _Transitions:
+    # The other way of hypot, numpy's, rounds otherwise
+    moved = np.array([hypot(*step) for step in (places[states] - places[states - 1]).tolist()])
+    weight = np.zeros(len(found.rows))
+    weight[states] = np.minimum(1.0, moved / (2 * SIGMA_M))
+    own = _padded(found, states, np.repeat(weight, found.counts) * found.costs)
+    # All pairs of a candidate and one before, end to end
+    earlier = found.counts[states - 1]
+    pairs = found.counts[states] * earlier
+    row = np.repeat(np.arange(len(states)), pairs)
+    number = np.arange(len(row)) - np.repeat(np.cumsum(pairs) - pairs, pairs)
+    end, start = np.divmod(number, earlier[row])
+    to, since = found.first[states][row] + end, found.first[states - 1][row] + start
+    count = len(found.names)
+    codes = found.lanes[since] * count + found.lanes[to]
+    ordered = np.sort(codes)
+    different = ordered[np.diff(ordered, prepend=-1) > 0]
+    ways = [
+        graph.way(*(found.names[k] for k in divmod(code, count))) for code in different.tolist()
+    ]
+    which = np.searchsorted(different, codes)
+    length = np.array([np.inf if way is None else way.length for way in ways])[which]
+    changed = np.array([0.0 if way is None else way.changes for way in ways])
+    sideways = np.array([0.0 if way is None else way.sideways for way in ways])[which]
+    ahead = length + found.along[to] - found.along[since]
+    off = np.full((*own.shape, own.shape[1]), np.inf)
+    changes = np.zeros(off.shape)
+    # Who changes lanes moves sideways, too
+    off[row, end, start] = np.maximum(0.0, np.abs(ahead - moved[row]) - sideways) / BETA_M
+    changes[row, end, start] = (CHANGE_COST * changed)[which]
+    return _Transitions(off, changes, own)
