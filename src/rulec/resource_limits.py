@@ -85,7 +85,14 @@ CUBES: Final = ResourceLimit(
     "`rulec compile` writes it to a file all the same; or say its demands in rules of their own",
 )
 
-LIMITS: Final = {limit.name: limit for limit in (CHOICES, STEPS, CUBES)}
+TYPE_DEPTH: Final = ResourceLimit(
+    "type_depth",
+    100,
+    "types, each of the next one",
+    "leave out types that no rule tells apart",
+)
+
+LIMITS: Final = {limit.name: limit for limit in (CHOICES, STEPS, CUBES, TYPE_DEPTH)}
 """All limits that can be lifted."""
 
 

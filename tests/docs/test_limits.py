@@ -8,6 +8,7 @@ import pytest
 from rulec import files
 from rulec.automata import compiler, spot_worker
 from rulec.cli.main import main
+from rulec.extraction import traffic_thresholds
 from rulec.recordings import recording
 from rulec.report.findings.code_registry import all_codes
 from rulec.resource_limits import LIMITS, MOST_DIGITS
@@ -32,8 +33,10 @@ FIXED = {
     "bytes of one line of traces": json_line_problems.LONGEST_LINE_BYTES,
     "time steps of a recording, from the first to the last": recording.MOST_STEPS,
     "time steps of a recording for one that is in it": recording.SPARSEST,
+    "`--threshold`, in its unit": traffic_thresholds.LARGEST,
     "bytes of a scenario in TOML": scenario_files.LARGEST_BYTES,
     "obstacles of a scenario": schema.MOST_OBSTACLES,
+    "surfaces of a scenario's road, and missing stretches of its lanes": schema.MOST_STRETCHES,
     "layers of a scenario's graph": time_grid.MAX_LAYERS,
 }
 

@@ -3,6 +3,7 @@
 import pytest
 
 from rulec.diagnostics import RulecError
+from rulec.resource_limits import in_force
 from rulec.rulebook.files.referenced_files import MOST_BASES
 from rulec.rulebook.loader import diagnose, load_rulebook
 
@@ -90,6 +91,16 @@ def test_what_no_one_would_write(name):
     if codes != {"R0202"}:
         # One cause, few messages.
         assert len(errors) < 20
+
+
+def test_types_in_a_chain_that_is_too_long_are_cut_where_it_is():
+    text = START + chain("type t0", "type t{here} is t{before}", 1000) + rule("p")
+    errors = errors_of(text)
+    assert {one.code for one in errors} == {"R0718"}
+    cut = [one.message.split("`")[1] for one in errors]
+    assert cut == [f"t{at}" for at in range(100, 1001, 100)]
+    with in_force(["type_depth=1001"]):
+        assert errors_of(text) == []
 
 
 @pytest.mark.parametrize(

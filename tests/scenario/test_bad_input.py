@@ -1,6 +1,7 @@
 """What is wrong with a scenario file is said with its place, in words, all of it in one run."""
 
 import os
+import re
 from contextlib import suppress
 
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
 from rulec.scenario import Scenario, load_scenario
+from rulec.scenario.time_grid import MAX_LAYERS
 
 GOOD = """\
 horizon_s = 4.0
@@ -354,3 +356,31 @@ def test_any_value_in_any_field_is_read_or_refused(tmp_path_factory, which, valu
         for problem in error.diagnostics:
             assert problem.place.line is not None
             assert problem.expected or problem.help
+
+
+def test_surfaces_beyond_number(tmp_path):
+    """Each is held against all others."""
+    surfaces = (
+        f'\n[[road.surface]]\ntype = "crossing"\ns = [{at}.0, {at}.5]' for at in range(5000)
+    )
+    (only,) = complaints(tmp_path, GOOD + "".join(surfaces))
+    assert (only.code, only.expected) == ("R0604", "expected at most 500 tables of a kind")
+
+
+ODD_NUMBERS = ["nan", "inf", "-inf", "1e308", "1e-308", "9" * 400, "9" * 5000, "-1e400"]
+
+
+@pytest.mark.parametrize("value", ODD_NUMBERS)
+def test_an_odd_number_in_any_field_is_refused_or_taken_as_it_is(value, tmp_path):
+    """None of them fails, takes memory or hangs."""
+    lines = GOOD.splitlines()
+    numbered = [n for n, line in enumerate(lines) if re.search(r"= \[?-?[0-9]", line)]
+    assert len(numbered) > 15
+    file = tmp_path / "odd.toml"
+    for number in numbered:
+        odd = re.sub(r"-?[0-9.]+", value, lines[number].partition("=")[2], count=1)
+        changed = lines[number].partition("=")[0] + "=" + odd
+        file.write_text("\n".join([*lines[:number], changed, *lines[number + 1 :]]))
+        with suppress(RulecError):
+            scenario = load_scenario(file)
+            assert scenario.horizon_s / scenario.step_s < MAX_LAYERS

@@ -6,13 +6,12 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from fractions import Fraction
-from math import isfinite
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
 from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.extraction.traffic_thresholds import USUAL, Thresholds
+from rulec.extraction.traffic_thresholds import LARGEST, USUAL, Thresholds
 from rulec.recordings.recording import Recording
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.rulebook.rulebook_model import Traffic
@@ -182,8 +181,8 @@ def threshold_options(texts: Iterable[str]) -> Thresholds:
             number = float(value)
         except ValueError:
             number = -1.0
-        if not isfinite(number) or number < 0:
-            raise ValueError(f"`{name}` is a number from 0 on, not `{value}`")
+        if not 0 <= number <= LARGEST:
+            raise ValueError(f"`{name}` is a number from 0 to {LARGEST:,.0f}, not `{value}`")
         if isinstance(known[name], int) and number != int(number):
             raise ValueError(f"`{name}` is a whole number, not `{value}`")
         numbers[name] = int(number) if isinstance(known[name], int) else number

@@ -9,6 +9,9 @@ from types import MappingProxyType
 from rulec.scenario.recorded.lane_coordinates import TOUCHING_M
 from rulec.value_display import short_repr
 
+LARGEST = 1_000_000.0
+"""A threshold in m, s or km/h that is larger means nothing on a road, and overflows."""
+
 
 @dataclass(frozen=True, slots=True)
 class Thresholds:

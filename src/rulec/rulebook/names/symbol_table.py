@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span
+from rulec.resource_limits import TYPE_DEPTH
 from rulec.rulebook.names import declaration_messages as say
 from rulec.rulebook.names.declaration_messages import TYPE_CIRCLE
 from rulec.syntax import tree
@@ -99,12 +100,12 @@ class SymbolTable:
 
     def ancestors(self, type_name: str) -> list[str]:
         """The type and those above it; stops where they close a circle."""
-        names: list[str] = []
+        names: dict[str, None] = {}
         current: str | None = type_name
         while current is not None and current in self.types and current not in names:
-            names.append(current)
+            names[current] = None
             current = self.types[current].parent
-        return names
+        return list(names)
 
     def fits(self, type_name: str, wanted: str) -> bool:
         """Tell whether a type may be a subtype of ``wanted``."""
@@ -167,8 +168,33 @@ def _declare_types(symbols: SymbolTable, file: tree.File) -> None:
         if parent is not None and symbols.known_type(parent, symbols.mistakes.append) is None:
             symbols.types[item.name.text] = ObjectType(item.name.text)
             symbols.uncertain.add(item.name.text)
+    _limit_depth(symbols, fresh)
     for item in fresh:
         _break_circle(symbols, item)
+
+
+def _limit_depth(symbols: SymbolTable, fresh: Sequence[tree.TypeItem]) -> None:
+    """Cut chains of types that are too long for all that goes through them."""
+    most = TYPE_DEPTH.value()
+    depths: dict[str, int] = {}
+    for item in fresh:
+        chain = []
+        current: str | None = item.name.text
+        while current is not None and current in symbols.types and current not in depths:
+            depths[current] = 0  # where it closes a circle
+            chain.append(current)
+            current = symbols.types[current].parent
+        depth = depths.get(current, 0) if current is not None else 0
+        for name in reversed(chain):
+            depth += 1
+            if depth > most:
+                span = symbols.type_spans[name]
+                error = TYPE_DEPTH.exceeded(span.place, f"type `{name}`")
+                symbols.mistakes += error.diagnostics
+                symbols.types[name] = ObjectType(name)
+                symbols.uncertain.add(name)
+                depth = 1
+            depths[name] = depth
 
 
 def _break_circle(symbols: SymbolTable, item: tree.TypeItem) -> None:

@@ -13,7 +13,15 @@ from rulec.scenario.motion import swept
 from rulec.scenario.scenario_model import Ego, MissingLane, Road, Scenario, SignalValue, Stretch
 from rulec.scenario.time_grid import timing
 from rulec.scenario.toml.obstacle_tables import LocatedObstacle, read_obstacles, read_signals
-from rulec.scenario.toml.schema import RawEgo, RawGoal, RawMissing, RawRoad, RawScenario, RawSurface
+from rulec.scenario.toml.schema import (
+    MOST_STRETCHES,
+    RawEgo,
+    RawGoal,
+    RawMissing,
+    RawRoad,
+    RawScenario,
+    RawSurface,
+)
 from rulec.scenario.toml.toml_tables import TomlFile, TomlTable, quoted
 
 NARROWEST_M = 0.01
@@ -76,6 +84,8 @@ def _road(raw: object, file: TomlFile) -> Road | None:
 
 def _stretches(raw: object, file: TomlFile) -> Iterator[Stretch]:
     before: list[RawSurface] = []
+    if isinstance(raw, list) and len(raw) > MOST_STRETCHES:
+        return  # which the road has said
     for table, part in _parts(RawSurface, raw, "road.surface", file):
         for other in before:
             apart = part.s[1] <= other.s[0] or other.s[1] <= part.s[0]
@@ -90,6 +100,8 @@ def _stretches(raw: object, file: TomlFile) -> Iterator[Stretch]:
 
 
 def _missing(raw: object, count: int | None, file: TomlFile) -> Iterator[MissingLane]:
+    if isinstance(raw, list) and len(raw) > MOST_STRETCHES:
+        return
     for table, part in _parts(RawMissing, raw, "road.missing", file):
         if count is None or part.lane <= count:
             yield MissingLane(part.lane, part.s)

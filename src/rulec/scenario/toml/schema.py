@@ -14,6 +14,8 @@ from rulec.scenario.scenario_model import SURFACES, Surface
 
 FARTHEST_M = 1_000_000
 MOST_OBSTACLES = 500
+MOST_STRETCHES = 500
+"""Surfaces of a road, and missing stretches of its lanes: each is held against all others."""
 _Metres = Annotated[float, Meta(ge=-FARTHEST_M, le=FARTHEST_M)]
 _Speed = Annotated[float, Meta(ge=-1000, le=1000)]
 _PRINTABLE = r"^[^\x00-\x1f\x7f]+$"
@@ -68,6 +70,10 @@ TimedPositions = Annotated[
 ]
 TableField = Annotated[dict[str, Any], Meta(description="a table")]
 TablesField = Annotated[list[Any], Meta(description="tables, each under its own `[[heading]]`")]
+StretchesField = Annotated[
+    list[Any],
+    Meta(max_length=MOST_STRETCHES, description=f"at most {MOST_STRETCHES} tables of a kind"),
+]
 ObstaclesField = Annotated[
     list[Any],
     Meta(max_length=MOST_OBSTACLES, description=f"at most {MOST_OBSTACLES} `[[obstacle]]`"),
@@ -104,8 +110,8 @@ class RawRoad(Struct):
 
     s: IntervalField
     lanes: LaneBounds
-    surface: TablesField = []
-    missing: TablesField = []
+    surface: StretchesField = []
+    missing: StretchesField = []
 
 
 class RawSurface(Struct):
