@@ -19,7 +19,6 @@ from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.trace.formats import csv_table, json_lines
-from rulec.trace.formats.arrow import arrow_blocks
 from rulec.trace.formats.trace_files import read_chunks, write_traces
 from rulec.vocabulary.written_numbers import WrittenNumber, number_written
 
@@ -83,7 +82,6 @@ def test_a_number_counts_as_it_is_written(rules, numbers):
         assert violated(verify_items(traces, rules)[1]) == expected
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(csv_table, "LARGE_BYTES", 0)
-        patch.setattr(arrow_blocks, "_FEW", 2)
         patch.setattr(batch_verify, "_FEWEST_ROWS", 0)
         chunks = list(read_chunks(io.BytesIO(table.encode()), "t", "csv"))
         found = [answer for chunk in chunks for answer in verify_items(chunk, rules)[1]]

@@ -6,6 +6,7 @@ Whatever is odd about a trace, from an unknown name to a missing value, is left 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
@@ -255,9 +256,9 @@ def violations_in(
 def verify_items(items: Items, rulebook: CompiledRulebook) -> tuple[Items, Sequence[Answer]]:
     """Traces as they were read, perhaps a block, and their answers."""
     if isinstance(items, Block):
-        answers = _verify_block(items, rulebook)
-        if answers is not None:
-            return items, answers
+        judged = _verify_block(items, rulebook)
+        if judged is not None:
+            return judged
         items = list(items)
     return items, verify_chunk(items, rulebook)
 
@@ -271,24 +272,24 @@ def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> Compil
     return rulebook_for_trace(trace, rulebook)
 
 
-def _verify_block(block: Block, rulebook: CompiledRulebook) -> list[Answer] | None:
-    """None if something is odd about the block."""
+def _verify_block(
+    block: Block, rulebook: CompiledRulebook
+) -> tuple[Block, Sequence[Answer]] | None:
+    """The block with its outline, and its answers; None if something is odd about it."""
     answers: list[Answer | None] = [None] * len(block)
-    if len(block.partial) * 2 > len(block):
-        return None
     try:
         presence = outlined(block)
         groups = groups_of(block, presence)
-        if len(groups) * _FEWEST_ROWS > len(presence.trace) + _FEWEST_ROWS:
+        if len(groups) > 1 and len(groups) * _FEWEST_ROWS > len(presence.trace) + _FEWEST_ROWS:
             return None
         for group in groups:
             _verify_block_group(group, rulebook, answers)
     except (OddTableError, UnencodableError, NotGivenError, RulecError):
         return None
-    return [
-        verify_or_reason(block[place], rulebook) if answer is None else answer
-        for place, answer in enumerate(answers)
-    ]
+    block = replace(block, outline=presence)
+    left = [place for place, answer in enumerate(answers) if answer is None]
+    others = iter(verify_chunk([block[place] for place in left], rulebook))
+    return block, [next(others) if answer is None else answer for answer in answers]
 
 
 def _changes(values: Array, layout: Layout) -> bool:

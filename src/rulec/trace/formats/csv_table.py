@@ -73,10 +73,10 @@ def _columns_if_large(stream: IO[bytes]) -> list[str] | None:
     stream.seek(start)
     if size >= LARGE_BYTES:
         line = stream.readline(_LONGEST_HEAD_BYTES).removeprefix(b"\xef\xbb\xbf")
-        with suppress(UnicodeDecodeError, RulecError):
-            columns = line.decode().rstrip("\r\n").split(",")
+        with suppress(UnicodeDecodeError, RulecError, csv.Error, StopIteration):
+            columns = next(csv.reader([line.decode().rstrip("\r\n")], strict=True))
             tables.check_columns(columns, SourceLocation(""))
-            if line.endswith(b"\n") and not re.search(rb'["\0]|\r(?!\n)', line):
+            if line.endswith(b"\n") and not re.search(rb"\0|\r(?!\n)", line):
                 return columns
         stream.seek(start)
     return None

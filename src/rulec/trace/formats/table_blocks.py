@@ -38,10 +38,14 @@ class Coded:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Numbers:
-    """Column of ``float64``; cells that are not ``given`` are arbitrary."""
+    """Column of ``float64``; cells that are not ``given`` are arbitrary.
+
+    They are ``whole`` if the table has whole numbers.
+    """
 
     numbers: NDArray[np.float64]
     given: NDArray[np.bool_]
+    whole: bool = False
 
 
 Column = Coded | Numbers
@@ -54,7 +58,8 @@ class Block(Sequence["Trace | RulecError"]):
     ``columns`` has what is in the ``table``'s columns. ``starts`` are the rows with which traces
     begin, counted from 0, and how many rows there are. ``rows`` gives those from one to another
     (exclusive) as ``traces_in`` reads them. ``partial`` are the traces of which something is not
-    known, which the columns do not say.
+    known or no float, ``unsaid`` those of them of which the columns do not say it. With an
+    ``outline`` nothing else is odd, and traces are made from it and from columns.
     """
 
     table: tables.Table
@@ -63,6 +68,8 @@ class Block(Sequence["Trace | RulecError"]):
     rows: Callable[[int, int], Iterable[tables.Row]]
     file: SourceLocation
     partial: frozenset[int] = frozenset()
+    unsaid: frozenset[int] = frozenset()
+    outline: BlockPresence | None = None
 
     def __len__(self) -> int:
         return len(self.starts) - 1
@@ -75,6 +82,10 @@ class Block(Sequence["Trace | RulecError"]):
         if isinstance(place, slice):
             return [self[index] for index in range(len(self))[place]]
         place = range(len(self))[place]
+        if self.outline is not None and place not in self.unsaid:
+            outlined_trace = _outlined_trace(self, self.outline, place)
+            if outlined_trace is not None:
+                return outlined_trace
         (trace,) = self._read(int(self.starts[place]), int(self.starts[place + 1]))
         return trace
 
@@ -163,22 +174,18 @@ def outlined(block: Block) -> BlockPresence:
     if (types.given & ~is_about).any() or (others.given & ~is_about).any():
         raise OddTableError
     rows = np.flatnonzero(is_about)
-    keys = trace[rows] * max(len(items.values), 1) + items.codes[rows]
-    known, first, which = np.unique(keys, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.argsort(order)
-    first_row = rows[first[order]]
+    which = _ObjectNumbers.of(trace[rows], items.codes[rows], len(block), len(items.values))
+    first_row, numbers = rows[which.first], which.numbers
     owner = trace[first_row]
     starts_of_objects = np.searchsorted(owner, np.arange(len(block) + 1))
 
-    numbers = rank[which]
     item = np.full(n_rows, NOBODY)
     item[rows] = numbers - starts_of_objects[trace[rows]]
     kind, given = types.codes[first_row], types.codes[rows]
     if (kind < 0).any() or ((given != kind[numbers]) & (given >= 0)).any():
         raise OddTableError
     # Rows are in the order of steps.
-    last_row = np.zeros(len(order), dtype=np.int64)
+    last_row = np.zeros(len(first_row), dtype=np.int64)
     last_row[numbers] = rows
     stretches = np.stack([step[first_row], step[last_row]], axis=1)
     is_always = (stretches[:, 0] == 0) & (stretches[:, 1] == length[owner] - 1)
@@ -187,7 +194,7 @@ def outlined(block: Block) -> BlockPresence:
         trace=trace,
         step=step,
         item=item,
-        other=_others(others, items, trace, (known, rank), starts_of_objects),
+        other=_others(others, items, trace, which, starts_of_objects),
         names=[names.values[code] for code in names.codes[starts[:-1]].tolist()],
         length=length,
         step_s=_step_s(block.columns.get(STEP_S), trace, starts),
@@ -196,6 +203,52 @@ def outlined(block: Block) -> BlockPresence:
         types=[types.values[code] for code in kind.tolist()],
         stretches=stretches,
     )
+
+
+def _outlined_trace(block: Block, outline: BlockPresence, place: int) -> Trace | None:
+    """A trace from its columns; None if something is said twice."""
+    start, stop = block.starts[place : place + 2].tolist()
+    rows = slice(start, stop)
+    steps, names = outline.step[rows].tolist(), outline.objects_of(place)
+    items, others = outline.item[rows].tolist(), outline.other[rows].tolist()
+    states: list[dict[str, Any]] = [{} for _ in range(int(outline.length[place]))]
+    for name in block.table.names:
+        column = block.columns[name]
+        where = np.flatnonzero(column.given[rows])
+        for row, value in zip(where.tolist(), cells_of(column, where + start), strict=True):
+            of, last = states[steps[row]], name
+            if items[row] != NOBODY:
+                of, last = of.setdefault(name, {}), names[items[row]]
+                if others[row] != NOBODY and type(of) is dict:
+                    of, last = of.setdefault(last, {}), names[others[row]]
+            if type(of) is not dict or last in of:
+                return None
+            of[last] = value
+    own = slice(*outline.starts[place : place + 2].tolist())
+    step_s = block.columns.get(STEP_S)
+    is_said = step_s is not None and step_s.given[start]
+    ((number, _),) = block.rows(start, start + 1)
+    return Trace(
+        id=outline.names[place],
+        step_s=cells_of(step_s, np.array([start]))[0] if step_s and is_said else 1.0,
+        objects=dict(zip(names, outline.types[own], strict=True)),
+        states=tuple(states),
+        present={
+            name: (first, last)
+            for name, (first, last) in zip(names, outline.stretches[own].tolist(), strict=True)
+            if first != NOBODY
+        },
+        place=block.table.place(number),
+    )
+
+
+def cells_of(column: Column, rows: Rows) -> list[Any]:
+    """The values of a column in rows that have some."""
+    if isinstance(column, Coded):
+        return [column.values[code] for code in column.codes[rows].tolist()]
+    numbers = column.numbers[rows]
+    cells: list[Any] = (numbers.astype(np.int64) if column.whole else numbers).tolist()
+    return cells
 
 
 def _names(column: Column) -> Coded:
@@ -207,18 +260,71 @@ def _names(column: Column) -> Coded:
 def _steps(column: Column) -> Rows:
     if isinstance(column, Numbers):
         raise OddTableError
-    table = [tables.whole(value) for value in column.values]
     most = len(column.codes)
+    if isinstance(column.values, range) and len(column.values) == most:
+        if (column.codes < 0).any():
+            raise OddTableError
+        return column.codes.astype(np.int64, copy=False)
+    table = [tables.whole(value) for value in column.values]
     if (column.codes < 0).any() or not all(entry is not None and entry < most for entry in table):
         raise OddTableError
     return np.array(table, dtype=np.int64).take(column.codes)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _ObjectNumbers:
+    """Numbers of objects, in the order of their first rows among those that are about some.
+
+    ``numbers`` are those of the rows, ``first`` the first row of each. ``_of_key`` has the numbers
+    by keys, -1 for those that are none; a key is a name's code alone if each is met in one trace
+    only, which is ``_owner`` then.
+    """
+
+    numbers: Rows
+    first: Rows
+    _of_key: Rows
+    _owner: Rows | None
+    _n_codes: int
+
+    @classmethod
+    def of(cls, trace: Rows, codes: NDArray[Any], n_traces: int, n_codes: int) -> _ObjectNumbers:
+        """The numbers of the objects of rows of traces."""
+        owner_of_code = np.full(n_codes, -1)
+        owner_of_code[codes] = trace
+        owner: Rows | None = owner_of_code
+        keys, n_keys = codes, n_codes
+        if (owner_of_code[codes] != trace).any():
+            owner, keys, n_keys = None, trace * n_codes + codes, n_traces * n_codes
+            if n_keys > _MOST_KEYS * max(len(keys), 1):
+                raise OddTableError
+        # What is written last stays.
+        first_of_key = np.full(n_keys, -1)
+        first_of_key[keys[::-1]] = np.arange(len(keys))[::-1]
+        met = np.flatnonzero(first_of_key >= 0)
+        first = first_of_key[met]
+        order = np.argsort(first)
+        number_of_key = np.full(n_keys, -1)
+        number_of_key[met[order]] = np.arange(len(met))
+        return cls(number_of_key[keys], first[order], number_of_key, owner, n_codes)
+
+    def of_others(self, trace: Rows, codes: NDArray[Any]) -> Rows:
+        """The numbers of objects of traces, -1 for those that are none."""
+        if not len(self.first):
+            return np.full(len(trace), -1)
+        if self._owner is None:
+            return np.where(codes < 0, -1, self._of_key[trace * self._n_codes + codes])
+        return np.where((codes < 0) | (self._owner[codes] != trace), -1, self._of_key[codes])
+
+
+_MOST_KEYS = 64
+"""So many times as many pairs of traces and names as there are rows may be told apart."""
 
 
 def _others(
     others: Coded,
     items: Coded,
     trace: Rows,
-    known: tuple[NDArray[np.int64], NDArray[np.int64]],
+    which: _ObjectNumbers,
     starts: NDArray[np.int64],
 ) -> Rows:
     result = np.full(len(trace), NOBODY)
@@ -227,12 +333,10 @@ def _others(
         return result
     places = {name: place for place, name in enumerate(items.values)}
     codes = np.array([places.get(name, -1) for name in others.values]).take(others.codes[rows])
-    keys, rank = known
-    keys_of_rows = trace[rows] * max(len(items.values), 1) + codes
-    at = np.minimum(np.searchsorted(keys, keys_of_rows), len(keys) - 1)
-    if (codes < 0).any() or (keys[at] != keys_of_rows).any():
+    numbers = which.of_others(trace[rows], codes)
+    if (numbers < 0).any():
         raise OddTableError
-    result[rows] = rank[at] - starts[trace[rows]]
+    result[rows] = numbers - starts[trace[rows]]
     return result
 
 

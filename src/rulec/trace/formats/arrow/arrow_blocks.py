@@ -13,10 +13,18 @@ from pyarrow import compute, types
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats import table_blocks as blocks
+from rulec.trace.formats.arrow.arrow_arrays import (
+    codes_in,
+    given_in,
+    lengths_in,
+    numbers_in,
+    truths_in,
+)
 from rulec.trace.formats.table_reader import (
     NAMES,
     OWN,
     PARTIAL,
+    STEP,
     TRACE,
     Row,
     Table,
@@ -30,12 +38,10 @@ from rulec.vocabulary.written_numbers import WrittenNumber, number_written
 Piece = Any
 """A record batch."""
 
-NUMBER = r"\A[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\z"
-"""A number in a text, as ``csv_table`` knows it."""
-
-_FEW = 1 << 10
 _SHORT = 15
-"""Numbers of so many characters are floats, but for those with an exponent."""
+"""Numbers of so many characters are floats, but for tiny ones with an exponent."""
+
+_TINY = 1e-290
 
 
 def cut(
@@ -91,16 +97,19 @@ def _block(
         columns = columns_of(whole, table)
     except (blocks.OddTableError, ValueError):  # a number that cannot be
         return list(traces_in(_rows([whole], first), table, file))
+    said = np.zeros(len(whole), dtype=bool)
     for column in columns.values():
-        partial |= _no_floats(column)
+        said |= _odd_values(column)
     starts = np.append(blocks.trace_starts(coded(whole.column(table.at[TRACE]))), len(whole))
 
     def rows(start: int, stop: int) -> Iterator[Row]:
         return _rows([whole.slice(start, stop - start)], first + start)
 
-    owner = np.searchsorted(starts, np.flatnonzero(partial), "right") - 1
-    partial_traces = frozenset(owner.tolist())
-    return blocks.Block(table, columns, starts, rows, file, partial=partial_traces)
+    unsaid, others = (
+        frozenset((np.searchsorted(starts, np.flatnonzero(flags), "right") - 1).tolist())
+        for flags in (partial, said)
+    )
+    return blocks.Block(table, columns, starts, rows, file, partial=unsaid | others, unsaid=unsaid)
 
 
 def _partial_rows(piece: Piece, table: Table) -> NDArray[np.bool_]:
@@ -109,23 +118,16 @@ def _partial_rows(piece: Piece, table: Table) -> NDArray[np.bool_]:
     bounds = chain.from_iterable(table.intervals.values())
     for place in (*(table.at[name] for name in PARTIAL if name in table.at), *bounds):
         array = piece.column(place)
-        said = compute.is_valid(array)
-        if types.is_string(array.type):
-            said = compute.and_kleene(said, compute.not_equal(array, ""))
-        rows |= said.fill_null(False).to_numpy(zero_copy_only=False)
-    if table.has_texts:
-        for name in table.names:
-            is_mark = compute.equal(piece.column(table.at[name]), UNKNOWN.value)
-            if compute.any(is_mark).as_py():
-                rows |= is_mark.fill_null(False).to_numpy(zero_copy_only=False)
+        is_text = types.is_string(array.type) or types.is_dictionary(array.type)
+        rows |= coded(array).given if is_text else given_in(array)
     return rows
 
 
-def _no_floats(column: blocks.Column) -> NDArray[np.bool_] | bool:
-    """The rows with numbers that no float stands for."""
-    if isinstance(column, blocks.Numbers):
+def _odd_values(column: blocks.Column) -> NDArray[np.bool_] | bool:
+    """The rows with what is unknown, or with numbers that no float stands for."""
+    if isinstance(column, blocks.Numbers) or isinstance(column.values, range):
         return False
-    which = [type(value) is WrittenNumber for value in column.values]
+    which = [value is UNKNOWN or type(value) is WrittenNumber for value in column.values]
     return np.array(which).take(column.codes) & column.given if any(which) else False
 
 
@@ -143,14 +145,18 @@ def columns_of(piece: Any, table: Table) -> Mapping[str, blocks.Column]:
         if name in PARTIAL or name not in table.at:
             continue
         array = piece.column(table.at[name])
-        if types.is_dictionary(array.type):
-            array = array.dictionary_decode()  # whose values need not be distinct
-        if name in NAMES:
+        steps = _whole(array) if name == STEP else None
+        if steps is not None:
+            columns[name] = steps
+        elif name in NAMES:
             columns[name] = coded(array)
         elif table.has_texts:
-            columns[name] = _read(coded(array), table.value)
+            columns[name] = _texts_read(array, table.value)
         elif types.is_integer(array.type) or types.is_floating(array.type):
             columns[name] = _numbers(array)
+        elif types.is_boolean(array.type):
+            codes = np.where(given_in(array), truths_in(array), np.int8(-1))
+            columns[name] = blocks.Coded(codes, (False, True))
         else:
             columns[name] = coded(array)
     return columns
@@ -158,11 +164,7 @@ def columns_of(piece: Any, table: Table) -> Mapping[str, blocks.Column]:
 
 def coded(array: Any) -> blocks.Coded:
     """Column of dictionary codes; empty texts are no value."""
-    if types.is_null(array.type):
-        return blocks.Coded(np.full(len(array), -1), ())
-    encoded = array.dictionary_encode()
-    values = encoded.dictionary.to_pylist()
-    codes = encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False)
+    codes, values = codes_in(array)
     if "" in values:
         codes = np.where(codes == values.index(""), -1, codes)
     return blocks.Coded(codes, values)
@@ -170,39 +172,66 @@ def coded(array: Any) -> blocks.Coded:
 
 def _numbers(array: Any) -> blocks.Numbers:
     try:
-        numbers = array.cast(pyarrow.float64()).fill_null(0)
+        numbers = numbers_in(array.cast(pyarrow.float64()))
     except pyarrow.ArrowInvalid:  # floats cannot tell such whole numbers apart
         raise blocks.OddTableError from None
-    given = compute.is_valid(array)
-    return blocks.Numbers(
-        numbers.to_numpy(zero_copy_only=False), given.to_numpy(zero_copy_only=False)
-    )
+    return blocks.Numbers(numbers, given_in(array), whole=types.is_integer(array.type))
 
 
-def _read(texts: blocks.Coded, value: Callable[[str], PartialValue]) -> blocks.Column:
-    if UNKNOWN.value in texts.values:  # its rows are read one by one
-        place = texts.values.index(UNKNOWN.value)
-        texts = blocks.Coded(np.where(texts.codes == place, -1, texts.codes), texts.values)
-        texts = blocks.Coded(texts.codes, ["" if x == UNKNOWN.value else x for x in texts.values])
-    if len(texts.values) > _FEW:
-        written = pyarrow.array([text or "0" for text in texts.values])
-        if compute.all(compute.match_substring_regex(written, NUMBER)).as_py():
-            try:
-                numbers = written.cast(pyarrow.float64())
-                if _are_floats(written, numbers):
-                    numbers = numbers.to_numpy()
-                    return blocks.Numbers(numbers.take(texts.codes, mode="clip"), texts.given)
-            except pyarrow.ArrowInvalid:  # such as `.5`, which Arrow does not read
-                pass
+def _whole(array: Any) -> blocks.Coded | None:
+    """Steps as places among themselves; None if their texts say something else."""
+    if types.is_string(array.type):
+        lengths = lengths_in(array)
+        try:
+            array = array.cast(pyarrow.int64())
+        except pyarrow.ArrowInvalid:
+            return None
+        # Arrow reads `0x10` and `-0`, too.
+        if (lengths != _n_digits(numbers_in(array)))[given_in(array)].any():
+            return None
+    if not types.is_int64(array.type):
+        return None
+    steps = numbers_in(array)
+    fits = given_in(array) & (steps >= 0) & (steps < len(steps))
+    return blocks.Coded(np.where(fits, steps, -1), range(len(steps)))
+
+
+def _n_digits(steps: NDArray[np.int64]) -> NDArray[np.intp]:
+    return np.searchsorted(10 ** np.arange(1, 19), steps, "right") + 1
+
+
+def _texts_read(array: Any, value: Callable[[str], PartialValue]) -> blocks.Column:
+    """A column of texts, or of the numbers that they say."""
+    numbers = _numbers_said(array)
+    if numbers is not None:
+        return numbers
+    texts = coded(array)
     return blocks.Coded(texts.codes, [value(text) if text else "" for text in texts.values])
 
 
-def _are_floats(texts: Any, numbers: Any) -> bool:
-    """Whether each text is the decimal that its float stands for."""
-    long = compute.greater(compute.binary_length(texts), _SHORT)
-    long = compute.or_(long, compute.match_substring(texts, "e", ignore_case=True))
-    doubtful = compute.and_(long, compute.not_equal(numbers.cast(pyarrow.string()), texts))
-    return not any(
-        isinstance(number_written(text), WrittenNumber)
-        for text in texts.filter(doubtful).to_pylist()
-    )
+def _numbers_said(array: Any) -> blocks.Numbers | None:
+    """The numbers of a column in which each text is the decimal that its float stands for."""
+    if array.null_count == len(array):
+        return None
+    try:
+        found = array.cast(pyarrow.float64())
+    except pyarrow.ArrowInvalid:  # of numbers there are some that Arrow does not read, such as `.5`
+        return None
+    numbers, given = numbers_in(found), given_in(array)
+    sizes = np.abs(numbers[given])
+    # Arrow reads `nan`; and what is written with an exponent may be nearer to 0 than any float.
+    if not np.isfinite(sizes).all():
+        return None
+    is_tiny = not sizes.min(initial=1.0) > _TINY
+    if is_tiny and compute.any(compute.match_substring(array, "e", ignore_case=True)).as_py():
+        return None
+    long = np.flatnonzero((lengths_in(array) > _SHORT) & given)
+    if len(long):
+        places = pyarrow.Array.from_buffers(
+            pyarrow.int64(), len(long), [None, pyarrow.py_buffer(long.astype(np.int64))]
+        )
+        texts, again = array.take(places), found.take(places).cast(pyarrow.string())
+        others = texts.filter(compute.not_equal(texts, again)).to_pylist()
+        if any(isinstance(number_written(text), WrittenNumber) for text in others):
+            return None
+    return blocks.Numbers(numbers, given)

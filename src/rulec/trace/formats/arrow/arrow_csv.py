@@ -71,7 +71,11 @@ def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
                 use_threads=False, block_size=len(lines) + 1, column_names=list(columns)
             ),
             csv.ParseOptions(quote_char=False),
-            csv.ConvertOptions(column_types=dict.fromkeys(columns, pyarrow.string())),
+            csv.ConvertOptions(
+                column_types=dict.fromkeys(columns, pyarrow.string()),
+                null_values=[""],
+                strings_can_be_null=True,
+            ),
         )
     except pyarrow.ArrowException:
         return None

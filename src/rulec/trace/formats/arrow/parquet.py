@@ -26,7 +26,7 @@ from rulec.trace.trace_model import Trace
 if TYPE_CHECKING:
     from rulec.trace.formats.arrow.arrow_blocks import Piece
 
-_ROWS_AT_ONCE = 1 << 16
+_ROWS_AT_ONCE = 1 << 17
 
 _MARK = b"PAR1"
 """How Parquet begins and ends."""
@@ -48,11 +48,15 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     if refused is not None:
         yield [refused]
         return
+    start = stream.tell()
     try:
         source = parquet.ParquetFile(stream)
         schema = source.schema_arrow
         check_columns(schema.names, SourceLocation(file))
         check_types(schema, pyarrow, file)
+        stream.seek(start)
+        # Few texts are met again and again; told apart by codes they need not be compared.
+        source = parquet.ParquetFile(stream, read_dictionary=_texts(schema, pyarrow))
     except RulecError as error:
         yield [error]
         return
@@ -67,6 +71,10 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     table = Table(tuple(schema.names), lambda value: value, lambda row: SourceLocation(file, row))
     problems = (pyarrow.ArrowException, OSError, ValueError)
     yield from cut(_pieces(source, problems, file), table, 1, SourceLocation(file))
+
+
+def _texts(schema: Any, pyarrow: Any) -> list[str]:
+    return [field.name for field in schema if pyarrow.types.is_string(field.type)]
 
 
 def _pieces(
