@@ -22,6 +22,7 @@ from rulec.report.rulebooks.audit_report import AuditDocument
 from rulec.report.rulebooks.diff_json import DiffDocument, TraceData
 from rulec.report.rulebooks.lineage_tree import ForestDocument, LineageDocument
 from rulec.report.rulebooks.matrix_report import MatrixDocument
+from rulec.report.rulebooks.proof_report import ProofsDocument
 from rulec.report.rulebooks.rule_json import RulesDocument
 from rulec.report.tests.example_json import ExamplesRun
 from rulec.report.text.listing import ListingDocument
@@ -45,6 +46,7 @@ SCHEMAS: Mapping[str, tuple[Any, ...]] = {
     "matrix": (MatrixDocument,),
     "moment": (MomentLine,),
     "monitor": (SavedMonitor,),
+    "proofs": (ProofsDocument,),
     "rates": (RatesDocument,),
     "show": (RulesDocument,),
     "state": (StateVerdict, StateRefused),

@@ -148,6 +148,10 @@ def test_a_compiled_rulebook_and_a_saved_monitor_keep_to_theirs(run, monkeypatch
     compiled = json.loads((tmp_path / "out" / "esterle2019.json").read_text())
     validator("compiled").validate(compiled)
     assert compiled["version"] == 6
+    path = str(tmp_path / "out" / "esterle2019.json")
+    proofs = json.loads(run(["verify-compiled", path, "--json"]))
+    validator("proofs").validate(proofs)
+    assert [rule["proved"] for rule in proofs["files"][0]["rules"]] == [True] * 3
     saved = tmp_path / "saved.json"
     answers_of(run, monkeypatch, tmp_path, ["monitor", "esterle2019", "--save", str(saved)])
     monitor = json.loads(saved.read_text())

@@ -39,6 +39,7 @@ VERBS = {
     "traces": "Write all maneuvers of a scenario as traces.",
     "tree": "Show what a rulebook inherits, overrides and drops.",
     "verify": "Judge traces by a rulebook.",
+    "verify-compiled": "Prove that compiled tables do what their formulas say.",
 }
 
 
@@ -51,7 +52,8 @@ class _Verbs(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in VERBS:
             return None
-        command: click.Command = import_module(f"rulec.cli.commands.{cmd_name}").command
+        module = cmd_name.replace("-", "_")
+        command: click.Command = import_module(f"rulec.cli.commands.{module}").command
         command.short_help = VERBS[cmd_name]  # a shell that completes shows it, too
         command.name = cmd_name  # in the files all of them are called `command`
         return command

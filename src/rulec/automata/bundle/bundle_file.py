@@ -194,6 +194,15 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
         raise _damaged(file, f"this compiled rulebook is damaged: {json_words(problem)}") from None
 
 
+def refusal(data: bytes, file: str, why: str) -> RulecError:
+    """The error with which a file is refused; if only others refuse it, R0404 with their reason."""
+    try:
+        from_json(data, file)
+    except RulecError as error:
+        return error
+    return _damaged(file, f"this compiled rulebook is damaged: {why}")
+
+
 def _damaged(file: str, message: str) -> RulecError:
     return DAMAGED_BUNDLE.error(
         SourceLocation(file), message, help="compile it again from its source with `rulec compile`"

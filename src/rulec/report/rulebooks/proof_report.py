@@ -1,0 +1,66 @@
+"""What has been proved of compiled rulebooks, as text and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import msgspec
+
+from rulec.report.json_document import JsonDocument, as_indented
+from rulec.report.text.terminal_text import visible
+from rulec.validation.file_proof import RuleProof
+
+
+class ProofLine(msgspec.Struct, frozen=True):
+    """A rule of a file: ``because`` says why it is not proved, null if it is.
+
+    ``step_s`` is the step that its tables are for, as the file spells it, null for any. ``states``
+    are a shortest trace that they judge otherwise than the formula, if that is why.
+    """
+
+    rule: str
+    step_s: str | None
+    proved: bool
+    because: str | None
+    states: Sequence[Mapping[str, str]]
+
+
+class FileProofs(msgspec.Struct, frozen=True):
+    """The rules of a file."""
+
+    file: str
+    rules: Sequence[ProofLine]
+
+
+class ProofsDocument(JsonDocument, frozen=True, kw_only=True):
+    """What has been found of each rule of each file."""
+
+    files: Sequence[FileProofs]
+
+
+def render(proofs: Sequence[tuple[str, Sequence[RuleProof]]], output_format: str) -> str:
+    """What has been found of each file, as ``text`` or ``json``."""
+    if output_format == "json":
+        files = [FileProofs(name, [_line(proof) for proof in own]) for name, own in proofs]
+        return as_indented(ProofsDocument(files=files))
+    return "\n".join(_text(proofs))
+
+
+def _line(proof: RuleProof) -> ProofLine:
+    because = proof.because or None
+    return ProofLine(proof.rule, proof.step_s, because is None, because, proof.word)
+
+
+def _text(proofs: Sequence[tuple[str, Sequence[RuleProof]]]) -> Iterator[str]:
+    for name, own in proofs:
+        for proof in own:
+            at = "" if proof.step_s is None else f" at steps of {proof.step_s} s"
+            found = f"not proved, because {proof.because}" if proof.because else "proved"
+            yield visible(f"{name}: rule {proof.rule}{at}: {found}")
+            for number, state in enumerate(proof.word):
+                read = ", ".join(f"{subject}: {value}" for subject, value in state.items())
+                yield visible(f"  state {number}: {read}")
+    rules = [proof for _, own in proofs for proof in own]
+    proved = sum(not proof.because for proof in rules)
+    count = "1 rule" if len(rules) == 1 else f"{len(rules)} rules"
+    yield f"{count}: {proved} proved, {len(rules) - proved} not proved"

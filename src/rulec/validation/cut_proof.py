@@ -1,0 +1,110 @@
+"""A table for traces that are cut, held against the formula from every past that there can be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rulec.validation.letters import Letters
+from rulec.validation.progression import State
+from rulec.validation.table_proof import MOST_STATES, FormulaMachine, Table, led_to
+from rulec.validation.unprovable import require
+
+_KEPT, _PENDING, _VIOLATED = range(3)
+MOST_ATOMS = 1 << 12
+"""So many sets of letters that everything treats alike are told apart."""
+
+
+def prove_cut_table(machine: FormulaMachine, entry: Mapping[str, Any], letters: Letters) -> None:
+    """Raise UnprovableError unless a table for cut traces gives every word its formula's outcome.
+
+    What was before is unknown: a run begins in all states that some past leads to. The states of
+    both sides that no word tells apart are found together, by Moore's partition refinement, and the
+    states that runs begin in have to be the same ones.
+    """
+    table = Table.read(entry, "outcomes", letters, machine.possible)
+    starts = entry["starts"]
+    known = len(starts) > 0 and all(
+        type(s) is int and 0 <= s < len(table.following) for s in starts
+    )
+    require(known, "its table for cut traces begins nowhere")
+    own_starts = [State(machine.progression.start.demand, past) for past in _pasts(machine)]
+    states = list(dict.fromkeys(own_starts))
+    seen = set(states)
+    for state in states:
+        for move in machine.moves(state):
+            if move.target not in seen:
+                seen.add(move.target)
+                states.append(move.target)
+    graph = {state: {move.target for move in machine.moves(state)} for state in states}
+    kept = {state for state in states if any(move.kept for move in machine.moves(state))}
+    alive = led_to(kept, graph)
+    atoms = _atoms(machine, states, table)
+    places = {state: place for place, state in enumerate(states)}
+    targets, outcomes = [], []
+    for state in states:
+        row = [next(move for move in machine.moves(state) if move.letters & atom) for atom in atoms]
+        targets.append([places[move.target] for move in row])
+        outcomes.append(
+            [
+                _VIOLATED
+                if not move.kept and move.target not in alive
+                else _KEPT
+                if machine.progression.holds_at_the_end(move.target)
+                else _PENDING
+                for move in row
+            ]
+        )
+    symbols = [
+        next(symbol for symbol, members in enumerate(table.classes) if members & atom)
+        for atom in atoms
+    ]
+    for following, outputs in zip(table.following, table.outputs, strict=True):
+        targets.append([len(states) + following[symbol] for symbol in symbols])
+        outcomes.append([outputs[symbol] for symbol in symbols])
+    blocks = _blocks(targets, outcomes)
+    here = {blocks[places[state]] for state in own_starts}
+    there = {blocks[len(states) + start] for start in starts}
+    require(here == there, "its table for cut traces has other outcomes than its formula")
+
+
+def _pasts(machine: FormulaMachine) -> list[Any]:
+    """All that past parts can remember, whatever was before the first state."""
+    found = dict.fromkeys([machine.progression.start.memory])
+    for memory in (waiting := list(found)):
+        for following in machine.progression.memories(memory):
+            if following not in found:
+                found[following] = None
+                waiting.append(following)
+        require(len(found) <= MOST_STATES, "its formula has too many pasts for this checker")
+    return waiting
+
+
+def _atoms(machine: FormulaMachine, states: Sequence[State], table: Table) -> list[int]:
+    """The coarsest sets of letters that all moves and classes respect."""
+    sets = {move.letters for state in states for move in machine.moves(state)}
+    atoms = [machine.possible]
+    for letters in sorted(sets | set(table.classes)):
+        atoms = [part for atom in atoms for part in (atom & letters, atom & ~letters) if part]
+        require(len(atoms) <= MOST_ATOMS, "its formula tells too many letters apart")
+    return atoms
+
+
+def _blocks(targets: Sequence[Sequence[int]], outcomes: Sequence[Sequence[int]]) -> list[int]:
+    """The blocks of states that no word tells apart."""
+    blocks = _numbered([tuple(row) for row in outcomes])
+    while True:
+        finer = _numbered(
+            [
+                (block, *[blocks[target] for target in row])
+                for block, row in zip(blocks, targets, strict=True)
+            ]
+        )
+        if max(finer) == max(blocks):
+            return finer
+        blocks = finer
+
+
+def _numbered(keys: Sequence[tuple[int, ...]]) -> list[int]:
+    numbers: dict[tuple[int, ...], int] = {}
+    return [numbers.setdefault(key, len(numbers)) for key in keys]

@@ -1,0 +1,252 @@
+"""Formulas in negation normal form over letters, each part once, and the past ones numbered.
+
+A part is a number. Conditions on one state are sets of letters, as bits; of the future there are
+bounded ``until`` and its dual ``release``, of the past there is ``since``. All other operators are
+said by these, as docs/language.md and docs/meaning.md define them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Literal, TypeAlias
+
+from rulec.validation.functions import FALSE, TRUE, Function, FunctionAlgebra
+from rulec.validation.unprovable import UnprovableError, exact, require
+
+LONGEST_BOUND = 1 << 12
+"""Steps of a bound beyond which tables are not proved."""
+
+_BESIDE = ("next", "weak next", "previously", "weak previously")
+"""Operators that look at one instant: without a bound, at the one beside this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Now:
+    """A condition on one state: its letters, as bits."""
+
+    letters: int
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """``and`` (``conjoined``) or ``or`` of two parts."""
+
+    conjoined: bool
+    left: int
+    right: int
+
+
+@dataclass(frozen=True, slots=True)
+class Future:
+    """``left until right``, or (``dual``) ``left release right``, ``low`` to ``high`` steps ahead.
+
+    Where no instant is left to look at, ``until`` is false and ``release`` true.
+    """
+
+    dual: bool
+    low: int
+    high: int | None
+    left: int
+    right: int
+
+
+@dataclass(frozen=True, slots=True)
+class Past:
+    """``left since right``, ``low`` to ``high`` steps back."""
+
+    low: int
+    high: int | None
+    left: int
+    right: int
+
+
+@dataclass(frozen=True, slots=True)
+class OfPast:
+    """The value of a past part, by its number, or its negation."""
+
+    number: int
+    holds: bool
+
+
+Part: TypeAlias = Now | Joined | Future | OfPast
+
+
+class Demands:
+    """Parts of one formula; ``everything`` are all letters that there are, as bits."""
+
+    def __init__(self, everything: int) -> None:
+        self.everything = everything
+        self.parts: list[Part] = []
+        self.past: list[Past] = []
+        self._numbers: dict[Part, int] = {}
+        self._negations: dict[int, int] = {}
+        self.algebra = FunctionAlgebra(self._implies)
+
+    def number(self, part: Part) -> int:
+        """The number of a part."""
+        known = self._numbers.get(part)
+        if known is None:
+            known = self._numbers[part] = len(self.parts)
+            self.parts.append(part)
+            self.algebra.count(1)
+        return known
+
+    def _implies(self, one: int, other: int) -> bool:
+        """Tell whether a demand implies another, as far as their ranges show."""
+        if one == other:
+            return True
+        first, second = self.parts[one], self.parts[other]
+        if not (isinstance(first, Future) and isinstance(second, Future)):
+            return False
+        same = (first.dual, first.left, first.right) == (second.dual, second.left, second.right)
+        narrow, wide = (second, first) if first.dual else (first, second)
+        return same and wide.low <= narrow.low and _at_most(narrow.high, wide.high)
+
+    def negated(self, number: int) -> int:
+        """The negation of a part."""
+        if number not in self._negations:
+            self._negations[number] = self.number(self._negation(self.parts[number]))
+            self._negations[self._negations[number]] = number
+        return self._negations[number]
+
+    def _negation(self, part: Part) -> Part:
+        match part:
+            case Now(letters):
+                return Now(self.everything & ~letters)
+            case Joined(conjoined, left, right):
+                return Joined(not conjoined, self.negated(left), self.negated(right))
+            case Future(dual, low, high, left, right):
+                return Future(not dual, low, high, self.negated(left), self.negated(right))
+            case OfPast(number, holds):
+                return OfPast(number, not holds)
+
+    def negated_function(self, function: Function) -> Function:
+        """The negation of a function of demands."""
+        result = TRUE
+        for term in function:
+            negations = frozenset([frozenset([self.negated(one)]) for one in term])
+            result = self.algebra.both(result, negations or FALSE)
+        return result
+
+    def constant(self, value: bool) -> int:
+        """The part that is always true, or never."""
+        return self.number(Now(self.everything if value else 0))
+
+    def joined(self, conjoined: bool, left: int, right: int) -> int:
+        """``and`` or ``or`` of two parts; of conditions on one state, one such condition."""
+        first, second = self.parts[left], self.parts[right]
+        if isinstance(first, Now) and isinstance(second, Now):
+            both, either = first.letters & second.letters, first.letters | second.letters
+            return self.number(Now(both if conjoined else either))
+        neutral = self.constant(conjoined)
+        if left == neutral:
+            return right
+        return left if right == neutral else self.number(Joined(conjoined, left, right))
+
+    def future(self, limits: tuple[int, int | None], left: int, right: int, *, dual: bool) -> int:
+        """``until`` or ``release``; of an empty range it is false, or true."""
+        low, high = limits
+        if high is not None and low > high:
+            return self.constant(dual)
+        return self.number(Future(dual, low, high, left, right))
+
+    def since(self, limits: tuple[int, int | None], left: int, right: int) -> int:
+        """``since``, with a number of its own."""
+        low, high = limits
+        if high is not None and low > high:
+            return self.constant(False)
+        part = Past(low, high, left, right)
+        if part not in self.past:
+            self.past.append(part)
+        return self.number(OfPast(self.past.index(part), True))
+
+    def read(self, tree: Any, step: Fraction | None, letters_of: Callable[[Any], int]) -> int:
+        """The part that a formula's tree says.
+
+        ``letters_of`` gives the letters of an atom or a comparison, ``step`` the seconds from state
+        to state.
+        """
+        if isinstance(tree, bool):
+            return self.constant(tree)
+        if isinstance(tree, dict):
+            return self.number(Now(letters_of(tree)))
+        require(isinstance(tree, list) and 2 <= len(tree) <= 4, "its tree is no formula")
+        operator, *rest = tree
+        bound = rest.pop() if isinstance(rest[-1], dict) and "unit" in rest[-1] else None
+        limits = _limits(operator, bound, step)
+        operands = [self.read(operand, step, letters_of) for operand in rest]
+        if len(operands) == 1:
+            return self._unary(operator, limits, operands[0])
+        require(len(operands) == 2, "its tree is no formula")
+        return self._binary(operator, limits, *operands)
+
+    def _unary(self, operator: str, limits: tuple[int, int | None], operand: int) -> int:
+        true, false = self.constant(True), self.constant(False)
+        match operator:
+            case "not":
+                return self.negated(operand)
+            case "next" | "eventually":
+                return self.future(limits, true, operand, dual=False)
+            case "weak next" | "always":
+                return self.future(limits, false, operand, dual=True)
+            case "never":
+                return self.future(limits, false, self.negated(operand), dual=True)
+            case "previously" | "once":
+                return self.since(limits, true, operand)
+            case "weak previously" | "historically":
+                return self.negated(self.since(limits, true, self.negated(operand)))
+        raise UnprovableError(f"its tree has an operator that is none: {operator!a}")
+
+    def _binary(self, operator: str, limits: tuple[int, int | None], left: int, right: int) -> int:
+        true, false = self.constant(True), self.constant(False)
+        match operator:
+            case "and" | "or":
+                return self.joined(operator == "and", left, right)
+            case "implies":
+                return self.joined(False, self.negated(left), right)
+            case "iff" | "xor":
+                other = right if operator == "iff" else self.negated(right)
+                same = self.joined(True, left, other)
+                neither = self.joined(True, self.negated(left), self.negated(other))
+                return self.joined(False, same, neither)
+            case "until" | "then":
+                return self.future(limits, left, right, dual=False)
+            case "release":
+                return self.future(limits, left, right, dual=True)
+            case "weak until":
+                until = self.future(limits, left, right, dual=False)
+                throughout = self.future((0, limits[1]), false, left, dual=True)
+                return self.joined(False, until, throughout)
+            case "strong release":
+                release = self.future(limits, left, right, dual=True)
+                sometime = self.future((0, limits[1]), true, left, dual=False)
+                return self.joined(True, release, sometime)
+            case "since":
+                return self.since(limits, left, right)
+        raise UnprovableError(f"its tree has an operator that is none: {operator!a}")
+
+
+def _at_most(one: int | None, other: int | None) -> bool:
+    return other is None or (one is not None and one <= other)
+
+
+def _limits(operator: str, bound: Any, step: Fraction | None) -> tuple[int, int | None]:
+    """The steps between which an operator looks; those of ``then`` begin after one."""
+    least = int(operator == "then")
+    if bound is None:
+        return (1, 1) if operator in _BESIDE else (least, None)
+    low = _steps(bound["from"], bound["unit"], step)
+    high = None if bound["to"] is None else _steps(bound["to"], bound["unit"], step)
+    return max(low, least), high
+
+
+def _steps(text: str, unit: Literal["s", "steps"], step: Fraction | None) -> int:
+    amount = exact(text)
+    if unit == "s":
+        require(step is not None and step > 0, "it has a bound in seconds and is for no step")
+        amount /= step or 1
+    require(amount.denominator == 1 and amount >= 0, "a bound is no multiple of its step")
+    require(amount <= LONGEST_BOUND, f"a bound has more than {LONGEST_BOUND} steps")
+    return amount.numerator

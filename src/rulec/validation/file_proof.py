@@ -1,0 +1,122 @@
+"""A compiled rulebook's file, each rule of it proved or not. Nothing is read but the file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from hashlib import sha256
+from typing import Any, Literal
+
+from rulec.validation.comparison_words import check_comparison
+from rulec.validation.cut_proof import prove_cut_table
+from rulec.validation.demands import Demands
+from rulec.validation.facts import possible_letters
+from rulec.validation.formula_words import formula_words
+from rulec.validation.letters import Letters
+from rulec.validation.progression import Progression
+from rulec.validation.table_proof import FormulaMachine, prove_table
+from rulec.validation.unprovable import UnprovableError, exact, require
+
+VERSION = 6
+
+
+class UnreadableError(Exception):
+    """A file that is none of version 6, or not as it was written (``changed``)."""
+
+    def __init__(self, why: Literal["changed", "unreadable"], message: str) -> None:
+        super().__init__(message)
+        self.why = why
+
+
+@dataclass(frozen=True, slots=True)
+class RuleProof:
+    """What has been found of a rule: ``because`` is empty if its tables are proved.
+
+    ``step_s`` is the step that it is for, as the file spells it. ``word`` are the states of a
+    shortest trace that is judged otherwise, if there is one.
+    """
+
+    rule: str
+    step_s: str | None
+    because: str
+    word: tuple[Mapping[str, str], ...] = ()
+
+
+def proofs_of(data: bytes) -> list[RuleProof]:
+    """What has been found of each rule of a file. Raises UnreadableError."""
+    book = _read(data)
+    try:
+        return [_proof(rule, book) for rule in book["rules"]]
+    except (KeyError, TypeError):
+        raise UnreadableError("unreadable", "it has no rules") from None
+
+
+def _read(data: bytes) -> Any:
+    head, _, rest = data.partition(b"\n")
+    second, _, body = rest.partition(b"\n")
+    digest = b' "sha256": "%s",' % sha256(body).hexdigest().encode()
+    try:
+        book = json.loads(data, object_pairs_hook=_object, parse_constant=_no_number)
+    except (ValueError, RecursionError):
+        raise UnreadableError("unreadable", "it is no JSON of a compiled rulebook") from None
+    if not isinstance(book, dict) or book.get("format") != "rulec compiled rulebook":
+        raise UnreadableError("unreadable", "it is no compiled rulebook")
+    if book.get("version") != VERSION:
+        raise UnreadableError("unreadable", f"it is not of version {VERSION}")
+    if (head, second) != (b"{", digest):
+        raise UnreadableError("changed", "its digest is not that of its content")
+    return book
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object; a name that is there twice would be read otherwise by other readers."""
+    if len(dict(pairs)) < len(pairs):
+        raise ValueError("a name is there twice")
+    return dict(pairs)
+
+
+def _no_number(text: str) -> float:
+    raise ValueError(text)
+
+
+def _proof(rule: Any, book: Mapping[str, Any]) -> RuleProof:
+    name, step = str(rule["name"]), rule["step_s"]
+    try:
+        _prove(rule, book)
+    except UnprovableError as problem:
+        return RuleProof(name, step, problem.reason, problem.word)
+    except RecursionError:
+        return RuleProof(name, step, "its formula is nested too deep for this checker")
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as problem:
+        what = type(problem).__name__.removesuffix("Error").lower()
+        return RuleProof(name, step, f"its entry is not as the format has it ({what} {problem})")
+    return RuleProof(name, step, "")
+
+
+def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
+    """Raise UnprovableError unless all of a rule's tables do what its formula says."""
+    declarations = book["vocabulary"]["declarations"]
+    tree, machine = rule["tree"], rule["machine"]
+    require(formula_words(tree) == rule["formula"], "its formula in words is not its tree")
+    units = {item["name"]: item["unit"] for item in declarations if item["kind"] == "quantity"}
+    for comparison in _comparisons(tree):
+        check_comparison(comparison, units)
+    letters = Letters(machine["reads"], {item["name"]: item for item in declarations})
+    possible = possible_letters(letters, book, rule)
+    require(possible != 0, "its facts leave no letter")
+    demands = Demands(possible)
+    step = None if rule["step_s"] is None else exact(rule["step_s"])
+    root = demands.read(tree, step, lambda atom: letters.of(atom) & possible)
+    require(book["semantics"] in ("stutter", "finite"), "its words have no known end")
+    progression = Progression(demands, root)
+    formula = FormulaMachine(progression, possible, ends=book["semantics"] == "finite")
+    prove_table(formula, machine, letters)
+    if rule.get("cut") is not None:
+        prove_cut_table(formula, rule["cut"], letters)
+
+
+def _comparisons(tree: Any) -> list[Mapping[str, Any]]:
+    if isinstance(tree, list):
+        return [found for part in tree[1:] for found in _comparisons(part)]
+    return [tree] if isinstance(tree, dict) and "terms" in tree else []

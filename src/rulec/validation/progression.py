@@ -1,0 +1,276 @@
+"""The deterministic machine of a formula, made by progression as it is met.
+
+A state has what is still demanded of the rest of the word, a function of parts of the formula
+(Brzozowski's derivatives; Bacchus, Kabanza, "Planning for temporally extended goals", 1998), and of
+each past part what its value will depend on: by age, the values of its right side that still count.
+Of demands that imply each other, and of occasions that outlive each other, only one is kept, so a
+bound of n steps takes some n states, not 2^n. Nothing is shared with the compiler: neither Spot nor
+its tables, nor a line of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial, reduce
+from typing import TypeAlias
+
+from rulec.validation.demands import Demands, Future, Joined, Now, OfPast
+from rulec.validation.functions import FALSE, TRUE, Function
+
+Occasions: TypeAlias = tuple[tuple[int, Function], ...]
+"""Values of a past part's right side that still count, by age, the youngest first."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """What is demanded from the next letter on, and what the past parts remember."""
+
+    demand: Function
+    memory: tuple[Occasions, ...]
+
+
+class Progression:
+    """A formula's machine: ``root`` is the part of ``demands`` that is the formula."""
+
+    def __init__(self, demands: Demands, root: int) -> None:
+        self._demands, self._algebra = demands, demands.algebra
+        self._full = demands.everything
+        self.start = State(frozenset({frozenset({root})}), ((),) * len(demands.past))
+        self._moves: dict[State, dict[State, int]] = {}
+
+    def moves(self, state: State) -> dict[State, int]:
+        """The states that follow, each with the letters that lead there."""
+        if state not in self._moves:
+            step = _Step(self._demands, state.memory)
+            memories = step.remembered()
+            rest = step.after(state.demand)
+            self._moves[state] = self._algebra.combined(rest, memories, _state)
+        return self._moves[state]
+
+    def memories(self, memory: tuple[Occasions, ...]) -> dict[tuple[Occasions, ...], int]:
+        """What the past parts remember next, each with its letters."""
+        return _Step(self._demands, memory).remembered()
+
+    def holds_at_the_end(self, state: State) -> bool:
+        """The verdict if nothing comes after the letters that led to a state."""
+        parts = self._demands.parts
+        return any(all(_is_dual(parts[one]) for one in term) for term in state.demand)
+
+    def kept_for_ever(self, state: State) -> int:
+        """The letters that, repeated for ever from a state on, satisfy its demand."""
+        return _Repetition(self._demands, state.memory).first(state.demand)
+
+
+def _with_occasion(age: int, known: Occasions, value: Function) -> Occasions:
+    return (*known, (age, value))
+
+
+def _state(demand: Function, memory: tuple[Occasions, ...]) -> State:
+    # Nothing depends on the past any more.
+    return State(demand, () if demand in (TRUE, FALSE) else memory)
+
+
+def _is_dual(part: object) -> bool:
+    return isinstance(part, Future) and part.dual
+
+
+class _Step:
+    """The values of parts at one instant: functions of what is demanded after it, by letters."""
+
+    def __init__(self, demands: Demands, memory: tuple[Occasions, ...]) -> None:
+        self._demands, self._algebra = demands, demands.algebra
+        self._full = demands.everything
+        # A state without demands remembers nothing.
+        self._memory = memory or ((),) * len(demands.past)
+        self._values: dict[int, dict[Function, int]] = {}
+        self._occasions: dict[int, dict[Occasions, int]] = {}
+
+    def after(self, function: Function) -> dict[Function, int]:
+        """What a function of demands on this instant demands of the next ones."""
+        algebra = self._algebra
+        whole: dict[Function, int] = {FALSE: self._full}
+        for term in function:
+            rest: dict[Function, int] = {TRUE: self._full}
+            for one in term:
+                rest = algebra.combined(rest, self._value(one), algebra.both)
+            whole = algebra.combined(whole, rest, algebra.either)
+        return whole
+
+    def _value(self, number: int) -> dict[Function, int]:
+        if number not in self._values:
+            self._values[number] = self._found(number)
+        return self._values[number]
+
+    def _found(self, number: int) -> dict[Function, int]:
+        algebra = self._algebra
+        match self._demands.parts[number]:
+            case Now(letters):
+                sides = {TRUE: letters, FALSE: self._full & ~letters}
+                return {value: side for value, side in sides.items() if side}
+            case Joined(conjoined, left, right):
+                join = algebra.both if conjoined else algebra.either
+                return algebra.combined(self._value(left), self._value(right), join)
+            case Future() as part:
+                return self._future(part)
+            case OfPast(past, holds):
+                least = self._demands.past[past].low
+                values: dict[Function, int] = {}
+                for occasions, letters in self._occasions_of(past).items():
+                    value = reduce(
+                        algebra.either, [each for age, each in occasions if age >= least], FALSE
+                    )
+                    value = value if holds else self._demands.negated_function(value)
+                    values[value] = values.get(value, 0) | letters
+                return values
+
+    def _future(self, part: Future) -> dict[Function, int]:
+        """``right``, or ``left`` and the same again of the next instant; or the dual."""
+        algebra = self._algebra
+        extend, choose = (
+            (algebra.either, algebra.both) if part.dual else (algebra.both, algebra.either)
+        )
+        rest: dict[Function, int] | None = None
+        if part.high is None or part.high > 0:
+            high = None if part.high is None else part.high - 1
+            later = Future(part.dual, max(part.low - 1, 0), high, part.left, part.right)
+            again = frozenset({frozenset({self._demands.number(later)})})
+            rest = algebra.combined(self._value(part.left), {again: self._full}, extend)
+        if part.low > 0 and rest is not None:
+            return rest
+        now = self._value(part.right)
+        return now if rest is None else algebra.combined(now, rest, choose)
+
+    def _occasions_of(self, past: int) -> dict[Occasions, int]:
+        """What a past part remembers after this instant."""
+        if past not in self._occasions:
+            algebra, part = self._algebra, self._demands.past[past]
+            left, right = self._value(part.left), self._value(part.right)
+            found: dict[Occasions, int] = {(): self._full}
+            news = [(0, right)]
+            for age, function in self._memory[past]:
+                older = age + 1 if part.high is not None else min(age + 1, part.low)
+                if part.high is None or older <= part.high:
+                    still = algebra.combined(left, self.after(function), algebra.both)
+                    news.append((older, still))
+            for age, values in news:
+                found = algebra.combined(found, values, partial(_with_occasion, age))
+            kept: dict[Occasions, int] = {}
+            for occasions, letters in found.items():
+                normal = self._that_count(occasions, part.low, part.high)
+                kept[normal] = kept.get(normal, 0) | letters
+            self._occasions[past] = kept
+        return self._occasions[past]
+
+    def _that_count(self, occasions: Occasions, low: int, high: int | None) -> Occasions:
+        """Occasions without those that others outlive."""
+        by_age: dict[int, Function] = {}
+        for age, value in occasions:
+            if value != FALSE:
+                by_age[age] = self._algebra.either(by_age.get(age, FALSE), value)
+        sure = sorted(age for age, value in by_age.items() if value == TRUE)
+        if high is None:
+            # The oldest is in reach first, and stays there.
+            least, most = (sure[-1] if sure else 0), low
+        else:
+            # Of those in reach the youngest stays longest.
+            least, most = 0, next((age for age in sure if age >= low), high)
+        return tuple(sorted((age, by_age[age]) for age in by_age if least <= age <= most))
+
+    def remembered(self) -> dict[tuple[Occasions, ...], int]:
+        """What all past parts remember after this instant, by letters."""
+        found: dict[tuple[Occasions, ...], int] = {(): self._full}
+        for past in range(len(self._demands.past)):
+            found = self._algebra.combined(
+                found, self._occasions_of(past), lambda known, own: (*known, own)
+            )
+        return found
+
+
+class _Repetition:
+    """Truth of parts while one letter is repeated for ever, at each instant, for all letters.
+
+    Values are lists of letters as bits, one for each instant from now on; the last stands for all
+    later ones, too.
+    """
+
+    def __init__(self, demands: Demands, memory: tuple[Occasions, ...]) -> None:
+        self._demands, self._full = demands, demands.everything
+        self._memory = memory or ((),) * len(demands.past)
+        self._values: dict[int, list[int]] = {}
+
+    def first(self, function: Function) -> int:
+        """The letters for which a function of demands on the present instant is true."""
+        found = 0
+        for term in function:
+            letters = self._full
+            for one in term:
+                letters &= self._value(one)[0]
+            found |= letters
+        return found
+
+    def _value(self, number: int) -> list[int]:
+        if number not in self._values:
+            value = self._found(number)
+            self._demands.algebra.count(len(value))
+            while len(value) > 1 and value[-1] == value[-2]:
+                value.pop()
+            self._values[number] = value
+        return self._values[number]
+
+    def _found(self, number: int) -> list[int]:
+        match self._demands.parts[number]:
+            case Now(letters):
+                return [letters]
+            case Joined(conjoined, left, right):
+                pairs = _aligned(self._value(left), self._value(right), 0)
+                return [one & two if conjoined else one | two for one, two in pairs]
+            case Future(True):
+                until = self._value(self._demands.negated(number))
+                return [self._full & ~letters for letters in until]
+            case Future(_, low, high, left, right):
+                pairs = _aligned(self._value(left), self._value(right), 0)
+                return [self._until(pairs, at, low, high) for at in range(len(pairs))]
+            case OfPast(past, holds):
+                values = self._since(past)
+                return values if holds else [self._full & ~letters for letters in values]
+
+    def _until(self, pairs: list[tuple[int, int]], at: int, low: int, high: int | None) -> int:
+        """Where ``right`` comes ``low`` to ``high`` instants from one, and ``left`` up to there."""
+        before, found, last = self._full, 0, len(pairs) - 1
+        if at == last:
+            # All later instants are like this one.
+            left, right = pairs[last]
+            return right & left if low > 0 else right
+        for ahead in range(max(low, last - at) + 1):
+            if high is not None and ahead > high:
+                break
+            left, right = pairs[min(at + ahead, last)]
+            if ahead >= low:
+                found |= before & right
+            before &= left
+        return found
+
+    def _since(self, past: int) -> list[int]:
+        part = self._demands.past[past]
+        reach = part.low if part.high is None else part.high
+        pairs = _aligned(self._value(part.left), self._value(part.right), reach)
+        occasions = {age: self.first(value) for age, value in self._memory[past]}
+        values = []
+        for left, right in pairs:
+            older: dict[int, int] = {0: right}
+            for age, letters in occasions.items():
+                later = age + 1 if part.high is not None else min(age + 1, part.low)
+                if letters & left and (part.high is None or later <= part.high):
+                    older[later] = older.get(later, 0) | letters & left
+            occasions = older
+            self._demands.algebra.count(len(older))
+            values.append(reduce(int.__or__, [m for age, m in older.items() if age >= part.low], 0))
+        return values
+
+
+def _aligned(first: list[int], second: list[int], longer: int) -> list[tuple[int, int]]:
+    """Two lists of values instant by instant, and so many instants more."""
+    length = max(len(first), len(second)) + longer
+    return [
+        (first[min(at, len(first) - 1)], second[min(at, len(second) - 1)]) for at in range(length)
+    ]

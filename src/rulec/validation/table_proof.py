@@ -1,0 +1,179 @@
+"""A table held against its formula: a product of both, gone through to the end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from rulec.validation.letters import Letters
+from rulec.validation.progression import Progression, State
+from rulec.validation.unprovable import UnprovableError, require
+
+MOST_STATES = 1 << 13
+"""Formulas of more states, as this checker counts them, are not proved."""
+
+MOST_CLASS_BITS = 1 << 28
+"""Letter classes times letters."""
+
+Rows: TypeAlias = list[list[int]]
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A deterministic table: letters of each class, as bits, and a row for each state."""
+
+    classes: tuple[int, ...]
+    following: Rows
+    outputs: Rows
+
+    @classmethod
+    def read(cls, entry: Mapping[str, Any], outputs: str, letters: Letters, possible: int) -> Table:
+        """The table of an entry, whose ``outputs`` are called so.
+
+        Raises UnprovableError if it has no digit for a letter that is possible, or one for another.
+        """
+        following, verdicts, numbers = entry["following"], entry[outputs], entry["letters"]
+        width = len(following[0]) if following else 0
+        require(len(numbers) == letters.count, "its table is not for the letters of its reads")
+        require(width * letters.count <= MOST_CLASS_BITS, "it has too many classes of letters")
+        bits = [bytearray(letters.count // 8 + 1) for _ in range(width)]
+        excluded = bytearray(letters.count // 8 + 1)
+        for letter, number in enumerate(numbers):
+            require(type(number) is int and -1 <= number < width, "a letter has no class")
+            (excluded if number == -1 else bits[number])[letter // 8] |= 1 << letter % 8
+        states = range(len(following))
+        fits = len(verdicts) == len(following) > 0 and all(
+            len(row) == width and all(type(each) is kind for each in row)
+            for rows, kind in (
+                (following, int),
+                (verdicts, bool if outputs == "accepting" else int),
+            )
+            for row in rows
+        )
+        require(fits, "its table has a row that does not fit")
+        require(all(each in states for row in following for each in row), "it leads nowhere")
+        same = int.from_bytes(excluded, "little") == letters.everything & ~possible
+        require(same, "the letters that it leaves out are not those that the facts exclude")
+        classes = tuple([int.from_bytes(each, "little") for each in bits])
+        return cls(classes, following, verdicts)
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """Letters, as bits, that lead to a state; whether a word that ends with such a one is kept."""
+
+    letters: int
+    target: State
+    kept: bool
+
+
+class FormulaMachine:
+    """A formula's machine with its verdicts; ``ends`` if nothing comes after a word."""
+
+    def __init__(self, progression: Progression, possible: int, *, ends: bool) -> None:
+        self.progression, self.possible, self._ends = progression, possible, ends
+        self._moves: dict[State, list[Move]] = {}
+
+    def moves(self, state: State) -> list[Move]:
+        """The moves from a state."""
+        if state not in self._moves:
+            few = len(self._moves) < MOST_STATES
+            require(few, f"its formula has more than {MOST_STATES} states for this checker")
+            self._moves[state] = list(self._found(state))
+        return self._moves[state]
+
+    def _found(self, state: State) -> Iterator[Move]:
+        kept = 0 if self._ends else self.progression.kept_for_ever(state)
+        for target, letters in self.progression.moves(state).items():
+            if self._ends:
+                kept = self.possible if self.progression.holds_at_the_end(target) else 0
+            for verdict, side in ((True, letters & kept), (False, letters & ~kept)):
+                if side:
+                    yield Move(side, target, verdict)
+
+
+def prove_table(machine: FormulaMachine, entry: Mapping[str, Any], letters: Letters) -> None:
+    """Raise UnprovableError unless a rule's table judges every word as its formula does.
+
+    All pairs of states that some word leads both to are gone through, the shortest words first.
+    """
+    table = Table.read(entry, "accepting", letters, machine.possible)
+    by_class: dict[State, list[tuple[int, Move, int]]] = {}
+    first = machine.progression.start, 0
+    came: dict[tuple[State, int], tuple[tuple[State, int], int] | None] = {first: None}
+    waiting = [first]
+    for pair in waiting:
+        state, row = pair
+        if state not in by_class:
+            by_class[state] = [
+                (symbol, move, common)
+                for move in machine.moves(state)
+                for symbol, members in enumerate(table.classes)
+                if (common := move.letters & members)
+            ]
+        for symbol, move, common in by_class[state]:
+            target = move.target, table.following[row][symbol]
+            if table.outputs[row][symbol] is not move.kept:
+                said, meant = ("kept", "violated")[move.kept], ("violated", "kept")[move.kept]
+                word = [*_word(came, pair), _lowest(common)]
+                raise UnprovableError(
+                    f"a trace of {_states(len(word))} is {said} by its table, {meant} by its tree",
+                    [letters.described(letter) for letter in word],
+                )
+            if target not in came:
+                came[target] = pair, _lowest(common)
+                waiting.append(target)
+    _check_sinks(table, entry, {row for _, row in came})
+
+
+def _states(number: int) -> str:
+    return "one state" if number == 1 else f"{number} states"
+
+
+def _lowest(letters: int) -> int:
+    return (letters & -letters).bit_length() - 1
+
+
+def _word(
+    came: Mapping[tuple[State, int], tuple[tuple[State, int], int] | None], pair: tuple[State, int]
+) -> list[int]:
+    word: list[int] = []
+    while (before := came[pair]) is not None:
+        pair = before[0]
+        word.append(before[1])
+    return word[::-1]
+
+
+def _check_sinks(table: Table, entry: Mapping[str, Any], reached: set[int]) -> None:
+    """Its dead state is the one from which nothing is accepted, its safe one that with all."""
+    used = [symbol for symbol, members in enumerate(table.classes) if members]
+    for name, verdict in (("dead", True), ("safe", False)):
+        hopeful = {
+            state
+            for state, row in enumerate(table.outputs)
+            if any(row[symbol] is verdict for symbol in used)
+        }
+        hopeful = led_to(
+            hopeful,
+            {s: {row[symbol] for symbol in used} for s, row in enumerate(table.following)},
+        )
+        lost = set(range(len(table.following))) - hopeful
+        claimed = set() if entry[name] is None else {entry[name]}
+        right = claimed <= lost and lost & reached <= claimed
+        require(right, f"the state that it calls {name} is not the one that is")
+
+
+def led_to(good: set[Any], following: Mapping[Any, set[Any]]) -> set[Any]:
+    """The nodes of a graph from which a good one can be reached, these included."""
+    before: dict[Any, list[Any]] = {}
+    for node, targets in following.items():
+        for target in targets:
+            before.setdefault(target, []).append(node)
+    found, waiting = set(good), list(good)
+    for node in waiting:
+        for one in before.get(node, ()):
+            if one not in found:
+                found.add(one)
+                waiting.append(one)
+    return found

@@ -1,0 +1,60 @@
+"""``rulec verify-compiled`` as its user meets it."""
+
+import json
+
+import pytest
+
+from rulec.cli.main import main
+from support.builders.compiled_files import sealed
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("build")
+    source = folder / "b.rules"
+    source.write_text("rulebook b signal p, q hard rule r { require always (p implies next q) }")
+    assert main(["compile", str(source), "-o", str(folder)]) == 0
+    return folder / "b.json"
+
+
+def test_what_is_proved(file, capsys):
+    assert main(["verify-compiled", str(file), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    (of_file,) = answer["files"]
+    assert answer["version"] == 1
+    assert of_file["file"] == str(file)
+    assert of_file["rules"] == [
+        {"rule": "r", "step_s": None, "proved": True, "because": None, "states": []}
+    ]
+
+
+def test_what_is_not_proved(file, tmp_path, capsys):
+    data = json.loads(file.read_text())
+    machine = data["rules"][0]["machine"]
+    machine["accepting"][0][0] = not machine["accepting"][0][0]
+    data["rules"][0]["name"] = "r\x1b[2J"
+    (tmp_path / "changed.json").write_bytes(sealed(data))
+    assert main(["verify-compiled", str(file), str(tmp_path / "changed.json")]) == 1
+    out = capsys.readouterr().out
+    assert "changed.json: rule r" in out
+    assert "\x1b" not in out
+    assert "not proved, because a trace of one state is violated by its table, kept by its" in out
+    assert "  state 0: p: " in out
+    assert out.endswith("2 rules: 1 proved, 1 not proved\n")
+
+
+def test_files_that_are_none(file, tmp_path, capsys):
+    text = file.read_text()
+    bad = {
+        "R0404": b"[]",
+        "R0410": text.replace("true", "false").encode(),
+        "R0411": b'{"format": "rulec compiled rulebook", "version": 5}',
+    }
+    for code, content in bad.items():
+        (tmp_path / "bad.json").write_bytes(content)
+        assert main(["verify-compiled", str(tmp_path / "bad.json"), str(file)]) == 2
+        out, err = capsys.readouterr()
+        assert f"[{code}]" in err
+        assert "1 rule: 1 proved" in out
+    assert main(["verify-compiled", str(tmp_path / "missing.json")]) == 2
+    assert "R0701" in capsys.readouterr().err
