@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rulec.validation.letters import Letters
-from rulec.validation.progression import State
-from rulec.validation.table_proof import MOST_STATES, FormulaMachine, Table, led_to
+from rulec.validation.formula_progression import DemandState
+from rulec.validation.letter_sets import Letters
+from rulec.validation.table_proof import MOST_STATES, ClaimedTable, FormulaMachine, led_to
 from rulec.validation.unprovable import require
 
 _KEPT, _PENDING, _VIOLATED = range(3)
@@ -22,13 +22,13 @@ def prove_cut_table(machine: FormulaMachine, entry: Mapping[str, Any], letters: 
     both sides that no word tells apart are found together, by Moore's partition refinement, and the
     states that runs begin in have to be the same ones.
     """
-    table = Table.read(entry, "outcomes", letters, machine.possible)
+    table = ClaimedTable.read(entry, "outcomes", letters, machine.possible)
     starts = entry["starts"]
     known = len(starts) > 0 and all(
         type(s) is int and 0 <= s < len(table.following) for s in starts
     )
     require(known, "its table for cut traces begins nowhere")
-    own_starts = [State(machine.progression.start.demand, past) for past in _pasts(machine)]
+    own_starts = [DemandState(machine.progression.start.demand, past) for past in _pasts(machine)]
     states = list(dict.fromkeys(own_starts))
     seen = set(states)
     for state in states:
@@ -80,7 +80,9 @@ def _pasts(machine: FormulaMachine) -> list[Any]:
     return waiting
 
 
-def _atoms(machine: FormulaMachine, states: Sequence[State], table: Table) -> list[int]:
+def _atoms(
+    machine: FormulaMachine, states: Sequence[DemandState], table: ClaimedTable
+) -> list[int]:
     """The coarsest sets of letters that all moves and classes respect."""
     sets = {move.letters for state in states for move in machine.moves(state)}
     atoms = [machine.possible]

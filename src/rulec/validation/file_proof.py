@@ -11,10 +11,10 @@ from typing import Any, Literal
 from rulec.validation.comparison_words import check_comparison
 from rulec.validation.cut_proof import prove_cut_table
 from rulec.validation.demands import Demands
-from rulec.validation.facts import possible_letters
+from rulec.validation.excluded_letters import possible_letters
+from rulec.validation.formula_progression import FormulaProgression
 from rulec.validation.formula_words import formula_words
-from rulec.validation.letters import Letters
-from rulec.validation.progression import Progression
+from rulec.validation.letter_sets import Letters
 from rulec.validation.table_proof import FormulaMachine, prove_table
 from rulec.validation.unprovable import UnprovableError, exact, require
 
@@ -109,7 +109,7 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
     step = None if rule["step_s"] is None else exact(rule["step_s"])
     root = demands.read(tree, step, lambda atom: letters.of(atom) & possible)
     require(book["semantics"] in ("stutter", "finite"), "its words have no known end")
-    progression = Progression(demands, root)
+    progression = FormulaProgression(demands, root)
     formula = FormulaMachine(progression, possible, ends=book["semantics"] == "finite")
     prove_table(formula, machine, letters)
     if rule.get("cut") is not None:

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from rulec.validation.letters import Letters
-from rulec.validation.progression import Progression, State
+from rulec.validation.formula_progression import DemandState, FormulaProgression
+from rulec.validation.letter_sets import Letters
 from rulec.validation.unprovable import UnprovableError, require
 
 MOST_STATES = 1 << 13
@@ -20,7 +20,7 @@ Rows: TypeAlias = list[list[int]]
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class ClaimedTable:
     """A deterministic table: letters of each class, as bits, and a row for each state."""
 
     classes: tuple[int, ...]
@@ -28,7 +28,9 @@ class Table:
     outputs: Rows
 
     @classmethod
-    def read(cls, entry: Mapping[str, Any], outputs: str, letters: Letters, possible: int) -> Table:
+    def read(
+        cls, entry: Mapping[str, Any], outputs: str, letters: Letters, possible: int
+    ) -> ClaimedTable:
         """The table of an entry, whose ``outputs`` are called so.
 
         Raises UnprovableError if it has no digit for a letter that is possible, or one for another.
@@ -64,18 +66,18 @@ class Move:
     """Letters, as bits, that lead to a state; whether a word that ends with such a one is kept."""
 
     letters: int
-    target: State
+    target: DemandState
     kept: bool
 
 
 class FormulaMachine:
     """A formula's machine with its verdicts; ``ends`` if nothing comes after a word."""
 
-    def __init__(self, progression: Progression, possible: int, *, ends: bool) -> None:
+    def __init__(self, progression: FormulaProgression, possible: int, *, ends: bool) -> None:
         self.progression, self.possible, self._ends = progression, possible, ends
-        self._moves: dict[State, list[Move]] = {}
+        self._moves: dict[DemandState, list[Move]] = {}
 
-    def moves(self, state: State) -> list[Move]:
+    def moves(self, state: DemandState) -> list[Move]:
         """The moves from a state."""
         if state not in self._moves:
             few = len(self._moves) < MOST_STATES
@@ -83,7 +85,7 @@ class FormulaMachine:
             self._moves[state] = list(self._found(state))
         return self._moves[state]
 
-    def _found(self, state: State) -> Iterator[Move]:
+    def _found(self, state: DemandState) -> Iterator[Move]:
         kept = 0 if self._ends else self.progression.kept_for_ever(state)
         for target, letters in self.progression.moves(state).items():
             if self._ends:
@@ -98,10 +100,10 @@ def prove_table(machine: FormulaMachine, entry: Mapping[str, Any], letters: Lett
 
     All pairs of states that some word leads both to are gone through, the shortest words first.
     """
-    table = Table.read(entry, "accepting", letters, machine.possible)
-    by_class: dict[State, list[tuple[int, Move, int]]] = {}
+    table = ClaimedTable.read(entry, "accepting", letters, machine.possible)
+    by_class: dict[DemandState, list[tuple[int, Move, int]]] = {}
     first = machine.progression.start, 0
-    came: dict[tuple[State, int], tuple[tuple[State, int], int] | None] = {first: None}
+    came: dict[tuple[DemandState, int], tuple[tuple[DemandState, int], int] | None] = {first: None}
     waiting = [first]
     for pair in waiting:
         state, row = pair
@@ -136,7 +138,8 @@ def _lowest(letters: int) -> int:
 
 
 def _word(
-    came: Mapping[tuple[State, int], tuple[tuple[State, int], int] | None], pair: tuple[State, int]
+    came: Mapping[tuple[DemandState, int], tuple[tuple[DemandState, int], int] | None],
+    pair: tuple[DemandState, int],
 ) -> list[int]:
     word: list[int] = []
     while (before := came[pair]) is not None:
@@ -145,7 +148,7 @@ def _word(
     return word[::-1]
 
 
-def _check_sinks(table: Table, entry: Mapping[str, Any], reached: set[int]) -> None:
+def _check_sinks(table: ClaimedTable, entry: Mapping[str, Any], reached: set[int]) -> None:
     """Its dead state is the one from which nothing is accepted, its safe one that with all."""
     used = [symbol for symbol, members in enumerate(table.classes) if members]
     for name, verdict in (("dead", True), ("safe", False)):

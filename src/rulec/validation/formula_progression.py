@@ -22,23 +22,23 @@ Occasions: TypeAlias = tuple[tuple[int, Function], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class DemandState:
     """What is demanded from the next letter on, and what the past parts remember."""
 
     demand: Function
     memory: tuple[Occasions, ...]
 
 
-class Progression:
+class FormulaProgression:
     """A formula's machine: ``root`` is the part of ``demands`` that is the formula."""
 
     def __init__(self, demands: Demands, root: int) -> None:
         self._demands, self._algebra = demands, demands.algebra
         self._full = demands.everything
-        self.start = State(frozenset({frozenset({root})}), ((),) * len(demands.past))
-        self._moves: dict[State, dict[State, int]] = {}
+        self.start = DemandState(frozenset({frozenset({root})}), ((),) * len(demands.past))
+        self._moves: dict[DemandState, dict[DemandState, int]] = {}
 
-    def moves(self, state: State) -> dict[State, int]:
+    def moves(self, state: DemandState) -> dict[DemandState, int]:
         """The states that follow, each with the letters that lead there."""
         if state not in self._moves:
             step = _Step(self._demands, state.memory)
@@ -51,12 +51,12 @@ class Progression:
         """What the past parts remember next, each with its letters."""
         return _Step(self._demands, memory).remembered()
 
-    def holds_at_the_end(self, state: State) -> bool:
+    def holds_at_the_end(self, state: DemandState) -> bool:
         """The verdict if nothing comes after the letters that led to a state."""
         parts = self._demands.parts
         return any(all(_is_dual(parts[one]) for one in term) for term in state.demand)
 
-    def kept_for_ever(self, state: State) -> int:
+    def kept_for_ever(self, state: DemandState) -> int:
         """The letters that, repeated for ever from a state on, satisfy its demand."""
         return _Repetition(self._demands, state.memory).first(state.demand)
 
@@ -65,9 +65,9 @@ def _with_occasion(age: int, known: Occasions, value: Function) -> Occasions:
     return (*known, (age, value))
 
 
-def _state(demand: Function, memory: tuple[Occasions, ...]) -> State:
+def _state(demand: Function, memory: tuple[Occasions, ...]) -> DemandState:
     # Nothing depends on the past any more.
-    return State(demand, () if demand in (TRUE, FALSE) else memory)
+    return DemandState(demand, () if demand in (TRUE, FALSE) else memory)
 
 
 def _is_dual(part: object) -> bool:
