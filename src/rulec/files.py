@@ -67,6 +67,15 @@ def file_state(path: str | Path) -> FileState:
     return found.st_size, found.st_mtime_ns
 
 
+OF_OTHERS: Final = stat.S_IWGRP | stat.S_IWOTH
+"""Permissions to write for anybody but the owner."""
+
+
+def is_own(status: os.stat_result) -> bool:
+    """Tell whether a file or a folder is this user's, and nobody else may write to it."""
+    return status.st_uid == os.geteuid() and not status.st_mode & OF_OTHERS
+
+
 @contextmanager
 def written_whole(path: Path) -> Iterator[IO[bytes]]:
     """Open a stream that replaces a file only when the block succeeds.

@@ -12,6 +12,7 @@ from rulec.api.rulebook_compilation import machines
 from rulec.automata import compiled_cache, compiler, prefix_machines
 from rulec.automata.bundle.mapped_tables import MappedTables, TableWriter, mapped
 from rulec.diagnostics import RulecError
+from rulec.rulebook.batch.check_cache import cache_folder
 from support.builders.rulebook_projects import project_in
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"
@@ -77,7 +78,7 @@ def no_worker(monkeypatch):
 
 
 def kept():
-    return sorted(compiled_cache.cache_folder().glob("*.tables"))
+    return sorted(cache_folder().glob("*.tables"))
 
 
 def compiled(reference="book.rules", **more):
@@ -195,6 +196,18 @@ def test_what_somebody_else_has_written_is_not_trusted(folder, made, monkeypatch
     monkeypatch.setattr(os, "geteuid", lambda: os.getuid() + 1)
     assert compiled() == first
     assert len(made) == 2
+
+
+def test_what_others_may_write_to_is_not_trusted(folder, made):
+    compiled()
+    (path,) = kept()
+    path.chmod(0o660)
+    compiled()
+    assert len(made) == 2
+    cache_folder().chmod(0o770)
+    compiled()
+    compiled()
+    assert len(made) == 4
 
 
 def test_without_a_folder_to_write_to_it_is_compiled_each_time(folder, made, tmp_path, monkeypatch):

@@ -1,6 +1,5 @@
 """What a check found is recalled while nothing has changed, and only then."""
 
-import json
 import os
 import subprocess
 import sys
@@ -167,12 +166,10 @@ def test_another_rulec_checks_anew(folder, made, monkeypatch, name, value):
         lambda path: path.write_bytes(path.read_bytes()[:-9]),
         lambda path: path.write_bytes(b"\xff\xfe{}"),
         lambda path: path.write_text("[]"),
-        lambda path: path.write_text(
-            json.dumps({**json.loads(path.read_text()), "findings": [{"code": "R9999"}]})
-        ),
-        lambda path: path.write_text(
-            json.dumps({**json.loads(path.read_text()), "dependencies": [{"kind": "x"}]})
-        ),
+        lambda path: path.write_text("[" * 100_000),
+        lambda path: path.write_bytes(path.read_bytes()[:-1] + b" "),
+        lambda path: path.write_text(path.read_text().replace('"findings": []', '"findings": [5]')),
+        lambda path: path.write_text(path.read_text().split("\n")[1]),
     ],
 )
 def test_damage_costs_time_only(folder, made, damage):
@@ -183,6 +180,36 @@ def test_damage_costs_time_only(folder, made, damage):
     assert len(made) == 2
     assert check() == []
     assert len(made) == 2
+
+
+@pytest.mark.parametrize("mode", [0o660, 0o606])
+def test_what_others_may_write_to_is_not_trusted(folder, made, mode):
+    check()
+    (kept,) = cache_folder().iterdir()
+    assert kept.stat().st_mode & 0o777 == 0o600
+    kept.chmod(mode)
+    assert check() == []
+    assert len(made) == 2
+    cache_folder().chmod(0o770)
+    assert check() == check() == []
+    assert len(made) == 4
+
+
+def test_what_somebody_else_has_written_is_not_trusted(folder, made, monkeypatch):
+    check()
+    monkeypatch.setattr(os, "geteuid", lambda: os.getuid() + 1)
+    assert check() == check() == []
+    assert len(made) == 3
+
+
+def test_the_default_folder_is_closed_to_others(folder, made, monkeypatch, tmp_path):
+    monkeypatch.delenv("RULEC_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    (tmp_path / "rulec").mkdir()
+    (tmp_path / "rulec").chmod(0o777)
+    assert check() == check() == []
+    assert len(made) == 1
+    assert (tmp_path / "rulec").stat().st_mode & 0o777 == 0o755
 
 
 def test_no_place_to_keep_it_costs_time_only(folder, made, tmp_path, monkeypatch):

@@ -23,8 +23,13 @@ from rulec.automata.bundle.mapped_rulebook import MappedRulebook, placed, rulebo
 from rulec.automata.bundle.mapped_tables import TableWriter, mapped
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.files import written_whole
-from rulec.rulebook.batch.check_cache import cache_folder, is_as_it_was, program_digest, tidy
+from rulec.rulebook.batch.check_cache import (
+    is_as_it_was,
+    program_digest,
+    tidy,
+    usable_folder,
+    write_own,
+)
 from rulec.rulebook.files.search_path import Dependency, find_rulebook, read_bytes
 from rulec.version import __version__
 
@@ -63,7 +68,7 @@ def asked(
 
     Raises RulecError as reading the rulebook does: R0703 for an unknown name, R0701.
     """
-    folder = cache_folder()
+    folder = usable_folder()
     if folder is None:
         return None
     folders = tuple([str(path) for path in search_path])
@@ -161,9 +166,7 @@ class _File:
         with suppress(OSError, RulecError, ValueError):
             entry = None if compiled is None else placed(compiled, tables)
             written = msgspec.structs.replace(text, rulebook=entry)
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            with written_whole(self.path) as stream:
-                stream.write(tables.file(msgspec.json.encode(written)))
+            write_own(self.path, tables.file(msgspec.json.encode(written)))
             tidy(self.path.parent, f"*{_ENDING}", MOST_FILES)
 
 

@@ -14,7 +14,7 @@ from math import prod
 from typing import Any
 
 from rulec.validation.formula_words import term_words
-from rulec.validation.letter_sets import TRUE_FOR, Letters, ReadDigits, subject
+from rulec.validation.letter_sets import TRUE_FOR, DigitRead, Letters, subject
 from rulec.validation.unprovable import UnprovableError, exact, require
 
 MOST_CASES = 1 << 16
@@ -146,7 +146,7 @@ def _of_group(
     return possible
 
 
-def _alike(letters: Letters, read: ReadDigits, told: Sequence[Any]) -> list[int]:
+def _alike(letters: Letters, read: DigitRead, told: Sequence[Any]) -> list[int]:
     """For each digit of a read the first one that the formula does not tell from it."""
     own = [letters.of(atom) for atom in told if subject(atom) == read.about]
     truths = [

@@ -31,7 +31,7 @@ TRUE_FOR: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class ReadDigits:
+class DigitRead:
     """What a letter's digit says: of what, how many digits there are, what each is called."""
 
     about: Any
@@ -45,18 +45,18 @@ class Letters:
     """The letters of some reads; a set of them is an integer's bits."""
 
     def __init__(self, reads: Sequence[Any], vocabulary: Mapping[str, Any]) -> None:
-        self.reads: list[ReadDigits] = []
+        self.reads: list[DigitRead] = []
         stride = 1
         for entry in reads:
             about, digits = _digits(entry, vocabulary)
             require(about not in [read.about for read in self.reads], "it reads a word twice")
-            self.reads.append(ReadDigits(about, len(digits), digits, stride, entry))
+            self.reads.append(DigitRead(about, len(digits), digits, stride, entry))
             stride *= len(digits)
             require(stride <= MOST_LETTERS, f"it tells more than {MOST_LETTERS} letters apart")
         self.count = stride
         self.everything = (1 << stride) - 1
 
-    def where(self, read: ReadDigits, digits: Iterable[int]) -> int:
+    def where(self, read: DigitRead, digits: Iterable[int]) -> int:
         """The letters in which a read has one of some digits."""
         zeros = ((1 << read.stride) - 1) * (self.everything // ((1 << read.stride * read.size) - 1))
         return sum(zeros << digit * read.stride for digit in set(digits))
@@ -75,7 +75,7 @@ class Letters:
         require(atom["value"] in read.entry["values"], "its table does not tell a value apart")
         return self.where(read, [read.entry["values"].index(atom["value"])])
 
-    def digit(self, read: ReadDigits, value: Fraction | str | bool) -> int:
+    def digit(self, read: DigitRead, value: Fraction | str | bool) -> int:
         """The digit of a value."""
         if "terms" in read.entry:
             places = [

@@ -19,6 +19,8 @@ from pathlib import Path
 from struct import Struct, error
 from typing import Literal, TypeAlias, TypeVar, get_args
 
+from rulec.files import is_own
+
 _Entry = TypeVar("_Entry", int, bool)
 
 _HEAD = Struct("<16s32sQ")
@@ -127,6 +129,6 @@ def _of_width(row: Sequence[_Entry], width: int) -> tuple[tuple[_Entry, ...], ..
 def mapped(path: Path) -> MappedTables:
     """Map a file of this user's. Raises OSError, or ValueError if it is damaged or not theirs."""
     with path.open("rb") as stream:
-        if os.fstat(stream.fileno()).st_uid != os.geteuid():
-            raise ValueError("somebody else has written it")
+        if not is_own(os.fstat(stream.fileno())):
+            raise ValueError("somebody else may have written it")
         return MappedTables(mmap(stream.fileno(), 0, access=ACCESS_READ))

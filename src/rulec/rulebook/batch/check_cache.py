@@ -2,13 +2,15 @@
 
 Checking a rulebook means parsing it and all that it builds upon; asking whether any of that has
 changed means reading the files alone. What is kept are diagnostics, one small file for each
-rulebook, in the user's cache folder. Anything odd about it, and the check is made anew.
+rulebook, in the user's cache folder. Anything odd about it, and the check is made anew: a file of
+which a bit is not as it was written, or one that somebody else has written or could have written.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import stat
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
@@ -17,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
-from rulec.files import written_whole
+from rulec.files import OF_OTHERS, is_own, written_whole
 from rulec.resources import package_files
 from rulec.rulebook.files.search_path import Dependency, locate_base, locate_vocabulary, read_bytes
 from rulec.version import __version__
@@ -69,14 +71,48 @@ def cache_folder() -> Path | None:
         return None
 
 
+def usable_folder() -> Path | None:
+    """The cache's folder, which may not be there yet; None if others can write to it, too.
+
+    Who writes there decides what is found. The default folder is closed to others.
+    """
+    folder = cache_folder()
+    if folder is None:
+        return None
+    try:
+        status = folder.stat()
+        if status.st_uid == os.geteuid() and not os.environ.get("RULEC_CACHE_DIR"):
+            folder.chmod(stat.S_IMODE(status.st_mode) & ~OF_OTHERS)
+            status = folder.stat()
+    except FileNotFoundError:
+        return folder
+    except (OSError, ValueError):
+        return None
+    return folder if is_own(status) else None
+
+
+def write_own(path: Path, data: bytes) -> None:
+    """Write a file of the cache, for its owner alone. Raises OSError, RulecError R0702."""
+    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    with written_whole(path) as stream:
+        stream.write(data)
+    path.chmod(0o600)
+
+
 def recall(question: CheckQuestion) -> tuple[Diagnostic, ...] | None:
     """The cached findings of an equal check; None if unknown."""
-    folder = cache_folder()
+    folder = usable_folder()
     if folder is None:
         return None
     kept = folder / f"{question.place()}.json"
     try:
-        data = json.loads(kept.read_bytes())
+        with kept.open("rb") as stream:
+            if not is_own(os.fstat(stream.fileno())):
+                return None
+            digest, _, text = stream.read().partition(b"\n")
+        if digest != _digest(text):
+            return None
+        data = json.loads(text)
         if data["stamp"] != question.stamp():
             return None
         dependencies = [Dependency(**dependency) for dependency in data["dependencies"]]
@@ -95,7 +131,7 @@ def remember(
     question: CheckQuestion, findings: Sequence[Diagnostic], dependencies: Sequence[Dependency]
 ) -> None:
     """Cache the findings of a check, if that is possible."""
-    folder = cache_folder()
+    folder = usable_folder()
     if folder is None or _size(findings) > MOST_CHARACTERS:
         return
     data = {
@@ -104,10 +140,13 @@ def remember(
         "findings": [asdict(finding) for finding in findings],
     }
     with suppress(OSError, RulecError, ValueError):
-        folder.mkdir(parents=True, exist_ok=True)
-        with written_whole(folder / f"{question.place()}.json") as stream:
-            stream.write(json.dumps(data).encode())
+        text = json.dumps(data).encode()
+        write_own(folder / f"{question.place()}.json", _digest(text) + b"\n" + text)
         tidy(folder, "*.json", MOST_FILES)
+
+
+def _digest(text: bytes) -> bytes:
+    return sha256(text).hexdigest().encode()
 
 
 def _size(findings: Sequence[Diagnostic]) -> int:
