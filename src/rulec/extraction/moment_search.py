@@ -40,7 +40,7 @@ class DriveMoments:
 
 
 def in_recording(
-    recording: Recording, query: FormulaQuery, wanted: RequestedDrives, file: str
+    recording: Recording, query: FormulaQuery, request: RequestedDrives, file: str
 ) -> Iterator[DriveMoments]:
     """The moments of each drive, each vehicle in turn as ego.
 
@@ -48,7 +48,7 @@ def in_recording(
     """
     selected = selected_drives(
         recording,
-        wanted,
+        request,
         file,
         traffic=query.traffic,
         vocabulary=query.vocabulary,

@@ -40,7 +40,7 @@ from rulec.extraction.signals.participant_signals import (
     participant_signals,
 )
 from rulec.extraction.signals.settling import settled
-from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, together
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
@@ -84,7 +84,7 @@ def _presences(context: DriveContext) -> Iterator[tuple[int, int, int]]:
         )
 
 
-_SIGNALS: tuple[Callable[[DriveContext, Wanted], SignalColumns], ...] = (
+_SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     ego_signals,
     participant_signals,
     following_signals,
@@ -203,8 +203,8 @@ ALL_SIGNALS = TraceWriter()
 
 def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) -> Drive:
     """The drive of ``ego`` as a trace called ``name``."""
-    wanted = _wanted(writer)
-    signals = together([signals_of(context, wanted) for signals_of in _SIGNALS])
+    names = _names_written(writer)
+    signals = together([signals_of(context, names) for signals_of in _SIGNALS])
     signals = settled(signals, LEAST_S, context.recording.step_s)
     types = [body.object_types for body in context.tracks.participants]
     chosen = written(signals, types, writer.vocabulary, writer.names)
@@ -239,7 +239,7 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     return Drive(ego, start_s, arrays, kinds, decided_by=decided_by, places=places)
 
 
-def _wanted(writer: TraceWriter) -> Wanted:
+def _names_written(writer: TraceWriter) -> SignalNames:
     """The names of the signals that will be written, None for all."""
     if writer.vocabulary is None:
         return None

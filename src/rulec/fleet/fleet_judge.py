@@ -23,7 +23,7 @@ class FleetJudge:
     """Judges all drives of an Arrow table, and gives the table of what was found.
 
     ``rules`` is a compiled rulebook: the path of its file, its content, or what
-    ``rulec.compile_rulebook`` returns. ``road_map`` is the map of tracks, ``wanted`` says by which
+    ``rulec.compile_rulebook`` returns. ``road_map`` is the map of tracks, ``request`` says by which
     thresholds and on which assumptions drives are judged, ``ends`` how traces end. A drive that
     lacks rows is refused (R0709); where tables are ``grouped`` by drives, it is reported instead.
     """
@@ -36,14 +36,14 @@ class FleetJudge:
         rules: CompiledRules,
         road_map: RoadMap | str | Path | None = None,
         *,
-        wanted: RequestedDrives | None = None,
+        request: RequestedDrives | None = None,
         ends: Ending | None = None,
         grouped: bool = False,
     ) -> None:
         # What goes to workers is the file's content: they need not have the file.
         self._rules = carried(rules)
         self._roads = str(road_map) if isinstance(road_map, Path) else road_map
-        self._wanted = wanted or RequestedDrives()
+        self._request = request or RequestedDrives()
         self._ends = ends
         self._grouped = grouped
         self._seen = SeenKeys()
@@ -59,12 +59,12 @@ class FleetJudge:
         if not table.num_rows:
             return arrow_table([])
         rules = self._rules.read()
-        to_rows = DriveRows(rules, judged_by(rules, self._wanted, self._ends or ""))
+        to_rows = DriveRows(rules, judged_by(rules, self._request, self._ends or ""))
         seen = None if self._grouped else self._seen
         if kind_of(table.column_names) == "tracks":
-            tracks = TrackTableJudge(to_rows, self._wanted, self._roads, seen)
+            tracks = TrackTableJudge(to_rows, self._request, self._roads, seen)
             return arrow_table(tracks.rows(table))
-        assumed = Assumptions(self._ends, self._wanted.assumed, self._wanted.defaults)
+        assumed = Assumptions(self._ends, self._request.assumed, self._request.defaults)
         return arrow_table(TraceTableJudge(to_rows, assumed, seen).rows(table))
 
     def __repr__(self) -> str:

@@ -45,16 +45,16 @@ class JudgedBy:
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
-def judged_by(rules: CompiledRulebook, wanted: RequestedDrives, ends: str = "") -> JudgedBy:
+def judged_by(rules: CompiledRulebook, request: RequestedDrives, ends: str = "") -> JudgedBy:
     """What drives are judged by; ``ends`` is how traces are taken to end, if that is chosen."""
-    given = wanted.thresholds
+    given = request.thresholds
     chosen = {
         field.name: getattr(given, field.name)
         for field in fields(given)
         if getattr(given, field.name) != getattr(USUAL, field.name)
     }
-    flags = {"defaults": wanted.defaults, "as recorded": wanted.as_recorded}
-    assumed = [*_pairs(wanted.assumed), *(name for name, holds in flags.items() if holds)]
+    flags = {"defaults": request.defaults, "as recorded": request.as_recorded}
+    assumed = [*_pairs(request.assumed), *(name for name, holds in flags.items() if holds)]
     return JudgedBy(
         rules.name,
         rulebook_hash(rules),

@@ -37,7 +37,7 @@ class TrackTableJudge:
     """
 
     to_rows: DriveRows
-    wanted: RequestedDrives
+    request: RequestedDrives
     roads: Roads
     seen: SeenKeys | None
 
@@ -68,7 +68,7 @@ class TrackTableJudge:
         name, file = own[RECORDING], own.get(FILE, "")
         try:
             recording = recording_of(rows, name, self.roads)
-            verdicts = RecordingVerdicts(recording, self.to_rows.rules, self.wanted, file or name)
+            verdicts = RecordingVerdicts(recording, self.to_rows.rules, self.request, file or name)
             yield from self.to_rows.of_recording(verdicts, file)
         except RulecError as error:
             yield self.to_rows.of_nothing(own, error.diagnostics[0].message)

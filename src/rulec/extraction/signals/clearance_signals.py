@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumns, Wanted
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark, Side
@@ -25,9 +25,9 @@ _UNSEEN_S = 5.0
 """For so long one whose track has ended is thought to drive on as before."""
 
 
-def clearance_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of what leaves ego room to go on, to overtake, and to pass, those wanted."""
-    return signals_by(_PASSES, context, wanted)
+def clearance_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of what leaves ego room to go on, to overtake, and to pass."""
+    return signals_by(_PASSES, context, names)
 
 
 def _for_overtaking(context: DriveContext) -> SignalColumns:

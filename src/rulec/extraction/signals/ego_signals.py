@@ -11,7 +11,12 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
-from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, named_values, rounded
+from rulec.extraction.signals.signal_columns import (
+    SignalColumns,
+    SignalNames,
+    named_values,
+    rounded,
+)
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 
@@ -28,9 +33,9 @@ _HAIR_M = 0.001
 _PLACES = ("centred", "at_near_edge", "at_far_edge")
 
 
-def ego_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of ego alone, those that are wanted."""
-    return signals_by(_PASSES, context, wanted)
+def ego_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of ego alone, those of the names."""
+    return signals_by(_PASSES, context, names)
 
 
 def _ego_type(context: DriveContext) -> SignalColumns:

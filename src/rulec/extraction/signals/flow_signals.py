@@ -23,7 +23,7 @@ from rulec.extraction.signals.queues import (
     queues_by_lane,
     vehicles_around,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, next_state
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, next_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 
@@ -34,9 +34,9 @@ _SETS_OFF_MPS2 = 2.0
 """Vehicles gain speed about so hard when they set off."""
 
 
-def flow_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of traffic as a whole, those that are wanted."""
-    return signals_by(_PASSES, context, wanted)
+def flow_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of traffic as a whole, those of the names."""
+    return signals_by(_PASSES, context, names)
 
 
 def _slow_traffic(context: DriveContext) -> SignalColumns:

@@ -17,7 +17,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
-    Wanted,
+    SignalNames,
     latest,
     rounded,
     rounded_outward,
@@ -26,9 +26,9 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 
-def following_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signal of times behind others, if it is wanted."""
-    return signals_by(_PASSES, context, wanted)
+def following_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signal of times behind others, if it is named."""
+    return signals_by(_PASSES, context, names)
 
 
 def _ahead_for(context: DriveContext) -> SignalColumns:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, latest, next_state
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, latest, next_state
 from rulec.extraction.signals.signal_passes import (
     Passes,
     once_a_recording,
@@ -29,9 +29,9 @@ _FLASH_S = 1.0
 """Lights that flash are on if they are lit within so long."""
 
 
-def intention_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of others' lamps and doors, and of what they are about to do, those wanted."""
-    return signals_by(_PASSES, context, wanted)
+def intention_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of others' lamps and doors, and of what they are about to do."""
+    return signals_by(_PASSES, context, names)
 
 
 def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, named_values
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, named_values
 from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark
@@ -32,9 +32,9 @@ _SINGLE = (
 _Marks = tuple[LaneMark | None, LaneMark | None]
 
 
-def lane_change_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of ego's lane changes, those that are wanted."""
-    return signals_by(_CHANGE_PASSES, context, wanted)
+def lane_change_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of ego's lane changes, those of the names."""
+    return signals_by(_CHANGE_PASSES, context, names)
 
 
 def _lane_change(context: DriveContext) -> SignalColumns:
@@ -108,9 +108,9 @@ def _disturbs(context: DriveContext, states: NDArray[intp]) -> Flags:
     return disturbs
 
 
-def lane_mark_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of marks, those that are wanted; none at all if the map has none."""
-    return signals_by(_MARK_PASSES, context, wanted) if map_contents(context).marks else _NONE
+def lane_mark_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of marks, those of the names; none at all if the map has none."""
+    return signals_by(_MARK_PASSES, context, names) if map_contents(context).marks else _NONE
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -18,7 +18,7 @@ from rulec.extraction.signals.measured_numbers import (
 )
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
-    Wanted,
+    SignalNames,
     latest,
     named_values,
     next_state,
@@ -31,9 +31,9 @@ from rulec.scenario.paper_words import LATERALS, STATIONS
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
 
-def participant_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of objects, those that are wanted."""
-    return signals_by(_PASSES, context, wanted)
+def participant_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of objects, those of the names."""
+    return signals_by(_PASSES, context, names)
 
 
 def _position(context: DriveContext) -> SignalColumns:

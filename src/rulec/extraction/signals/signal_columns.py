@@ -15,7 +15,7 @@ from rulec.extraction.tracks.tracks import Flags
 SignalColumn = NDArray[Any]
 Bounds: TypeAlias = tuple[SignalColumn, SignalColumn]
 
-Wanted: TypeAlias = frozenset[str] | None
+SignalNames: TypeAlias = frozenset[str] | None
 """The names of the signals that somebody reads; None for all."""
 
 
@@ -39,14 +39,14 @@ class SignalColumns:
         return together((self, other))
 
 
-def together(parts: Sequence[SignalColumns], wanted: Wanted = None) -> SignalColumns:
-    """The signals of all these, only those of the names that are wanted."""
+def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> SignalColumns:
+    """The signals of all these, optionally only those of some names."""
 
     def columns(kind: str) -> dict[str, Any]:
         found: dict[str, Any] = {}
         for part in parts:
             found |= getattr(part, kind)
-        return found if wanted is None else {x: found[x] for x in found if x in wanted}
+        return found if names is None else {x: found[x] for x in found if x in names}
 
     return SignalColumns(*map(columns, ("world", "about", "unknown", "only", "bounds")))
 

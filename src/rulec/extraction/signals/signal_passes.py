@@ -1,4 +1,4 @@
-"""Signal passes: which signals a function gives, and only those of them that are wanted."""
+"""Signal passes: which signals a function gives, and only those of them that somebody reads."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import wraps
 from typing import TypeAlias, TypeVar, cast
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, together
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
 
 Passes: TypeAlias = Mapping[tuple[str, ...], Callable[[DriveContext], SignalColumns]]
 """Names -> the function that gives signals of these names, and no others."""
@@ -15,14 +15,14 @@ Passes: TypeAlias = Mapping[tuple[str, ...], Callable[[DriveContext], SignalColu
 _Value = TypeVar("_Value")
 
 
-def signals_by(passes: Passes, context: DriveContext, wanted: Wanted) -> SignalColumns:
-    """The wanted signals of a drive, by those passes that give any of them."""
+def signals_by(passes: Passes, context: DriveContext, names: SignalNames) -> SignalColumns:
+    """The signals of a drive that have these names, by those passes that give any of them."""
     parts = [
         signals_of(context)
-        for names, signals_of in passes.items()
-        if wanted is None or not wanted.isdisjoint(names)
+        for given, signals_of in passes.items()
+        if names is None or not names.isdisjoint(given)
     ]
-    return together(parts, wanted)
+    return together(parts, names)
 
 
 def once_a_recording(

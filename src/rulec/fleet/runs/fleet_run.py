@@ -46,7 +46,7 @@ class FleetSettings:
 
     __repr__ = short_repr
 
-    wanted: RequestedDrives = field(default_factory=RequestedDrives)
+    request: RequestedDrives = field(default_factory=RequestedDrives)
     source: RecordingSource = field(default_factory=lambda: RecordingSource(Path("-")))
     ends: Ending | None = None
     engine: EngineName = "local"
@@ -92,9 +92,9 @@ def run_fleet(
     if not inputs.paths:
         raise RulecError([one for problem in inputs.problems for one in problem.diagnostics])
     carried_rules = carried(rules)
-    by = judged_by(carried_rules.read(), settings.wanted, settings.ends or "")
+    by = judged_by(carried_rules.read(), settings.request, settings.ends or "")
     kept = FleetFolder(folder, by)
-    kept.open(inputs.paths, settings.source, settings.wanted.egos)
+    kept.open(inputs.paths, settings.source, settings.request.egos)
     problems = list(inputs.problems)
     units: list[WorkUnit] = []
     for unit in work_units(inputs.tables, inputs.recordings):
@@ -102,7 +102,7 @@ def run_fleet(
             problems.append(unit)
         else:
             units.append(unit)
-    worker = UnitWorker(carried_rules, settings.wanted, settings.source, settings.ends, kept)
+    worker = UnitWorker(carried_rules, settings.request, settings.source, settings.ends, kept)
     before = {unit.digest for unit in units if kept.is_done(unit)}
     there = [unit for unit in units if unit.digest in before]
     rest = [unit for unit in units if unit.digest not in before]

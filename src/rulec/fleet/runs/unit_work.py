@@ -38,7 +38,7 @@ class UnitWorker:
     """
 
     rules: CarriedRulebook
-    wanted: RequestedDrives
+    request: RequestedDrives
     source: RecordingSource
     ends: Ending | None
     folder: FleetFolder
@@ -79,7 +79,7 @@ class UnitWorker:
             for recording in read_recordings(source):
                 own = {"file": unit.path, "recording": recording.name}
                 try:
-                    verdicts = RecordingVerdicts(recording, rules, self.wanted, unit.path)
+                    verdicts = RecordingVerdicts(recording, rules, self.request, unit.path)
                     yield from to_rows.of_recording(verdicts, unit.path)
                 except RulecError as error:
                     yield to_rows.of_nothing(own, error.diagnostics[0].message)
@@ -92,7 +92,7 @@ class UnitWorker:
             return
         if kind_of(table.column_names) == "tracks":
             roads = None if self.source.map_path is None else str(self.source.map_path)
-            yield from TrackTableJudge(to_rows, self.wanted, roads, None).rows(table)
+            yield from TrackTableJudge(to_rows, self.request, roads, None).rows(table)
         else:
-            assumed = Assumptions(self.ends, self.wanted.assumed, self.wanted.defaults)
+            assumed = Assumptions(self.ends, self.request.assumed, self.request.defaults)
             yield from TraceTableJudge(to_rows, assumed, None).rows(table)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import next_crossing
-from rulec.extraction.signals.signal_columns import SignalColumns, Wanted, latest, named_values
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, latest, named_values
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -22,9 +22,9 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
 
-def crossing_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of pedestrians, and of vehicles that stop for them, those that are wanted."""
-    return signals_by(_PASSES, context, wanted)
+def crossing_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of pedestrians, and of vehicles that stop for them, those of the names."""
+    return signals_by(_PASSES, context, names)
 
 
 def _crossing_use(context: DriveContext) -> SignalColumns:

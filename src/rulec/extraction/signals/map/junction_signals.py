@@ -7,7 +7,7 @@ import numpy as np
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.priority_signals import own_passages
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, Wanted
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Light, ObservedLight
@@ -26,9 +26,9 @@ _COLOURS = {
 }
 
 
-def junction_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of junctions on ego's road, their lights and signs, those that are wanted."""
-    return signals_by(_PASSES, context, wanted)
+def junction_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of junctions on ego's road, their lights and signs, those of the names."""
+    return signals_by(_PASSES, context, names)
 
 
 def _junction_zone(context: DriveContext) -> SignalColumns:

@@ -11,7 +11,7 @@ from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import stop_line
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
-    Wanted,
+    SignalNames,
     rounded,
     rounded_outward,
 )
@@ -39,9 +39,9 @@ _SURFACES = {
 """Type of a lanelet -> surface; a later one counts."""
 
 
-def map_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of ego's road, as far as the map knows them, those that are wanted."""
-    return signals_by(_PASSES, context, wanted)
+def map_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of ego's road, as far as the map knows them, those of the names."""
+    return signals_by(_PASSES, context, names)
 
 
 def _distance_to_crossing(context: DriveContext) -> SignalColumns:

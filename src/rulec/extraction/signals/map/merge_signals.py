@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.signal_columns import SignalColumns, Wanted
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_by
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Lanelet
@@ -27,9 +27,9 @@ _RAMPS = frozenset({"accessRamp", "exitRamp"})
 """Who joins from an acceleration lane gives way, and who leaves a road does not go on beside it."""
 
 
-def merge_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of ego's place at narrowings, and of who is beside it there, if wanted."""
-    return signals_by(_PASSES, context, wanted)
+def merge_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of ego's place at narrowings, and of who is beside it there, if named."""
+    return signals_by(_PASSES, context, names)
 
 
 def _narrowings(context: DriveContext) -> SignalColumns:

@@ -17,7 +17,7 @@ from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.conflicts import SLOWEST_MPS, first_column, in_conflict
 from rulec.extraction.signals.map.oncoming_priority import gives_way_to, turns_far
 from rulec.extraction.signals.map.roundabout_signals import without_junction
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, Wanted
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import Junction, approaches, before_joining
@@ -49,9 +49,9 @@ class Encounter:
     together: bool
 
 
-def priority_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of right of way at junctions, those that are wanted."""
-    return signals_by(_PASSES, context, wanted)
+def priority_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of right of way at junctions, those of the names."""
+    return signals_by(_PASSES, context, names)
 
 
 def _conflicts(context: DriveContext) -> SignalColumns:

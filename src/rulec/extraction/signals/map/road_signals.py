@@ -11,7 +11,7 @@ import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, Wanted
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import (
     Passes,
     once_a_recording,
@@ -36,9 +36,9 @@ _LANE_KINDS = {
 }
 
 
-def road_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of ego's road, its surroundings and its weather, those that are wanted."""
-    return signals_by(_PASSES, context, wanted)
+def road_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of ego's road, its surroundings and its weather, those of the names."""
+    return signals_by(_PASSES, context, names)
 
 
 def _built_up(context: DriveContext) -> SignalColumns:

@@ -8,7 +8,7 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, Wanted
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_by
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.extraction.tracks.tracks import Flags
@@ -16,9 +16,9 @@ from rulec.extraction.tracks.tracks import Flags
 _SIGNS = frozenset({"YIELD", "ROUNDABOUT"})
 
 
-def roundabout_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of roundabouts on ego's road, which are rings of lanelets, if they are wanted."""
-    return signals_by(_PASSES, context, wanted)
+def roundabout_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of roundabouts on ego's road, which are rings of lanelets, if they are named."""
+    return signals_by(_PASSES, context, names)
 
 
 def _rings(context: DriveContext) -> SignalColumns:

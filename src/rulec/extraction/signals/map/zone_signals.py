@@ -13,7 +13,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_signals import room_beside
 from rulec.extraction.signals.map.map_signals import next_crossing
-from rulec.extraction.signals.signal_columns import SignalColumns, Wanted
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import (
     Passes,
     once_a_recording,
@@ -35,9 +35,9 @@ _ROOM_M = 1.0
 Stretches = Sequence[tuple[float, float]]
 
 
-def zone_signals(context: DriveContext, wanted: Wanted = None) -> SignalColumns:
-    """The signals of crossings and of the room behind what ego enters, those that are wanted."""
-    return signals_by(_PASSES, context, wanted)
+def zone_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of crossings and of the room behind what ego enters, those of the names."""
+    return signals_by(_PASSES, context, names)
 
 
 def _level_crossings(context: DriveContext) -> SignalColumns:

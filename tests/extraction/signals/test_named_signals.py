@@ -1,4 +1,4 @@
-"""Only wanted signals are computed, and each is the same as among all."""
+"""Only signals of the names given are computed, and each is the same as among all."""
 
 from dataclasses import replace
 
@@ -72,7 +72,7 @@ def test_together_they_give_all_words_that_some_format_can_tell():
 
 
 @pytest.mark.parametrize("signals_of", GROUPS, ids=lambda signals_of: signals_of.__name__)
-def test_a_wanted_signal_is_the_same_without_the_others(signals_of):
+def test_a_signal_is_the_same_without_the_others(signals_of):
     found = everything()
     together = signals_of(context_of(found))
     for name in names(together):
