@@ -106,7 +106,7 @@ def sides(*ys, own_y=0.0, name="USA_Peach-1", width=2.0):
     found = replace(recording(lanes(2), [steady(7, 0, own_y), *others]), name=name)
     signals = participant_signals(context_of(found))
     known = ~signals.unknown["lateral"][:, 0]
-    told = signals.about["lateral"][:, 0].tolist()
+    told = signals.values("lateral")[:, 0].tolist()
     return [side if sure else None for side, sure in zip(told, known.tolist(), strict=True)]
 
 
@@ -173,7 +173,7 @@ def test_one_that_stands_and_leaves_room_is_not_followed_too_closely():
         cycle = steady(7, 0, y, speed=6.0, width=0.6, kind="bicycle")
         found = recording(lanes(1), [cycle, steady(8, 5, 0.5, speed=0.0)])
         signals = participant_signals(context_of(replace(found, name=EXACT)))
-        assert signals.about["lateral"][0, 0] == "same_lane"
+        assert signals.values("lateral")[0, 0] == "same_lane"
         return bool(signals.about["safe_gap"][0, 0])
 
     assert safe(-1.4)

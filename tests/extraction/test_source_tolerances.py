@@ -119,7 +119,7 @@ def test_time_headway_and_speed_are_of_the_same_speed():
 def test_who_is_level_to_within_a_tolerance_has_no_station(name, x, station, known):
     bodies = steady(7, 0, 0), steady(8, x, 4)
     found = participant_signals(context_of(of_source(name, *bodies)))
-    assert found.about["station"][0, 0] == station
+    assert found.values("station")[0, 0] == station
     assert found.unknown["station"][0, 0] == (not known)
 
 

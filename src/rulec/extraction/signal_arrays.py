@@ -10,7 +10,6 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
-from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.paper_words import PAPER_SURFACE
 from rulec.trace import Value
 from rulec.trace.trace_arrays import TraceArrays
@@ -67,14 +66,13 @@ def written(
     for name, declaration in vocabulary.declarations.items():
         if names is not None and name not in names:
             continue
-        unknown = signals.unknown.get(name)
         if name in signals.world and not declaration.parameters:
             column = _in_paper_words(name, signals.world[name], declaration)
-            numbers = _numbers(name, column, unknown, declaration)
+            numbers = _numbers(name, column, signals, declaration)
             if numbers is not None:
                 world[name] = numbers
         if name in signals.about and len(declaration.parameters) == 1:
-            numbers = _numbers(name, signals.about[name], unknown, declaration)
+            numbers = _numbers(name, signals.about[name], signals, declaration)
             if numbers is not None:
                 about[name] = numbers
                 about_it = {own: is_about(declaration, own, vocabulary) for own in set(own_types)}
@@ -88,7 +86,8 @@ def written(
 def _all(signals: SignalColumns) -> WrittenSignals:
     texts: dict[str, tuple[str, ...]] = {}
 
-    def numbers(name: str, column: SignalColumn) -> SignalColumn:
+    def numbers(name: str) -> SignalColumn:
+        column = signals.values(name)
         if column.dtype.kind != "U":
             return column
         found, places = np.unique(column, return_inverse=True)
@@ -96,25 +95,33 @@ def _all(signals: SignalColumns) -> WrittenSignals:
         return places.reshape(column.shape)
 
     world, about = (
-        {name: numbers(name, column) for name, column in columns.items()}
-        for columns in (signals.world, signals.about)
+        {name: numbers(name) for name in columns} for columns in (signals.world, signals.about)
     )
     return WrittenSignals(replace(signals, world=world, about=about), texts)
 
 
 def _numbers(
-    name: str, column: SignalColumn, unknown: Flags | None, declaration: Declaration
+    name: str, column: SignalColumn, signals: SignalColumns, declaration: Declaration
 ) -> SignalColumn | None:
     """A column, texts as places among a declaration's; None if it says anything else."""
-    if not isinstance(declaration, Enumeration) or column.dtype.kind != "U":
+    texts = signals.texts.get(name)
+    if not isinstance(declaration, Enumeration) or (texts is None and column.dtype.kind != "U"):
         # All values but texts are alike
-        return column if fits(name, column.ravel()[:1].tolist(), declaration) else None
+        fit = texts is None and fits(name, column.ravel()[:1].tolist(), declaration)
+        return column if fit else None
     n_values = len(declaration.values)
-    places = np.full(column.shape, n_values, dtype=smallest_unsigned(n_values + 1))
-    for place, value in enumerate(declaration.values):
-        places[column == value] = place
+    dtype = smallest_unsigned(n_values + 1)
+    if texts is None:
+        places = np.full(column.shape, n_values, dtype=dtype)
+        for place, value in enumerate(declaration.values):
+            places[column == value] = place
+    else:
+        known = {value: place for place, value in enumerate(declaration.values)}
+        table = np.array([known.get(text, n_values) for text in texts], dtype=dtype)
+        places = table.take(column)
     strange = places == n_values
     if strange.any():
+        unknown = signals.unknown.get(name)
         if unknown is None or unknown.all() or (strange & ~unknown).any():
             return None
         places[strange] = 0

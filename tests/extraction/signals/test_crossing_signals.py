@@ -20,7 +20,7 @@ def use(x, y, along=0.0, across=0.0, **thresholds):
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     ego = steady(7, 20, 0, steps=2)
     context = context_of(recording([*lanes(1), ZEBRA], [ego, walker]), **thresholds)
-    return str(crossing_signals(context).about["crossing_use"][0, 0])
+    return str(crossing_signals(context).values("crossing_use")[0, 0])
 
 
 @pytest.mark.parametrize(
@@ -63,10 +63,10 @@ def test_who_has_crossed_egos_lane_is_let_across(y, across, expected):
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     beside = steady(9, 50, 4, speed=0, steps=2)
     found = recording([*lanes(2), ZEBRA], [steady(7, 20, 0, steps=2), walker, beside])
-    about = crossing_signals(context_of(found)).about
-    assert str(about["crossing_use"][0, 0]) == expected
+    signals = crossing_signals(context_of(found))
+    assert str(signals.values("crossing_use")[0, 0]) == expected
     # Whoever stands in the next lane stands for it all the same
-    assert about["stopped_for_pedestrian"][1, 0]
+    assert signals.about["stopped_for_pedestrian"][1, 0]
 
 
 def test_who_has_crossed_egos_lane_has_done_so_while_it_turns_along_the_road():
@@ -76,7 +76,7 @@ def test_who_has_crossed_egos_lane_has_done_so_while_it_turns_along_the_road():
     walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     ego = steady(7, 0, 0, speed=2, steps=60, step_s=0.1)
     context = context_of(recording([*lanes(2), ZEBRA], [ego, walker], step_s=0.1))
-    uses = crossing_signals(context).about["crossing_use"][0]
+    uses = crossing_signals(context).values("crossing_use")[0]
     assert uses[5] == "on_crossing"
     assert set(uses[17:28]) == {"not_crossing"}
     # Who stays there for longer than a second may come back
@@ -91,8 +91,8 @@ def test_who_turns_away_from_those_who_have_crossed_its_lane_is_not_in_their_way
     walker = vehicle(8, {0: (60, 2.5), 1: (60, 3.25)}, "pedestrian", length=0.4, width=0.4)
     ego = vehicle(7, {0: (54, 1.6), 1: (54.5, 1.6 + 0.2 * turn)}, heading=-0.6, speed=1.0)
     found = recording([*lanes(2), ZEBRA], [ego, walker])
-    about = crossing_signals(context_of(found)).about
-    assert str(about["crossing_use"][0, 0]) == expected
+    signals = crossing_signals(context_of(found))
+    assert str(signals.values("crossing_use")[0, 0]) == expected
 
 
 def test_walking_along_the_pavement_is_not_coming_to_cross():
@@ -148,7 +148,7 @@ def over_the_crossing(comes_s, front=30.0, speed=10.0, states=50):
         vehicle(8, walker, "pedestrian", length=0.4, width=0.4),
     ]
     signals = crossing_signals(context_of(recording([*lanes(1), ZEBRA], people, step_s=step_s)))
-    uses = signals.about["crossing_use"][0]
+    uses = signals.values("crossing_use")[0]
     return uses, signals.unknown["crossing_use"][0]
 
 

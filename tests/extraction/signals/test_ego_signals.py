@@ -11,7 +11,9 @@ from support.generators.random_recordings import lanes
 
 
 def world(body, count=3, route=("1",), side="right", **thresholds):
-    return ego_signals(context_of(recording(lanes(count), [body]), route, side, **thresholds)).world
+    context = context_of(recording(lanes(count), [body]), route, side, **thresholds)
+    signals = ego_signals(context)
+    return {name: signals.values(name) for name in signals.world}
 
 
 def drive(*places, **more):

@@ -89,14 +89,14 @@ def test_indicators_by_side_and_where_lamps_are_unknown():
     }
     body = replace(vehicle(7, CHANGE), lamps=lamps)
     found = changes(body=body)
-    assert found.world["indicator"].tolist()[:3] == [
+    assert found.values("indicator").tolist()[:3] == [
         "no_indicator",
         "far_indicator",
         "no_indicator",
     ]
     assert found.unknown["indicator"].tolist() == [False, False, False, True]
     left = changes(body=body, side="left")
-    assert left.world["indicator"][1] == "near_indicator"
+    assert left.values("indicator")[1] == "near_indicator"
     assert "indicator" not in changes().world
 
 

@@ -78,7 +78,7 @@ def test_a_signal_is_the_same_without_the_others(signals_of):
     for name in names(together):
         alone = signals_of(context_of(found), frozenset({name}))
         assert names(alone) == {name}
-        for part in ("world", "about", "unknown", "only", "bounds"):
+        for part in ("world", "about", "unknown", "only", "bounds", "texts"):
             columns, among_all = getattr(alone, part), getattr(together, part)
             assert columns.keys() == among_all.keys() & {name}
             for own in columns:

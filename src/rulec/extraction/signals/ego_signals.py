@@ -14,7 +14,6 @@ from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
-    named_values,
     rounded,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
@@ -84,16 +83,17 @@ def _lane(context: DriveContext) -> SignalColumns:
     lane, moves = _from_kerb(context, context.steady_lane), context.steady_lane != context.ego_lane
     if moves.any():
         moves = lane != _from_kerb(context, context.ego_lane)
-    return SignalColumns({"lane": named_values(lane, _LANES)}, unknown={"lane": moves})
+    return SignalColumns({"lane": lane}, unknown={"lane": moves}, texts={"lane": _LANES})
 
 
 def _lane_count(context: DriveContext) -> SignalColumns:
     count = context.existing_lanes.sum(axis=1)
-    return SignalColumns({"lanes": named_values(np.clip(count - 1, 0, 2), _COUNTS)})
+    return SignalColumns({"lanes": np.clip(count - 1, 0, 2)}, texts={"lanes": _COUNTS})
 
 
 def _lane_position(context: DriveContext) -> SignalColumns:
-    return SignalColumns({"lane_position": named_values(_place_in_lane(context), _PLACES)})
+    place = _place_in_lane(context)
+    return SignalColumns({"lane_position": place}, texts={"lane_position": _PLACES})
 
 
 def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:

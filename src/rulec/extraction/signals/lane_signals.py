@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, named_values
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark
@@ -85,8 +85,9 @@ def _indicator(context: DriveContext) -> SignalColumns:
     lit = [(lamps or frozenset()) & _INDICATORS for lamps in steps]
     codes = np.array([0 if len(lamps) != 1 else 2 if far in lamps else 1 for lamps in lit])
     return SignalColumns(
-        {"indicator": named_values(codes, _INDICATIONS)},
+        {"indicator": codes},
         unknown={"indicator": np.array([lamps is None for lamps in steps])},
+        texts={"indicator": _INDICATIONS},
     )
 
 

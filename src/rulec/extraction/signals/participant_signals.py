@@ -20,7 +20,6 @@ from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
     latest,
-    named_values,
     next_state,
     rounded,
 )
@@ -44,10 +43,11 @@ def _station(context: DriveContext) -> SignalColumns:
     station, others = relations.station(context), relations.possible_stations(context)
     doubtful = np.logical_or.reduce([station != codes for codes in others])
     return SignalColumns(
-        about={"station": named_values(station, STATIONS)},
+        about={"station": station},
         unknown={
             "station": doubtful & ~_passing(station, ~doubtful & ~np.isnan(context.extents.s_min))
         },
+        texts={"station": STATIONS},
     )
 
 
@@ -66,8 +66,9 @@ def _passing(codes: NDArray[int8], sure: Flags) -> Flags:
 def _lateral(context: DriveContext) -> SignalColumns:
     lateral, others = relations.lateral(context), relations.possible_laterals(context)
     return SignalColumns(
-        about={"lateral": named_values(lateral, LATERALS)},
+        about={"lateral": lateral},
         unknown={"lateral": np.logical_or.reduce([lateral != codes for codes in others])},
+        texts={"lateral": LATERALS},
     )
 
 

@@ -34,6 +34,12 @@ class SignalColumns:
     unknown: Mapping[str, Flags] = field(default_factory=dict)
     only: Mapping[str, Flags] = field(default_factory=dict)
     bounds: Mapping[str, Bounds] = field(default_factory=dict)
+    texts: Mapping[str, Sequence[str]] = field(default_factory=dict)
+
+    def values(self, name: str) -> SignalColumn:
+        """The values of a signal, as texts if they stand for such."""
+        column = self.world[name] if name in self.world else self.about[name]
+        return np.array(self.texts[name])[column] if name in self.texts else column
 
     def __or__(self, other: SignalColumns) -> SignalColumns:
         return together((self, other))
@@ -48,12 +54,7 @@ def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> Signa
             found |= getattr(part, kind)
         return found if names is None else {x: found[x] for x in found if x in names}
 
-    return SignalColumns(*map(columns, ("world", "about", "unknown", "only", "bounds")))
-
-
-def named_values(codes: SignalColumn, names: Sequence[str]) -> SignalColumn:
-    """The names that indices stand for."""
-    return np.array(names)[codes]
+    return SignalColumns(*map(columns, ("world", "about", "unknown", "only", "bounds", "texts")))
 
 
 def latest(flags: Flags) -> NDArray[intp]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import next_crossing
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, latest, named_values
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, latest
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -36,9 +36,10 @@ def _crossing_use(context: DriveContext) -> SignalColumns:
         own[rows] = np.where(_past_ego(context) | too_late, 0, used)
         unsure[rows] = may_be & (own[rows] > 0)
     return SignalColumns(
-        about={"crossing_use": named_values(own, _USES)},
+        about={"crossing_use": own},
         only={"crossing_use": context.tracks.of_type("pedestrian")},
         unknown={"crossing_use": unsure},
+        texts={"crossing_use": _USES},
     )
 
 
