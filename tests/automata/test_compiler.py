@@ -276,9 +276,9 @@ def test_a_failed_check_is_an_error_of_its_own(monkeypatch):
 from rulec.automata.spot_bridge import CheckError, translation
 def fail(*_): raise CheckError
 translation.check = fail
-main()
+main(confined)
 """
-    worker = compiler._WORKER.replace("\nmain()\n", failing)
+    worker = compiler._WORKER.replace("\nmain(confined)\n", failing)
     assert worker != compiler._WORKER
     monkeypatch.setattr(compiler, "_WORKER", worker)
     with pytest.raises(RulecError) as caught:
@@ -288,8 +288,9 @@ main()
 
 def test_what_nobody_thought_of_is_a_bug_with_a_traceback(monkeypatch):
     worker = compiler._WORKER.replace(
-        "\nmain()\n",
-        "\nfrom rulec.automata.spot_bridge import translation\ntranslation.check = None\nmain()\n",
+        "\nmain(confined)\n",
+        "\nfrom rulec.automata.spot_bridge import translation"
+        "\ntranslation.check = None\nmain(confined)\n",
     )
     monkeypatch.setattr(compiler, "_WORKER", worker)
     with pytest.raises(RuntimeError, match="while compiling rule A"):
@@ -302,9 +303,11 @@ def test_a_table_that_fails_on_random_words_is_an_error_too(monkeypatch):
 from rulec.logic.past_registers import Register
 after = Register.after
 Register.after = lambda self, state, left, right: after(self, state, left, right) & 0b111
-main()
+main(confined)
 """
-    monkeypatch.setattr(compiler, "_WORKER", compiler._WORKER.replace("\nmain()\n", forgetting))
+    monkeypatch.setattr(
+        compiler, "_WORKER", compiler._WORKER.replace("\nmain(confined)\n", forgetting)
+    )
     short, long = (always(implies(Q, Unary(UnaryOperator.ONCE, P, within(0, n)))) for n in (2, 3))
     assert compile_rulebook(book(rule("A", short))).rules
     with pytest.raises(RulecError) as caught:

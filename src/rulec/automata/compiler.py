@@ -6,6 +6,7 @@ so it runs beside this one, with bounds on processor time and memory.
 
 from __future__ import annotations
 
+import os
 import pickle
 import subprocess
 import sys
@@ -22,7 +23,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRulebook,
     alike,
 )
-from rulec.automata.compiler_messages import no_machine, no_spot
+from rulec.automata.compiler_messages import no_machine, no_spot, not_confined
 from rulec.automata.spot_worker import Done, Failed, Job, WorkerGreeting
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
@@ -37,11 +38,14 @@ from rulec.version import __version__
 CPU_LIMIT_S = 5
 
 # It finds what this process finds, and nothing in the working directory.
+_REQUIRE_CONFINED = "RULEC_REQUIRE_CONFINED"
 _WORKER = """
 import sys
 sys.path[:] = sys.argv[1:]
+from rulec.automata.confinement import confine
+confined = confine()  # before NumPy has threads
 from rulec.automata.spot_worker import main
-main()
+main(confined)
 """
 
 
@@ -173,6 +177,8 @@ def _worker() -> Iterator[tuple[subprocess.Popen[bytes], str]]:
             ready = WorkerGreeting(None, f"its process ended with status {process.wait()}")
         if ready.spot is None:
             raise RulecError(no_spot(ready.problem))
+        if ready.confined and not all(ready.confined) and os.environ.get(_REQUIRE_CONFINED):
+            raise RulecError(not_confined(ready.confined))
         yield process, ready.spot
     finally:
         process.kill()

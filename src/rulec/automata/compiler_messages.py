@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rulec.automata.axiom_instances import AxiomInstance
+from rulec.automata.confinement import Confinement
 from rulec.automata.spot_worker import Failed
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
@@ -43,6 +44,16 @@ SPOT_MISSING = Code(
     why="Spot turns formulas into automata. There is a package for Linux on x86-64 (`pip install "
     "spottl`), and one for other systems (`conda install -c conda-forge spot`). A rulebook "
     "that was compiled elsewhere runs without Spot.",
+    kind="circumstance",
+)
+
+SPOT_NOT_CONFINED = Code(
+    "R0412",
+    title="the process that compiles cannot be confined",
+    why="Spot runs in a process that can write no file, open no connection and start no program: "
+    "Linux keeps it from that, by Landlock from 5.13 on and by seccomp. On other systems and older "
+    "kernels it runs all the same, unless the environment variable `RULEC_REQUIRE_CONFINED` asks "
+    "for more.",
     kind="circumstance",
 )
 
@@ -115,4 +126,17 @@ def no_spot(problem: str) -> Diagnostic:
         f"Spot, which turns rules into automata, cannot be loaded: {problem}",
         help="`pip install spottl` on Linux x86-64 with glibc 2.34 or later, "
         "`conda install -c conda-forge spot` elsewhere; a compiled rulebook runs without Spot",
+    )
+
+
+def not_confined(confined: Confinement) -> Diagnostic:
+    """R0412: the worker can do more than its task needs."""
+    left = {"write files (no Landlock)": confined.files}
+    left["connect and run programs (no seccomp)"] = confined.connections
+    able = " and ".join(what for what, is_held in left.items() if not is_held)
+    return SPOT_NOT_CONFINED.at(
+        None,
+        f"RULEC_REQUIRE_CONFINED is set, but Spot's process could {able}",
+        help="compile on Linux from 5.13, on x86-64 or ARM64, outside of containers that forbid "
+        "Landlock; judge elsewhere by what was compiled there; or unset RULEC_REQUIRE_CONFINED",
     )

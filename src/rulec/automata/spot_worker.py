@@ -19,6 +19,7 @@ from typing import Literal
 
 from rulec.automata.alphabet import AND, count_letters, joined, letters_with, propositions_of
 from rulec.automata.axiom_instances import AxiomGroup, AxiomInstance, possible_letters
+from rulec.automata.confinement import Confinement
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.tables import build_machine
 from rulec.logic.bounds import BOOLEAN, operations_of, range_of
@@ -128,10 +129,14 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class WorkerGreeting:
-    """First message of a worker: Spot's version, or None and a ``problem``."""
+    """First message of a worker: Spot's version, or None and a ``problem``.
+
+    ``confined``: what the worker is kept from.
+    """
 
     spot: str | None
     problem: str = ""
+    confined: Confinement | tuple[()] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +160,7 @@ class Failed:
     contradiction: tuple[AxiomInstance, ...] = ()
 
 
-def main() -> None:
+def main(confined: Confinement) -> None:
     """Answer jobs until standard input ends."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     _limit(resource.RLIMIT_AS, MEMORY_LIMIT_BYTES)
@@ -165,7 +170,7 @@ def main() -> None:
     except ImportError as problem:
         pickle.dump(WorkerGreeting(None, str(problem)), answers)
         return
-    pickle.dump(WorkerGreeting(spot_bridge.VERSION), answers)
+    pickle.dump(WorkerGreeting(spot_bridge.VERSION, confined=confined), answers)
     answers.flush()
     while True:
         try:
