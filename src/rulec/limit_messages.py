@@ -18,7 +18,7 @@ type car
 signal near(a: car, b: car) default false
 hard rule gap (a: car, b: car) { require always not near(a, b) }
 .
-echo '{"objects": {"v": "car", "w": "car"}, "states": [{"near": {"v": {"w": true}}}]}' > t.jsonl
+echo '{"objects": {"v": "car", "w": "car"}, "states": [{}]}' > t.jsonl
 rulec --limit choices=1 verify t.jsonl -r close.rules""",
     good="""cat > close.rules <<.
 rulebook close
@@ -26,7 +26,7 @@ type car
 signal near(a: car, b: car) default false
 hard rule gap (a: car, b: car) { require always not near(a, b) }
 .
-echo '{"objects": {"v": "car", "w": "car"}, "states": [{"near": {"v": {"w": true}}}]}' > t.jsonl
+echo '{"objects": {"v": "car", "w": "car"}, "states": [{}]}' > t.jsonl
 rulec --limit choices=2 verify t.jsonl -r close.rules""",
     kind="command",
 )

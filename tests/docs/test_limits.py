@@ -75,4 +75,6 @@ def test_the_page_lists_the_limits_that_are_fixed():
 )
 def test_a_limit_that_is_none_is_refused(given, words, capsys):
     assert main(["--limit", given, "list"]) == 2
-    assert words in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "R0719" in said
+    assert words in said

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import perm
 
 from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
 from rulec.diagnostics.code import Code
 from rulec.logic.bounds import NotAMultipleError
 from rulec.logic.printing import time_in_words
+from rulec.resource_limits import CHOICES
 from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, Limit
 from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.rulebook_model import Rule
 from rulec.syntax import tree
 from rulec.syntax.messages.mismatch import FORMULA_TOO_DEEP
+
+CROWD = 30
+"""So many objects are around in dense traffic."""
 
 UNUSED_VARIABLE = Code(
     "R0207",
@@ -33,6 +38,22 @@ UNUSED_CONSTANT = Code(
     bad="rulebook example\nsignal wet\noption strict = on\nhard rule r { require not wet }\n",
     good="rulebook example\nsignal wet\noption strict = on\n"
     "hard rule r { require strict implies not wet }\n",
+)
+
+MANY_CHOICES = Code(
+    "R0326",
+    title="a rule has very many choices of objects",
+    why="A rule is judged for every choice of different objects for its variables, and each "
+    "variable multiplies them: five variables have 17 million choices of thirty objects. What is "
+    "read of some of the objects often shows that the others do not matter; where it does not, a "
+    "trace is not judged, since there is a limit (docs/limits.md). A rule about pairs says most of "
+    "what a rule about five says; `some`, `every` and `count` speak of many objects without "
+    "choosing them.",
+    bad="rulebook example\ntype car\nsignal close(a: car, b: car) default false\n"
+    "hard rule r (a: car, b: car, c: car, d: car, e: car) {\n"
+    "  require never (close(a, b) and close(b, c) and close(c, d) and close(d, e))\n}\n",
+    good="rulebook example\ntype car\nsignal close(a: car, b: car) default false\n"
+    "hard rule r (a: car, b: car) { require never close(a, b) }\n",
 )
 
 UNKNOWN_PRIORITY = Code(
@@ -159,6 +180,21 @@ def unused_variable(
         f"the {what} says nothing about `{variable.name.text}`",
         expected=f"not used {where}",
         help=way_out,
+        severity="warning",
+    )
+
+
+def many_choices(item: tree.RuleItem, n_variables: int) -> Diagnostic | None:
+    """A warning if a crowd of objects has more choices than are usually looked at."""
+    number = perm(CROWD, n_variables)
+    if number <= CHOICES.usual:
+        return None
+    return MANY_CHOICES.at(
+        item.name.span,
+        f"rule `{item.name.text}` has {number:,} choices of {CROWD} objects for its "
+        f"{n_variables} variables",
+        expected=f"at most {CHOICES.usual:,} are looked at, unless --limit says otherwise",
+        help="give it fewer variables, or count objects with `some`, `every` or `count`",
         severity="warning",
     )
 

@@ -45,6 +45,8 @@ def translate_rule(
     formula = None if parts is None else _formula(item, parts, scope)
     if item.complete and formula is not None:
         mistakes += scope.unused(item.variables, item)
+    if (crowded := say.many_choices(item, len(variables))) is not None:
+        scope.report(crowded)
     if item.level is not None and levels is not None and item.level.text not in levels:
         scope.report(say.no_level(item.level, levels))
     weight = Fraction(1) if item.weight is None else exact_value(item.weight, scope)
