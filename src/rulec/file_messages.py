@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, Source, SourceLocation
+from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation
 from rulec.diagnostics.code import Code
 
 NOT_UTF8 = Code(
@@ -107,6 +107,40 @@ NOTHING_LEFT = Code(
     "echo 'rulebook a signal p hard rule r { require p }' > mine.rules\nrulec check .",
     kind="command",
 )
+
+NOT_THE_SAME_FILE = Code(
+    "R0734",
+    title="a file would not be the same after it is rewritten",
+    why="`rulec fmt` writes a file anew and gives it the old one's name, so that it is never half "
+    "written. A file with several names (hard links) would then be two, and one whose owner you "
+    "are not might have you for its owner. Such files are left as they are.",
+    bad="echo 'rulebook a  signal p hard rule r { require p }' > a.rules\n"
+    "ln a.rules b.rules\nrulec fmt a.rules",
+    good="echo 'rulebook a  signal p hard rule r { require p }' > a.rules\n"
+    "cp a.rules b.rules\nrulec fmt a.rules",
+    kind="command",
+)
+
+OVERWRITES_INPUT = Code(
+    "R0735",
+    title="an answer would take the place of what is read",
+    why="The file that an answer is to be written to is one that the command reads, perhaps by "
+    "another path or a link, or a source that is there already. Nothing was read or written. "
+    "Give the answer another name.",
+    bad="echo 'rulebook a signal p hard rule r { require p }' > a.rules\n"
+    "rulec doc ./a.rules -o a.rules --output-format markdown",
+    good="echo 'rulebook a signal p hard rule r { require p }' > a.rules\n"
+    "rulec doc ./a.rules -o a.md",
+    kind="command",
+)
+
+
+def not_the_same(path: Path, why: str) -> RulecError:
+    return NOT_THE_SAME_FILE.error(
+        SourceLocation(str(path)),
+        f"the file is not rewritten: {why}",
+        help="write a copy of it, or use `rulec fmt - < FILE > OTHER`",
+    )
 
 
 def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:

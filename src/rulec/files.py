@@ -6,8 +6,8 @@ import gzip
 import os
 import stat
 import zlib
-from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from errno import EACCES, EISDIR
 from io import SEEK_CUR, SEEK_END, BufferedReader, RawIOBase
@@ -19,10 +19,12 @@ from rulec.diagnostics import Label, RulecError, Source, SourceLocation, Span
 from rulec.file_messages import (
     NOT_UTF8,
     UNREADABLE_FILE,
+    not_the_same,
     not_utf8,
     reason_in_words,
     unwritable,
 )
+from rulec.trees import refuse_link_out
 
 MAX_SOURCE_BYTES: Final = 5_000_000
 """A rulebook has thousands of characters; millions are a mistake."""
@@ -77,47 +79,56 @@ def is_own(status: os.stat_result) -> bool:
 
 
 @contextmanager
-def written_whole(path: Path) -> Iterator[IO[bytes]]:
+def written_whole(path: Path, *, in_place: bool = False) -> Iterator[IO[bytes]]:
     """Open a stream that replaces a file only when the block succeeds.
 
-    A file that is replaced keeps its permissions, and has to permit it.
+    A file that is replaced keeps its permissions, and has to permit it. It is on the disk before
+    the old one is gone.
 
-    Raises RulecError: R0702 if the file cannot be written.
+    Args:
+        path: the file; a link is followed, unless it leads out of its tree.
+        in_place: refuse a file that would not be the same afterwards: that has further names, or
+            an owner who cannot be kept.
+
+    Raises RulecError: R0702 if the file cannot be written, R0730 behind a link out of the tree,
+        R0734 with ``in_place``.
     """
-    with _refusals(path):
-        if _is_replaced(path):
-            with _beside(path) as stream:
-                yield stream
-        else:
+    refuse_link_out(path)
+    with refusals(path):
+        if not is_replaced(path):
             with path.open("wb") as stream:
                 yield stream
-
-
-def write_together(contents: Mapping[Path, bytes]) -> None:
-    """Write files of which none appears before all are written; one is open at a time.
-
-    Raises RulecError: R0702 if one cannot be written.
-    """
-    with ExitStack() as files:
-        for path, content in contents.items():
-            files.enter_context(_refusals(path))
-            if _is_replaced(path):
-                stream = files.enter_context(_beside(path))
-                stream.write(content)
-                stream.close()
-            else:
-                path.write_bytes(content)
+            return
+        real = Path(os.path.realpath(path))  # the file behind a link, not the link, is replaced
+        if in_place and real.stat().st_nlink > 1:
+            raise not_the_same(path, "it has several names, which would not be one file any more")
+        # Of a long name only the beginning: a folder takes no more than 255 bytes.
+        beginning = os.fsencode(real.name)[:200].decode("utf-8", "ignore")
+        name = real.with_name(f".{beginning}.{os.urandom(8).hex()}.part")
+        # What is made here is made inside the `try`: whenever a signal comes, nothing stays behind.
+        try:
+            with open(name, "xb", opener=_private) as stream:
+                yield stream
+                put_on_disk(stream)
+            if not as_before(name, real) and in_place:
+                raise not_the_same(path, "its owner could not be kept")
+            name.replace(real)
+        except BaseException:
+            name.unlink(missing_ok=True)
+            raise
+        put_folder_on_disk(real.parent)
 
 
 @contextmanager
-def _refusals(path: Path) -> Iterator[None]:
+def refusals(path: Path) -> Iterator[None]:
+    """What goes wrong with a file that is written, as a message. Raises RulecError R0702."""
     try:
         yield
     except OSError as problem:
         raise RulecError(unwritable(path, problem)) from None
 
 
-def _is_replaced(path: Path) -> bool:
+def is_replaced(path: Path) -> bool:
     """Whether a file may be replaced; what is a pipe or a device such as /dev/null is not."""
     if path.is_dir():
         raise IsADirectoryError(EISDIR, "it is a folder")
@@ -128,40 +139,54 @@ def _is_replaced(path: Path) -> bool:
     return path.is_file()
 
 
-@contextmanager
-def _beside(path: Path) -> Iterator[IO[bytes]]:
-    path = Path(os.path.realpath(path))  # the file behind a link, not the link, is replaced
-    name = path.with_name(f".{path.name}.{os.urandom(8).hex()}.part")
-    # What is made here is made inside the `try`: whenever a signal comes, nothing stays behind.
-    try:
-        with open(name, "xb", opener=_private) as stream:
-            yield stream
-        name.chmod(_mode(path))
-        name.replace(path)
-    except BaseException:
-        name.unlink(missing_ok=True)
-        raise
+def put_on_disk(stream: IO[bytes]) -> None:
+    """Wait until what was written would survive that the machine stops."""
+    stream.flush()
+    with suppress(OSError):  # some file systems cannot
+        os.fsync(stream.fileno())
+
+
+def put_folder_on_disk(folder: Path) -> None:
+    """The same for the names in a folder."""
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def _private(name: str, flags: int) -> int:
     return os.open(name, flags, 0o600)
 
 
-def _mode(path: Path) -> int:
-    """The permissions of a file, or the default ones of the umask."""
+def as_before(name: Path, path: Path) -> bool:
+    """Give a new file the permissions and the owner of the one that it replaces, if there is one.
+
+    Returns whether the owner could be kept. A new one has the default permissions of the umask.
+    """
+    is_kept = True
     if path.exists():
-        return stat.S_IMODE(path.stat().st_mode)
-    mask = os.umask(0)
-    os.umask(mask)
-    return 0o666 & ~mask
+        before, now = path.stat(), name.stat()
+        if (before.st_uid, before.st_gid) != (now.st_uid, now.st_gid):
+            try:
+                os.chown(name, before.st_uid, before.st_gid)
+            except OSError:
+                is_kept = False
+        mode = stat.S_IMODE(before.st_mode)
+    else:
+        mask = os.umask(0)
+        os.umask(mask)
+        mode = 0o666 & ~mask
+    name.chmod(mode)  # after the owner, with whom some permissions go
+    return is_kept
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder and those above it. Raises RulecError R0702."""
-    try:
+    """Make a folder and those above it. Raises RulecError R0702, R0730."""
+    refuse_link_out(path)
+    with refusals(path):
         path.mkdir(parents=True, exist_ok=True)
-    except OSError as problem:
-        raise RulecError(unwritable(path, problem)) from None
 
 
 @contextmanager

@@ -92,7 +92,7 @@ def test_diff_can_be_applied(folder, capsys):
 
 @pytest.mark.parametrize(("environment", "colored"), [({}, True), ({"NO_COLOR": "1"}, False)])
 def test_a_diff_has_colour_on_a_terminal_only(folder, environment, colored):
-    (folder / "hostile.rules").write_text(f"{GOOD}#  \x1b[2J \n")
+    (folder / "hostile.rules").write_text(f"{GOOD}#  x \n")
     mine, theirs = pty.openpty()
     clean = {name: text for name, text in os.environ.items() if name != "NO_COLOR"}
     subprocess.run(
@@ -105,10 +105,17 @@ def test_a_diff_has_colour_on_a_terminal_only(folder, environment, colored):
     os.close(theirs)
     shown = os.read(mine, 10_000).decode()
     os.close(mine)
-    assert ("\x1b[31m-#  \\x1b[2J" in shown) is colored
+    assert ("\x1b[31m-#  x" in shown) is colored
     assert ("\x1b[" in shown) is colored
-    assert "-#  \\x1b[2J" in shown
-    assert "\x1b[2J" not in shown
+    assert "-#  x" in shown
+
+
+def test_a_comment_that_drives_a_terminal_is_no_diff(folder, capsys):
+    (folder / "hostile.rules").write_text(f"{GOOD}#  \x1b[2J \n")
+    status, out, err = fmt(capsys, "--diff", "hostile.rules")
+    assert (status, out) == (2, "")
+    assert "error[R0118]" in err
+    assert "\x1b" not in err
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,9 @@
 
 import subprocess
 import sys
+from random import Random
+from signal import SIGINT
+from time import monotonic, sleep
 
 import pytest
 
@@ -60,5 +63,67 @@ def test_while_modules_are_imported(module):
     assert err in (b"", b"rulec: interrupted")
 
 
+AN_ERROR_OF_ITS_OWN = """
+import os, signal, sys
+from rulec.cli import entry_point, main
+def interrupted(*_, **__):
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        signal.sigtimedwait([], 1)
+    except KeyboardInterrupt:
+        raise eval(sys.argv.pop(1))("multiarray failed to import") from None
+sys.modules["rulec.cli.main"].rulec.main = interrupted
+sys.exit(entry_point.run())
+"""
+
+
+@pytest.mark.parametrize("error", ["ImportError", "RuntimeError", "OSError", "SystemError"])
+def test_what_libraries_make_of_an_interrupt_is_one(error):
+    assert ended(AN_ERROR_OF_ITS_OWN, error, *VERIFY) == (130, b"", b"rulec: interrupted")
+
+
 def test_where_nothing_can_be_raised():
     assert ended(IN_A_FINALIZER) == (130, b"", b"")
+
+
+STARTED = """
+import sys
+from rulec.cli.entry_point import run
+print("begun", file=sys.stderr, flush=True)
+sys.exit(run())
+"""
+
+FIVE_VERBS = [
+    VERIFY,
+    ["draw", "trace", "docs/samples/traces.jsonl", "-r", "esterle2019", "-o", "OUT.svg"],
+    ["check", "de", "--no-cache"],
+    ["maneuvers", "s1", "-r", "esterle2019"],
+    ["compile", "esterle2019", "-o", "OUT"],
+]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("verb", FIVE_VERBS, ids=lambda verb: verb[0])
+def test_at_random_moments(verb, tmp_path):
+    """From rulec's first line on: what comes before, Python says itself."""
+    arguments = [item.replace("OUT", str(tmp_path / "out")) for item in verb]
+    command = [sys.executable, "-c", STARTED, *arguments]
+    begun = monotonic()
+    whole = subprocess.run(command, capture_output=True, check=False)
+    longest = monotonic() - begun
+    chance = Random(1)
+    for _ in range(100):
+        process = subprocess.Popen(
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            preexec_fn=as_from_a_terminal,
+        )
+        assert process.stderr.readline() == b"begun\n"
+        sleep(chance.uniform(0, longest))
+        process.send_signal(SIGINT)
+        _, err = process.communicate()
+        assert process.returncode in (130, whole.returncode)
+        if process.returncode == 130:
+            assert err.strip() in (b"", b"rulec: interrupted")
+        assert not list(tmp_path.rglob("*.part"))

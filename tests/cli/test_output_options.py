@@ -11,6 +11,7 @@ import pytest
 
 from rulec.cli.main import VERBS, main, rulec
 from rulec.cli.options.output_options import TABLES, chosen_format, endings_of
+from rulec.resources import scenarios_folder
 
 PICTURES = endings_of("svg", "png")
 FOUND = endings_of("full", "concise", "json", "sarif")
@@ -136,6 +137,16 @@ class TestEveryVerb:
         (["list", "--json", "--output-format", "text"], "contradict each other"),
         (["list", "-o", "a.txt", "-o", "b.txt"], "-o is given twice"),
         (["check", "a.json", "-o", "./a.json"], "is named already, and would be overwritten"),
+        (["diff", "./a.json", "fr", "--witness", "a.json"], "would be overwritten"),
+        (["monitor", "a.json", "--save", "./a.json"], "would be overwritten"),
+        (["monitor", "de", "--save", "a.json", "-o", "./a.json"], "would be overwritten"),
+        (["monitor", "de", "--save", "-"], "standard output takes one answer"),
+        (["monitor", "de", "--restore", "-"], "`-` is standard input"),
+        (["maneuvers", "s1", "-r", "de", "--after", "-"], "`-` is standard input"),
+        (["compile", "./a.json", "-o", "."], "would be overwritten"),
+        (["compile", "de", "-o", "-"], "`-` is standard output, and no folder"),
+        (["new", "depot", "-o", "-"], "`-` is standard output, and no folder"),
+        (["show", "-"], "standard input is no rulebook that can be found"),
         (
             ["diff", "de", "fr", "--witness", "a.json", "-o", "a.json"],
             "is named already, and would be overwritten",
@@ -149,6 +160,72 @@ def test_what_is_refused(arguments, says, capsys, tmp_path, monkeypatch):
     assert says in capsys.readouterr().err
     assert Path("a.json").read_text() == "kept"
     assert [path.name for path in Path().iterdir()] == ["a.json"]
+
+
+def named_file(command):
+    """What `needed` gives, with the name of a file that there is."""
+    return ["in.data" if one == "nothing.at.all" else one for one in needed(command)]
+
+
+WITH_INPUTS = [
+    name for name in COMMANDS if name not in WITHOUT and "in.data" in named_file(COMMANDS[name])
+]
+
+
+@pytest.mark.parametrize("name", WITH_INPUTS)
+def test_no_answer_takes_the_place_of_what_is_read(name, capsys, tmp_path, monkeypatch):
+    """However its path is written: whichever of its names, and links."""
+    monkeypatch.chdir(tmp_path)
+    Path("in.data").write_text("kept")
+    Path("link").symlink_to("in.data")
+    os.link("in.data", "hard")
+    Path("below").mkdir()
+    form = options_of(COMMANDS[name])["--output-format"].type.choices[0]
+    paths = ["in.data", "./in.data", "below/../in.data", str(tmp_path / "in.data"), "link", "hard"]
+    for path in paths:
+        to = ["-o", path, "--output-format", form]
+        assert main([*name.split(), *named_file(COMMANDS[name]), *to]) == 2
+        assert "error[R0735]" in capsys.readouterr().err
+    assert Path("in.data").read_text() == "kept"
+    assert len(WITH_INPUTS) > 12
+
+
+def test_a_source_that_is_there_is_never_written_over(tmp_path, monkeypatch, capsys):
+    """Also not one that is found by its name, or used by another."""
+    monkeypatch.chdir(tmp_path)
+    Path("rulec.toml").write_text('search_path = ["."]')
+    Path("words.rules").write_text("vocabulary words { signal p }")
+    Path("mine.rules").write_text("rulebook mine use words hard rule r { require p }")
+    for path in ("words.rules", "mine.rules"):
+        before = Path(path).read_text()
+        assert main(["doc", "mine", "-o", path, "--output-format", "markdown"]) == 2
+        assert "error[R0735]" in capsys.readouterr().err
+        assert Path(path).read_text() == before
+
+
+def test_the_minus_is_standard_input_and_output_whatever_files_are_called(
+    tmp_path, monkeypatch, capsysbinary
+):
+    monkeypatch.chdir(tmp_path)
+    for name in ("-", "-.rules", "a.jsonl"):
+        Path(name).write_text("kept")
+    trace = b'{"objects": {"v": "vehicle"}, "states": [{"position": {"v": "b"}}]}\n'
+    scenario = (scenarios_folder() / "s1.toml").read_bytes()
+
+    def run(*arguments, given=b""):
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(given)))
+        status = main(arguments)
+        return status, capsysbinary.readouterr().out
+
+    assert run("verify", "-", "-r", "esterle2019", given=trace)[0] == 0
+    assert b"<svg" in run("draw", "trace", "-", "-r", "esterle2019", "-o", "-", given=trace)[1]
+    assert run("maneuvers", "-", "-r", "esterle2019", given=scenario)[0] == 0
+    assert run("diff", "esterle2019", "esterle2019", "--witness", "-", "-o", "d.txt")[0] == 0
+    out = run("monitor", "esterle2019", "--save", "-", "-o", "m.txt", given=b"{}\n")[1]
+    assert b'"version"' in out
+    assert run("check", "-", given=b"rulebook a")[0] == 1
+    assert run("doc", "esterle2019", "-o", "-")[1].startswith(b"<!")
+    assert {Path(name).read_text() for name in ("-", "-.rules", "a.jsonl")} == {"kept"}
 
 
 STATES = b'{"state": {"loud": false}}\n{"state": {"loud": true}}\n'

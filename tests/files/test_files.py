@@ -2,15 +2,18 @@
 
 import gzip
 import io
+import os
 import resource
 import unicodedata
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from rulec import files
 from rulec.diagnostics import RulecError
-from rulec.files import decoded, opened, write_together, written_whole
+from rulec.file_sets import MANIFEST, write_together
+from rulec.files import decoded, opened, written_whole
 
 
 @pytest.mark.parametrize("line_end", ["\n", "\r\n", "\r"])
@@ -102,7 +105,7 @@ def test_any_number_of_files_appear_together_however_few_may_be_open(tmp_path):
     n_open = len(list(Path("/proc/self/fd").iterdir()))
     resource.setrlimit(resource.RLIMIT_NOFILE, (n_open + 10, usual[1]))
     try:
-        write_together({tmp_path / str(number): b"new" for number in range(40)})
+        write_together(tmp_path, {str(number): b"new" for number in range(40)})
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, usual)
     assert sorted(int(file.name) for file in tmp_path.iterdir()) == list(range(40))
@@ -111,7 +114,7 @@ def test_any_number_of_files_appear_together_however_few_may_be_open(tmp_path):
 def test_where_one_of_several_files_cannot_be_written_none_appears(tmp_path):
     (tmp_path / "b").mkdir()
     with pytest.raises(RulecError, match="it is a folder"):
-        write_together({tmp_path / name: b"new" for name in "abc"})
+        write_together(tmp_path, dict.fromkeys("abc", b"new"))
     assert [file.name for file in tmp_path.iterdir()] == ["b"]
 
 
@@ -119,7 +122,132 @@ def test_a_file_that_cannot_be_renamed_in_the_end_is_a_message(tmp_path, monkeyp
     def refused(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("pathlib.Path.replace", refused)
+    monkeypatch.setattr("os.replace", refused)
     with pytest.raises(RulecError, match="no space left"):
-        write_together({tmp_path / name: b"new" for name in "ab"})
+        write_together(tmp_path, dict.fromkeys("ab", b"new"))
     assert list(tmp_path.iterdir()) == []
+
+
+class Killed(BaseException):
+    """What stands for SIGKILL, behind which nothing is cleaned up."""
+
+
+def killed_after(n, write, monkeypatch):
+    """Do what writes, killed before its n-th change of a folder; whether that came to it."""
+    left = [n]
+
+    def counted(real, *arguments, **more):
+        if left[0] <= 0:
+            raise Killed
+        left[0] -= 1
+        return real(*arguments, **more)
+
+    with monkeypatch.context() as patch:
+        for step in ("replace", "unlink"):
+            patch.setattr(os, step, partial(counted, getattr(os, step)))
+        try:
+            write()
+        except Killed:
+            return True
+    return False
+
+
+def test_a_set_that_was_killed_is_finished_or_undone_by_the_next(tmp_path, monkeypatch):
+    new = dict.fromkeys("abc", b"new")
+    for n in range(100):
+        for name in new:
+            (tmp_path / name).write_bytes(b"old")
+        if not killed_after(n, lambda: write_together(tmp_path, new), monkeypatch):
+            break
+        is_begun = (tmp_path / MANIFEST).exists()
+        write_together(tmp_path, {"d": b""})
+        now = {(tmp_path / name).read_bytes() for name in new}
+        assert now == {b"new"} if is_begun else now in ({b"old"}, {b"new"})
+        assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b", "c", "d"]
+    assert 4 <= n < 100
+
+
+@pytest.mark.parametrize(
+    "planted",
+    [
+        '{".rulec-0123456789abcdef-0.part": "../victim"}',
+        '{"../secret": "b"}',
+        '{".rulec-0123456789abcdef-0.part": 5}',
+        "[" * 100_000,
+        "[]",
+    ],
+)
+def test_a_planted_manifest_reaches_nothing_elsewhere(planted, tmp_path):
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (tmp_path / "victim").write_text("victim")
+    (tmp_path / "secret").write_text("secret")
+    (folder / ".rulec-0123456789abcdef-0.part").symlink_to("../secret")
+    (folder / MANIFEST).write_text(planted)
+    write_together(folder, {"a": b"new"})
+    assert (tmp_path / "victim").read_text() == "victim"
+    assert (tmp_path / "secret").read_text() == "secret"
+    assert not (folder / MANIFEST).exists()
+
+
+@pytest.mark.parametrize("code", ["R0730", "R0731"])
+def test_a_set_is_written_neither_through_links_out_nor_into_pipes(code, tmp_path):
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (tmp_path / "target").write_text("old")
+    if code == "R0730":
+        (folder / "b").symlink_to("../target")
+    else:
+        os.mkfifo(folder / "b")
+    with pytest.raises(RulecError) as caught:
+        write_together(folder, dict.fromkeys("ab", b"new"))
+    assert [one.code for one in caught.value.diagnostics] == [code]
+    assert [path.name for path in folder.iterdir()] == ["b"]
+    assert (tmp_path / "target").read_text() == "old"
+
+
+def test_one_file_is_not_written_through_a_link_out_of_its_tree(tmp_path):
+    (tmp_path / "tree").mkdir()
+    (tmp_path / "target").write_text("old")
+    (tmp_path / "tree" / "out").symlink_to("../target")
+    with pytest.raises(RulecError) as caught, written_whole(tmp_path / "tree" / "out"):
+        pass
+    assert caught.value.diagnostics[0].code == "R0730"
+    assert (tmp_path / "target").read_text() == "old"
+
+
+def test_the_longest_names_can_be_written(tmp_path):
+    file = tmp_path / ("ü" * 127 + "x")
+    for _ in range(2):
+        with written_whole(file) as stream:
+            stream.write(b"new")
+    assert [path.name for path in tmp_path.iterdir()] == [file.name]
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root gives files away")
+def test_an_owner_is_kept(tmp_path):
+    file = tmp_path / "file"
+    file.write_text("old")
+    os.chown(file, 1234, 2345)
+    file.chmod(0o640)
+    with written_whole(file, in_place=True) as stream:
+        stream.write(b"new")
+    now = file.stat()
+    assert (now.st_uid, now.st_gid, now.st_mode & 0o777) == (1234, 2345, 0o640)
+
+
+def test_an_owner_who_cannot_be_kept_and_a_second_name_are_reasons_not_to(tmp_path, monkeypatch):
+    file = tmp_path / "file"
+    file.write_text("old")
+
+    def code_of_writing():
+        with pytest.raises(RulecError) as caught, written_whole(file, in_place=True) as stream:
+            stream.write(b"new")
+        return caught.value.diagnostics[0].code
+
+    with monkeypatch.context() as patch:
+        patch.setattr(files, "as_before", lambda name, path: False)
+        assert code_of_writing() == "R0734"
+    os.link(file, tmp_path / "other")
+    assert code_of_writing() == "R0734"
+    assert file.read_text() == "old"

@@ -82,6 +82,13 @@ def test_links_are_not_followed_and_pipes_not_opened(folder):
     assert input_files(["drives"]).paths == ("drives/b.xml", "drives/deep/a.xml.gz")
 
 
+def test_links_out_of_the_folder_are_refused_and_the_rest_is_read(folder):
+    (folder / "drives" / "out.xml").symlink_to("/etc/hostname")
+    found = input_files(["drives"])
+    assert found.paths == ("drives/b.xml", "drives/deep/a.xml.gz")
+    assert [one.code for error in found.problems for one in error.diagnostics] == ["R0730"]
+
+
 @pytest.mark.parametrize("name", RECORDINGS)
 def test_what_lies_beside_a_recording_is_passed_over(tmp_path, name):
     """Maps, types, meta files and other parts of it are counted, and not judged one by one."""

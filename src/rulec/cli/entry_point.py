@@ -23,6 +23,7 @@ from io import TextIOWrapper
 from types import FrameType
 from typing import TYPE_CHECKING, TextIO
 
+from rulec.cli.interruption import interrupt, is_interrupted
 from rulec.version import __version__
 
 if TYPE_CHECKING:
@@ -39,10 +40,13 @@ def run() -> int:
         from rulec.cli.main import main
 
         return main()
-    except KeyboardInterrupt:
-        return 128 + signal.SIGINT
+    except BaseException as problem:
+        # Of modules that are imported, some make errors of their own of an interrupt.
+        if isinstance(problem, KeyboardInterrupt) or is_interrupted():
+            return 128 + signal.SIGINT
+        raise
     finally:
-        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        if signal.getsignal(signal.SIGINT) is interrupt:
             # All is done, and whatever Python does at its end is not for tracebacks either.
             signal.signal(signal.SIGINT, _interrupted)
         for stream in (sys.stdout, sys.stderr):
@@ -70,7 +74,7 @@ def _prepare() -> None:
         sys.set_int_max_str_digits(100_000)
     sys.unraisablehook = _unraisable
     if signal.getsignal(signal.SIGINT) is _interrupted:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGINT, interrupt)
 
 
 def _unraisable(problem: UnraisableHookArgs) -> None:

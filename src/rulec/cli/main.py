@@ -11,6 +11,7 @@ from importlib import import_module
 import click
 
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.interruption import is_interrupted
 from rulec.diagnostics import RulecError, nearest_name
 from rulec.version import __version__
 
@@ -105,33 +106,46 @@ def main(arguments: Sequence[str] | None = None) -> int:
             standalone_mode=False,
         )
         sys.stdout.flush()
-    except click.ClickException as problem:
-        _say(problem.format_message(), getattr(problem, "ctx", None))
-        return ExitStatus.NOT_ANSWERED
-    except RulecError as error:
-        # Its text and colours, 7 ms: not for `rulec --help`.
-        from rulec.report.findings.diagnostics_text import print_diagnostics
+    except BaseException as problem:
+        return _status_after(problem)
+    return outcome if isinstance(outcome, int) else ExitStatus.OK
 
-        print_diagnostics(error.diagnostics)
-        return ExitStatus.NOT_ANSWERED
-    except (click.Abort, KeyboardInterrupt):
+
+def _status_after(problem: BaseException) -> int:
+    """Say what ended a command, and return its exit status."""
+    if is_interrupted() or isinstance(problem, click.Abort | KeyboardInterrupt):
         _say("interrupted")
         return ExitStatus.INTERRUPTED
-    except SystemExit as leaving:
-        # 1 is click's word for a reader that has left; signals bring their own status.
-        return ExitStatus.READER_GONE if leaving.code == 1 else int(leaving.code or 0)
-    except OSError as problem:
-        return _unwritable(problem)
-    except Exception as problem:
-        if os.environ.get("RULEC_TRACEBACK"):
-            raise
-        _say(
-            f"this is a bug in rulec {__version__}: {type(problem).__name__}: {problem}\n"
-            "Please report it, with the input and what this prints: "
-            f"RULEC_TRACEBACK=1 {' '.join(sys.argv)}"
-        )
-        return ExitStatus.BUG
-    return outcome if isinstance(outcome, int) else ExitStatus.OK
+    match problem:
+        case click.ClickException():
+            _say(_visible(problem.format_message()), getattr(problem, "ctx", None))
+            return ExitStatus.NOT_ANSWERED
+        case RulecError():
+            # Its text and colours, 7 ms: not for `rulec --help`.
+            from rulec.report.findings.diagnostics_text import print_diagnostics
+
+            print_diagnostics(problem.diagnostics)
+            return ExitStatus.NOT_ANSWERED
+        case SystemExit():
+            # 1 is click's word for a reader that has left; signals bring their own status.
+            return ExitStatus.READER_GONE if problem.code == 1 else int(problem.code or 0)
+        case OSError():
+            return _unwritable(problem)
+        case Exception():
+            return _bug(problem)
+    raise problem
+
+
+def _bug(problem: Exception) -> int:
+    if os.environ.get("RULEC_TRACEBACK"):
+        raise problem
+    _say(
+        f"this is a bug in rulec {__version__}: "
+        f"{_visible(f'{type(problem).__name__}: {problem}')}\n"
+        "Please report it, with the input and what this prints: "
+        f"RULEC_TRACEBACK=1 {_visible(' '.join(sys.argv))}"
+    )
+    return ExitStatus.BUG
 
 
 def _unwritable(problem: OSError) -> int:
@@ -139,8 +153,19 @@ def _unwritable(problem: OSError) -> int:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if isinstance(problem, BrokenPipeError):
         return ExitStatus.READER_GONE
-    _say(f"cannot write to standard output: {(problem.strerror or str(problem)).lower()}")
+    # An error with a name in it is of that file, and of nothing else.
+    name = _visible(os.fsdecode(problem.filename)) if problem.filename else "standard output"
+    deed = "open" if problem.filename else "write to"
+    _say(f"cannot {deed} {name}: {(problem.strerror or str(problem)).lower()}")
     return ExitStatus.NOT_ANSWERED
+
+
+def _visible(text: str) -> str:
+    # 3 ms, and only where something went wrong.
+    from rulec.report.text.outgoing import outgoing
+    from rulec.report.text.terminal_text import visible
+
+    return outgoing(visible(text))
 
 
 def _say(text: str, usage: click.Context | None = None) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, cast
 
 import click
 
@@ -17,13 +18,27 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.files import written_whole
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.findings.finding_formats import render
-from rulec.report.text.console import PAGE_WIDTH, page_width, print_aside, print_result
-from rulec.report.text.terminal_text import visible, wants_color
+from rulec.report.text.console import (
+    PAGE_WIDTH,
+    page_width,
+    print_line,
+    print_remark,
+    print_result,
+)
+from rulec.report.text.outgoing import OutgoingLines, outgoing
+from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.rulebook.files.source_walk import LeftAlone
+
+
+_REPORTS = ("html", "junit", "sarif", "svg")
+"""Formats that people and other programs show."""
+
+_DATA = ("csv", "jsonl")
+"""Formats that are read again: files have names as they are, a log has them made visible."""
 
 
 def open_session(at: str = "") -> rulec.Session:
@@ -56,17 +71,29 @@ def output_stream(to: Output) -> Iterator[tuple[IO[bytes], str]]:
 
     Raises RulecError R0702.
     """
-    if not to.is_file:
-        yield sys.stdout.buffer, "standard output"
+    if to.is_file:
+        with written_whole(Path(to.path)) as stream, _gate(stream, to) as gate:
+            yield gate, to.path
     else:
-        with written_whole(Path(to.path)) as stream:
-            yield stream, to.path
+        with _gate(sys.stdout.buffer, to) as gate:
+            yield gate, "standard output"
+
+
+@contextmanager
+def _gate(stream: IO[bytes], to: Output) -> Iterator[IO[bytes]]:
+    """A stream from which nothing goes out that drives a terminal or a runner."""
+    if to.form in _REPORTS or (to.form in _DATA and not to.is_file):
+        lines = OutgoingLines(stream, to.form)
+        yield cast("IO[bytes]", lines)
+        lines.finish()
+    else:
+        yield stream
 
 
 def print_written(what: str, to: Output) -> None:
     """Say that a file has been written, unless it is standard output."""
     if to.is_file:
-        print_result(f"wrote {what}")
+        print_line(f"wrote {what}")
 
 
 def put_answer(text: str, to: Output) -> None:
@@ -84,17 +111,18 @@ def answer_lines(to: Output) -> Iterator[Callable[[str], None]]:
     Raises RulecError R0702.
     """
     if not to.is_file:
-        yield print_result
+        yield partial(print_result, form=to.form)
         return
     with written_whole(Path(to.path)) as stream:
-        yield line_writer(stream)
+        yield line_writer(stream, to.form)
 
 
-def line_writer(stream: IO[bytes]) -> Callable[[str], None]:
+def line_writer(stream: IO[bytes], form: str) -> Callable[[str], None]:
     """A function that writes lines to a file, without colours."""
 
     def write(text: str) -> None:
-        stream.write(f"{click.unstyle(text)}\n".encode("utf-8", "backslashreplace"))
+        shown = outgoing(click.unstyle(text), form)
+        stream.write(f"{shown}\n".encode("utf-8", "backslashreplace"))
 
     return write
 
@@ -107,19 +135,21 @@ def width_of(to: Output) -> int:
 def print_lost(deed: str, what: str, signal_number: int | None) -> None:
     """Say that the process that, for one, ``judged`` something was stopped, and what follows."""
     by = "" if signal_number is None else f" by signal {signal_number}"
-    print_aside(f"rulec: the process that {deed} {what} was stopped{by}; another one does it again")
+    print_remark(
+        f"rulec: the process that {deed} {what} was stopped{by}; another one does it again"
+    )
 
 
 def print_left_alone(left_alone: Sequence[LeftAlone], *, verbose: bool) -> None:
     """Say what was not looked into: each thing by itself, or how many of each kind."""
     if verbose:
         for one in left_alone:
-            print_aside(f"left alone: {visible(one.path)}: {one.why}")
+            print_remark(f"left alone: {one.path}: {one.why}")
     elif left_alone:
         # Sources below folders, 5 ms: verbs without folders do without.
         from rulec.rulebook.files.source_walk import in_words
 
-        print_aside(f"left alone: {visible(in_words(left_alone))}")
+        print_remark(f"left alone: {in_words(left_alone)}")
 
 
 def counted(number: int, noun: str) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rulec.cli.options.output_options import Endings, Output, endings_of
 from rulec.cli.output import answer_lines, counted, output_stream
-from rulec.report.text.console import print_result
+from rulec.report.text.console import print_line, print_result
 from rulec.report.verdict_findings.finding_writers import ENDINGS, finding_writer
 
 if TYPE_CHECKING:
@@ -108,4 +108,4 @@ def verdict_outputs(
         for one in written:
             is_whole = one.form in ("text", "json")
             what = "the answer" if is_whole else counted(outputs._findings, "finding")
-            print_result(f"wrote {what} to {one.path}")
+            print_line(f"wrote {what} to {one.path}")

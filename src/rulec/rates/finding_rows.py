@@ -13,6 +13,7 @@ from typing import Any
 from rulec.files import opened
 from rulec.rates.rates_messages import no_findings
 from rulec.trace.formats.arrow.parquet import rows_of_columns
+from rulec.trees import refuse_link_out, tree_of
 
 _JSON_LINES = (".jsonl", ".ndjson")
 _PARQUET = (".parquet", ".pq")
@@ -59,7 +60,7 @@ COLUMNS = tuple(_FIELDS)
 def finding_files(paths: Sequence[str]) -> Iterator[Path]:
     """The files of findings: those that are named, and the Parquet files in and below folders.
 
-    Raises RulecError R0716 for a folder without any.
+    Raises RulecError R0716 for a folder without any, R0730 for a link out of it.
     """
     for name in paths:
         path = Path(name)
@@ -67,6 +68,8 @@ def finding_files(paths: Sequence[str]) -> Iterator[Path]:
             yield path
             continue
         inside = [x for x in sorted(path.rglob("*")) if x.suffix in _PARQUET and _counts(x, path)]
+        for file in inside:
+            refuse_link_out(file, tree=tree_of(path))
         if not inside:
             raise no_findings(name, "there are no Parquet files in the folder")
         yield from inside

@@ -12,6 +12,7 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.file_messages import UNREADABLE_FILE
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_format import RECORDING, Glance
+from rulec.trees import refuse_link_out, tree_of
 
 STANDARD_INPUT = "-"
 
@@ -49,8 +50,9 @@ def input_files(arguments: Sequence[str]) -> InputFiles:
             if path == STANDARD_INPUT or not _is_searched(Path(path)):
                 paths[path] = None
                 continue
-            found, others = _recordings_below(path)
-            if not found:
+            found, others, refused = _recordings_below(path)
+            problems += refused
+            if not found and not refused:
                 why = "there is no recorded traffic in this folder, nor below it"
                 problems.append(RECORDING.refused(Path(path), why))
             paths |= dict.fromkeys(found)
@@ -81,16 +83,23 @@ def _is_searched(path: Path) -> bool:
     return path.is_dir() and not _is_recording(path)
 
 
-def _recordings_below(folder: str) -> tuple[list[str], int]:
-    """The recordings in and below a folder, by name, and the number of other files."""
+def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:
+    """The recordings in and below a folder, by name, the number of other files, and links out."""
     found: list[str] = []
+    refused: list[RulecError] = []
     others = 0
+    tree = tree_of(Path(folder))
     for path in _walk(folder):
+        try:
+            refuse_link_out(path, tree=tree)
+        except RulecError as error:
+            refused.append(error)
+            continue
         if _is_recording(path):
             found.append(str(path))
         else:
             others += 1
-    return found, others
+    return found, others, refused
 
 
 def _walk(folder: str) -> Iterator[Path]:

@@ -135,7 +135,7 @@ def load_vocabulary(name: str, search_path: Sequence[Path] = ()) -> Vocabulary:
     span = Span(Source("<vocabulary>", name), 0, len(name))
     files = ReferencedFiles(search_path)
     file = files.vocabulary(tree.UseLine(tree.Name(name, span=span)), None)
-    if file is None or files.mistakes:
+    if file is None or any(mistake.severity == "error" for mistake in files.mistakes):
         raise RulecError(files.mistakes)
     vocabulary, mistakes = resolve_vocabulary(file)
     if vocabulary is None:

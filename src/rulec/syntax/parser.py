@@ -17,6 +17,7 @@ from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.grammar import Mismatch, ParseNode, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, HEADER_WORDS, RESERVED
 from rulec.syntax.messages import structure
+from rulec.syntax.messages.lookalikes import hidden_meaning
 from rulec.syntax.scanner import Token, checked, scan
 from rulec.syntax.split_file import FileSplitter
 
@@ -61,7 +62,8 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
         for part in splitter.split()
     ]
     file, order_mistakes = assemble_file(source, parts)
-    mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes)
+    hidden = hidden_meaning(source, tokens)
+    mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes, *hidden)
     return file, tuple(sorted(mistakes, key=_position))
 
 

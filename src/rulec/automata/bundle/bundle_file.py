@@ -34,7 +34,8 @@ from rulec.automata.bundle.stored_steps import StoredSteps
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
-from rulec.files import make_folder, opened, write_together
+from rulec.file_sets import write_together
+from rulec.files import make_folder, opened
 from rulec.logic.codec import terms_to_data, to_data
 from rulec.logic.opportunities import trigger_of
 from rulec.logic.printing import formula_text, number_in_words
@@ -234,7 +235,7 @@ def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
         for rule in book.rules
     }
     texts[folder / f"{rulebook.name}.json"] = to_json(rulebook)
-    write_together({path: text.encode() for path, text in texts.items()})
+    write_together(folder, {path.name: text.encode() for path, text in texts.items()})
     return list(texts)
 
 

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from pathlib import Path
 
 import click
 
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_standard_output
 from rulec.cli.output import open_session
-from rulec.report.text.console import print_result
+from rulec.report.text.console import print_line
+
+_WRITTEN = (".hoa", ".json")
 
 
 @click.command()
@@ -36,7 +40,11 @@ def command(rulebook: str, output: str, steps_s: Sequence[Fraction], at: str) ->
     """
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
+    refuse_standard_output(output)
+    if "/" in rulebook and Path(rulebook).suffix in _WRITTEN:
+        # What is written is called after rules, which are not known yet.
+        refuse_overwriting([Output(str(Path(output, Path(rulebook).name)), "")], [rulebook])
     session = open_session(at)
     compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
     for path in session.write_compiled(compiled, output):
-        print_result(f"wrote {path}")
+        print_line(f"wrote {path}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from fractions import Fraction
-from pathlib import Path
 
 import click
 
@@ -12,9 +11,8 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.output import counted, errors_told, open_session, put_answer
-from rulec.files import written_whole
-from rulec.report.text.console import print_aside, progress
+from rulec.cli.output import counted, errors_told, open_session, output_stream, put_answer
+from rulec.report.text.console import print_remark, progress
 from rulec.settings import search_path
 
 
@@ -45,7 +43,7 @@ from rulec.settings import search_path
 )
 @click.option(
     "--witness",
-    type=click.Path(dir_okay=False),
+    type=click.Path(dir_okay=False, allow_dash=True),
     metavar="FILE",
     help="Write the traces that one forbids and the other allows to FILE, as JSON Lines.",
 )
@@ -96,12 +94,12 @@ def command(
             ]
             books = [book for book in books if book.name not in alone]
         if len(books) < 2:
-            print_aside("there are no two rulebooks to compare")
+            print_remark("there are no two rulebooks to compare")
             return ExitStatus.NOT_ANSWERED
         with progress("comparing", steps(books, patterns)) as tell:
             matrix = comparison_matrix(books, patterns, step_s, tell)
         if alone:
-            print_aside(f"left out, for they share no rule with others: {', '.join(alone)}")
+            print_remark(f"left out, for they share no rule with others: {', '.join(alone)}")
         put_answer(matrix_report.render(matrix, to.form), to)
         answered = are_all_read and matrix.is_complete
         return ExitStatus.after(answered=answered, failed=not matrix.is_uniform)
@@ -112,8 +110,8 @@ def command(
             *rulebooks, patterns=patterns, step_s=step_s, witnesses=n_witnesses, on_progress=tell
         )
     if witness is not None:
-        with written_whole(Path(witness)) as stream:
+        with output_stream(Output(witness, "jsonl")) as (stream, name):
             number = write_traces(difference.witnesses, stream)
-        print_aside(f"wrote {counted(number, 'trace')} to {witness}")
+        print_remark(f"wrote {counted(number, 'trace')} to {name}")
     put_answer(diff_formats.render(difference, to.form), to)
     return ExitStatus.after(answered=difference.is_complete, failed=not difference.is_none)

@@ -30,6 +30,7 @@ from rulec.cli.options.scenario_options import (
     scene_reading,
 )
 from rulec.cli.output import output_stream, print_written, read_machines
+from rulec.cli.standard_input import file_named
 from rulec.diagnostics import RulecError, named
 from rulec.report.text.terminal_text import shown_count
 
@@ -186,7 +187,7 @@ def drive(
     vehicle, part, _ = ego.partition("#")
     wanted = requested_drives((vehicle,) if vehicle else (), options, rules.vocabulary)
     kept = frozenset(rule.name for rule in _only(rules, patterns).rules) if patterns else None
-    recording = read_recording(recording_source(file, options))
+    recording = read_recording(recording_source(file_named(file), options))
     verdicts = rulec.verify_recording(recording, rules, wanted)
     _write(drive_drawing(verdicts, ego if part else "", kept, at_s), to, theme)
 
@@ -240,7 +241,7 @@ def _trace(file: str, trace_id: str | None, form: Format | None) -> Trace:
     from rulec.trace.formats.trace_files import read_traces
 
     names: list[str] = []
-    for item in read_traces(file, form):
+    for item in read_traces(file_named(file), form):
         if isinstance(item, RulecError):
             raise item
         if trace_id in (None, item.id):

@@ -13,7 +13,9 @@ from rulec.cli.options.shared_options import verbose_option
 from rulec.cli.output import counted, print_left_alone
 from rulec.files import MAX_SOURCE_BYTES
 from rulec.report.findings.diagnostics_text import print_diagnostics
-from rulec.report.text.console import print_aside, print_result
+from rulec.report.text.console import print_line, print_remark, print_result
+from rulec.report.text.outgoing import outgoing
+from rulec.report.text.terminal_text import visible
 from rulec.report.text.text_diff import as_diff, for_terminal
 from rulec.settings import search_path
 
@@ -71,7 +73,7 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
     if in_form:
         parts.append(f"{counted(in_form, 'file')} in form already")
     if parts:
-        print_aside(", ".join(parts))
+        print_remark(", ".join(parts))
     print_left_alone(done.left_alone, verbose=verbose)
     return ExitStatus.after(answered=not refused, failed=bool(changed) and not writes)
 
@@ -79,9 +81,9 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
 def _show(changed: Sequence[Formatted], *, diff: bool) -> None:
     for file in changed:
         if not diff:
-            print_result(f"would change {file.name}")
+            print_line(f"would change {file.name}")
             continue
-        text = as_diff(file.name, file.before.decode(), file.after.decode())
+        text = as_diff(outgoing(visible(file.name)), file.before.decode(), file.after.decode())
         if sys.stdout.isatty():
             print_result(for_terminal(text))
         else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from fractions import Fraction
 from pathlib import Path
@@ -10,10 +11,16 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.output_options import (
+    STANDARD_OUTPUT,
+    Output,
+    endings_of,
+    output_options,
+)
 from rulec.cli.output import answer_lines, open_session, print_written
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.report.findings.diagnostics_text import Complaints
+from rulec.report.text.console import print_result
 
 
 @click.command()
@@ -23,8 +30,11 @@ from rulec.report.findings.diagnostics_text import Complaints
     "rules with bounds in seconds.  [default: that of their examples, or of --restore]",
 )
 @shared.file_option("--restore", "Go on where the monitor stood that was saved in FILE.")
-@shared.file_option(
-    "--save", "Save in FILE where the monitor stands when it ends, however it ends."
+@click.option(
+    "--save",
+    metavar="FILE",
+    type=click.Path(dir_okay=False, allow_dash=True),
+    help="Save in FILE where the monitor stands when it ends, however it ends.",
 )
 @output_options(
     {**endings_of("text"), "json": (".jsonl", ".ndjson", ".json")},
@@ -35,7 +45,7 @@ def command(
     rulebook: str,
     step_s: Fraction | None,
     restore: Path | None,
-    save: Path | None,
+    save: str | None,
     to: Output,
     at: str,
 ) -> int:
@@ -54,6 +64,9 @@ def command(
     from rulec.report.verdicts import running_verdicts
     from rulec.trace.formats.json_lines import read_live
 
+    is_shown = save == STANDARD_OUTPUT
+    if is_shown and not to.is_file:
+        raise click.UsageError("standard output takes one answer: give -o FILE, or --save FILE.")
     saved = None if restore is None else monitor_sources.read_saved(restore)
     step_s = step_s or monitor_sources.step_of(saved)
     rules = open_session(at).compile_rulebook(rulebook, step_s=step_s)
@@ -63,7 +76,8 @@ def command(
         monitor = Monitor.restore(rules, saved, SourceLocation(str(restore)))
     complaints, refused = Complaints(), False
     form = running_verdicts.as_json if to.form == "json" else running_verdicts.as_text
-    with monitor_sources.saved_at_the_end(monitor, save), answer_lines(to) as write:
+    file = None if save is None or is_shown else Path(save)
+    with monitor_sources.saved_at_the_end(monitor, file), answer_lines(to) as write:
         for live in read_live(sys.stdin.buffer, "standard input"):
             result = monitor_sources.answer(monitor, live)
             if isinstance(result, RulecError):
@@ -74,6 +88,9 @@ def command(
             else:
                 write(form(result))
         complaints.close()
-    print_written(to.path, to)
+    if is_shown:
+        print_result(json.dumps(monitor.snapshot()), "json")
+    else:
+        print_written(to.path, to)
     violated = {"violated"} if save is not None else {"violated", "pending"}
     return ExitStatus.after(answered=not refused, failed=monitor.so_far.best in violated)

@@ -7,11 +7,12 @@ from pathlib import Path
 import click
 
 import rulec
+from rulec.cli.options.output_options import refuse_standard_output
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.diagnostics import SourceLocation
 from rulec.file_messages import UNWRITABLE_FILE
 from rulec.files import make_folder, written_whole
-from rulec.report.text.console import print_result
+from rulec.report.text.console import print_line
 from rulec.settings import search_path
 
 
@@ -37,6 +38,7 @@ def command(name: str, output: str, base: str | None) -> None:
 
     An existing file is left alone.
     """
+    refuse_standard_output(output)
     name = name.removesuffix(".rules")
     if base is not None and ("/" in base or base.endswith(".rules")):
         raise click.UsageError(
@@ -54,4 +56,4 @@ def command(name: str, output: str, base: str | None) -> None:
     make_folder(path.parent)
     with written_whole(path) as stream:
         stream.write(text.encode())
-    print_result(f"wrote {path}; next: rulec test {path if '/' in str(path) else f'./{path}'}")
+    print_line(f"wrote {path}; next: rulec test {path if '/' in str(path) else f'./{path}'}")

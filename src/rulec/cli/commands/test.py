@@ -15,7 +15,7 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.output import print_lost, put_answer
 from rulec.diagnostics import RulecError
 from rulec.report.findings.diagnostics_text import print_diagnostics
-from rulec.report.text.console import print_aside
+from rulec.report.text.console import print_remark
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
@@ -98,6 +98,6 @@ def command(
         put_answer(render(runs, covered, to.form), to)
     short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)
     for sentence in short:
-        print_aside(f"rulec: {sentence}")
+        print_remark(f"rulec: {sentence}")
     failed = any(not outcome.passed for run in runs for outcome in run.outcomes)
     return ExitStatus.after(answered=len(runs) == len(rulebooks), failed=failed or bool(short))

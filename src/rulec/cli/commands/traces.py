@@ -18,6 +18,7 @@ from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import TABLES, Output, output_options
 from rulec.cli.output import output_stream, print_lost, print_written, read_machines
+from rulec.cli.standard_input import file_named
 from rulec.report.text.console import progress
 from rulec.report.text.terminal_text import shown_count
 
@@ -66,7 +67,8 @@ def command(
     appears whole or not at all.
     """
     if recorded:
-        _write_drives(Path(scenario), to, jobs, rulebook=rulebook, limit=limit, options=options)
+        file = Path(file_named(scenario))
+        _write_drives(file, to, jobs, rulebook=rulebook, limit=limit, options=options)
         return
     about = {name: options.pop(name) for name in ("thresholds", "assumed", "as_recorded")}
     option = scenario_options.given_drives_option(about)

@@ -22,7 +22,7 @@ from rulec.cli.output import counted, read_machines
 from rulec.cli.verdict_outputs import FORMATS, verdict_outputs
 from rulec.diagnostics import RulecError
 from rulec.report.findings.diagnostics_text import Complaints
-from rulec.report.text.console import page_width, print_aside
+from rulec.report.text.console import page_width, print_remark
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -135,7 +135,7 @@ def command(
     for searched in inputs.searched:
         found = counted(searched.recordings, "recording")
         more = f", {counted(searched.others, 'other file')} passed over" if searched.others else ""
-        print_aside(f"rulec: {found} in {searched.path}{more}")
+        print_remark(f"rulec: {found} in {searched.path}{more}")
     if exposure and not any(one.form in TABLES for one in to):
         raise click.UsageError("--exposure is for tables: -o FILE.jsonl, FILE.csv, FILE.parquet.")
     to_rows = _to_rows(rules, egos, options, ends) if exposure else None

@@ -17,6 +17,9 @@ from typing import Any, TypeVar, cast
 
 import click
 
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.file_messages import OVERWRITES_INPUT
+
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 Endings = Mapping[str, Sequence[str]]
@@ -232,24 +235,59 @@ def _refuse_doubtful(to: Sequence[Output], values: Mapping[str, Any]) -> None:
     for output in to:
         if not output.is_file and output.form in _BINARY and sys.stdout.isatty():
             raise click.UsageError(f"{output.form} is no text: write it to a file, with -o FILE")
-    files = [os.path.realpath(output.path) for output in to if output.is_file]
-    if len(set(files)) < len(files):
+    written = [output.path for output in to if output.is_file]
+    if len(set(map(_identity, written))) < len(written):
         raise click.UsageError("a file is named twice by -o.")
-    if files:
-        refuse_overwriting(to, list(_texts(values.values())))
+    refuse_overwriting(to, list(_texts(values.values())))
+    for name, goes_on in _ALSO_WRITTEN.items():
+        read = (value for other, value in values.items() if other not in (name, goes_on))
+        for path in _texts([values.get(name)]):
+            refuse_overwriting([Output(path, "")], list(_texts(read)))
+
+
+_ALSO_WRITTEN = {"save": "restore", "witness": ""}
+"""Parameters with which a verb writes beside its answer, and what it may go on in."""
 
 
 def refuse_overwriting(to: Sequence[Output], paths: Iterable[str]) -> None:
-    """Refuse outputs that are also named elsewhere, such as what is read.
+    """Refuse outputs that are also named elsewhere, such as what is read, and sources that exist.
+
+    Links and other spellings of a path lead to the same file.
 
     Raises:
-        click.UsageError: one of them is among these paths.
+        RulecError: R0735, one of them is among these paths, or a source.
     """
-    written = {os.path.realpath(one.path) for one in to if one.is_file}
-    for path in paths:
+    files = {_identity(one.path): one.path for one in to if one.is_file}
+    for path in paths if files else ():
         is_path = path not in ("", STANDARD_OUTPUT) and "\0" not in path
-        if is_path and os.path.realpath(path) in written and not _is_device(Path(path)):
-            raise click.UsageError(f"`{path}` is named already, and would be overwritten.")
+        if is_path and _identity(path) in files and not _is_device(Path(path)):
+            raise _overwrites(path, f"`{path}` is named already, and would be overwritten")
+    for path in files.values():
+        if path.endswith(".rules") and os.path.lexists(path):
+            raise _overwrites(path, f"`{path}` is a source, and would be overwritten")
+
+
+def refuse_standard_output(folder: str) -> None:
+    """Refuse ``-`` for a folder.
+
+    Raises:
+        click.UsageError: it is that.
+    """
+    if folder == STANDARD_OUTPUT:
+        raise click.UsageError("`-` is standard output, and no folder; one of that name is `./-`.")
+
+
+def _overwrites(path: str, message: str) -> RulecError:
+    return OVERWRITES_INPUT.error(SourceLocation(path), message, help="give another file")
+
+
+def _identity(path: str) -> object:
+    """What is the same for all paths and names of a file, also of one that is not there yet."""
+    try:
+        status = Path(path).stat()
+    except (OSError, ValueError):
+        return os.path.realpath(path)
+    return status.st_dev, status.st_ino
 
 
 def _texts(values: Iterable[Any]) -> Iterator[str]:

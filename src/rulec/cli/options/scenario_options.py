@@ -13,6 +13,7 @@ import click
 from rulec.cli.options.output_options import input_format_option
 from rulec.cli.options.shared_options import choice_option, combined
 from rulec.cli.options.shell_completion import complete_scenarios
+from rulec.cli.standard_input import file_named
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_format import RecordingSource
 
@@ -121,7 +122,7 @@ def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
     from rulec.scenario import Choice, load_scenario
 
     choice = Choice(**{field: options.pop(field) for field in Choice.__dataclass_fields__})
-    return load_scenario(scenario, choice)
+    return load_scenario(file_named(scenario), choice)
 
 
 graph_options = combined(

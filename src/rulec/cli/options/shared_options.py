@@ -54,9 +54,15 @@ def number_option(
 
 
 def file_option(name: str, help_text: str) -> Callable[[Decorated], Decorated]:
-    """The path of a file that is read or written beside the main ones."""
-    kind = click.Path(dir_okay=False, path_type=Path)
-    return click.option(name, metavar="FILE", type=kind, help=help_text)
+    """The path of a file that is read beside the main ones."""
+    kind = click.Path(dir_okay=False)
+    return click.option(name, metavar="FILE", type=kind, callback=_beside, help=help_text)
+
+
+def _beside(context: click.Context, parameter: click.Parameter, value: str | None) -> Path | None:
+    if value == "-":
+        raise click.BadParameter("`-` is standard input; write it to a file first")
+    return None if value is None else Path(value)
 
 
 def _seconds(

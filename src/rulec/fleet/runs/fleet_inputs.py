@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rulec.diagnostics import RulecError
+from rulec.file_messages import LINK_OUT
 from rulec.files import opened
 from rulec.fleet.fleet_messages import no_fleet_input
 from rulec.fleet.table_kind import RECORDING
@@ -15,6 +16,7 @@ from rulec.recordings.recording_files import is_recording
 from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
 from rulec.trace.formats.arrow.parquet_columns import parquet_names
 from rulec.trace.formats.table_reader import STEP, TRACE
+from rulec.trees import leads_out, tree_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +45,8 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
         below = list(_tables_below(argument))
         tables |= dict.fromkeys(below)
         found = input_files([argument])
-        problems += [] if below else found.problems
+        # A folder of tables alone has no recordings, and need not.
+        problems += (one for one in found.problems if not below or _is_link_out(one))
         for path in found.paths:
             if path.lower().endswith(PARQUET) and _is_table(path):
                 tables[path] = None
@@ -58,11 +61,16 @@ def _tables_below(argument: str) -> Iterator[str]:
     folder = Path(argument)
     if not folder.is_dir() or (argument != STANDARD_INPUT and is_recording(argument)):
         return
+    tree = tree_of(folder)
     for ending in PARQUET:
         for path in sorted(folder.rglob(f"*{ending}")):
             hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
-            if path.is_file() and not hidden and _is_table(str(path)):
+            if path.is_file() and not hidden and not leads_out(path, tree) and _is_table(str(path)):
                 yield str(path)
+
+
+def _is_link_out(problem: RulecError) -> bool:
+    return any(one.code == LINK_OUT.code for one in problem.diagnostics)
 
 
 def _why_not(path: str) -> RulecError:

@@ -10,6 +10,7 @@ from itertools import groupby
 from rulec.rates.exact_intervals import Interval
 from rulec.rates.rule_rates import Rate, RuleRates, ViolationRates
 from rulec.report.text import markdown
+from rulec.report.text.outgoing import spreadsheet_text
 from rulec.report.text.terminal_text import table_lines, visible
 
 _HEAD = ("rule", "opportunities", "violated", "per hour", "per 1000 km", "per opportunity")
@@ -67,13 +68,12 @@ def as_csv(rates: ViolationRates) -> str:
 
 
 def _csv_cell(value: object) -> str:
-    """A cell; a text that a spreadsheet would compute gets an apostrophe before it."""
+    """A cell."""
     if value is None:
         return ""
     if not isinstance(value, str):
         return repr(value)
-    text = visible(value)
-    return f"'{text}" if text.startswith(("=", "+", "-", "@", "'")) else text
+    return spreadsheet_text(visible(value))
 
 
 def _about(rates: ViolationRates) -> Iterator[str]:

@@ -10,6 +10,8 @@ from rulec.analysis.diff.rulebook_comparison import RulebookDiff, RulePair
 from rulec.report.rulebooks import diff_text
 from rulec.report.rulebooks.diff_json import as_json
 from rulec.report.text.markdown import code, escaped, table
+from rulec.report.text.outgoing import spreadsheet_text
+from rulec.report.text.terminal_text import visible
 
 CSV_COLUMNS = ("rule", "relation", "strength 1", "strength 2", "cite 1", "cite 2")
 
@@ -36,7 +38,8 @@ def render(diff: RulebookDiff, output_format: str) -> str:
 def as_csv(rows: Iterable[Sequence[str]]) -> str:
     """Comma-separated values (RFC 4180), without the last line's end."""
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerows([spreadsheet_text(visible(cell)) for cell in row] for row in rows)
     return text.getvalue().rstrip("\n")
 
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rulec.report.text.terminal_text import wants_color
+from rulec.report.text.outgoing import outgoing
+from rulec.report.text.terminal_text import visible, wants_color
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
@@ -32,16 +33,28 @@ def page_width() -> int:
     return max(40, get_terminal_size((PAGE_WIDTH, 24)).columns)
 
 
-def print_result(text: str) -> None:
-    """A line of the answer."""
+def print_line(text: str) -> None:
+    """One line of the answer, whatever names are in it."""
+    print_result(visible(text))
+
+
+def print_result(text: str, form: str = "text") -> None:
+    """A part of the answer, in a format."""
+    text = outgoing(text, form, color=wants_color(sys.stdout))
     if _bar is not None and sys.stdout.isatty():
         _bar.show(text)
     else:
         click.echo(text, color=wants_color(sys.stdout))
 
 
+def print_remark(text: str) -> None:
+    """One line on standard error, whatever names are in it."""
+    print_aside(visible(text))
+
+
 def print_aside(text: str) -> None:
     """Text on standard error, above the progress bar if there is one."""
+    text = outgoing(text, color=True)
     # Where standard error cannot be written, the exit status has to do.
     with suppress(OSError):
         if _bar is not None:

@@ -8,6 +8,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping
 from typing import IO, Any, TypeAlias
 
+from rulec.report.text.outgoing import spreadsheet_text
 from rulec.report.text.terminal_text import visible
 from rulec.report.verdict_findings.verdict_finding import (
     COLUMNS,
@@ -18,9 +19,6 @@ from rulec.trace.formats.arrow.parquet import arrow, write_parquet
 
 Columns: TypeAlias = Mapping[str, type]
 """Name -> the type of its values."""
-
-_FORMULA = ("=", "+", "-", "@")
-"""What a cell begins with that spreadsheets take for a formula."""
 
 
 class JsonLinesWriter:
@@ -92,13 +90,13 @@ def _rows(found: FoundInRecording, columns: Columns | None) -> Iterator[list[Any
 
 
 def _cell(value: str | float | tuple[str, ...] | None) -> str:
-    """A cell; a text that a spreadsheet would compute gets an apostrophe before it."""
+    """A cell."""
     if value is None:
         return ""
     if isinstance(value, float | int):
         return repr(value)
     text = visible("; ".join(value) if isinstance(value, tuple) else value)
-    return f"'{text}" if text.startswith((*_FORMULA, "'")) else text
+    return spreadsheet_text(text)
 
 
 class ParquetWriter:

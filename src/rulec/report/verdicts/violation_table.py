@@ -131,7 +131,7 @@ def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int
     cells = [_cells(fact, decisive) for fact in facts]
     cells += [_with_margins(map(shown, one.values), one.margins) for _, one in parts]
     return _Table(
-        [*(_title(fact, widest) for fact in facts), *(title for title, _ in parts)],
+        [*(_title(fact, widest) for fact in facts), *(visible(title) for title, _ in parts)],
         len(facts),
         list(zip(*cells, strict=True)),
         [range(n, n + 1) for n in range(len(explanation.states))],
@@ -151,7 +151,7 @@ def _left_out(explanation: Explanation, table: _Table) -> Iterator[str]:
 
 
 def _title(fact: Observation, widest: int) -> str:
-    text = cut(fact.text, widest)
+    text = cut(visible(fact.text), widest)
     return f"{text} in {visible(fact.unit)}" if fact.unit else text
 
 

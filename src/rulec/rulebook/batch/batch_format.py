@@ -113,5 +113,5 @@ def _replace(path: Path, data: bytes) -> None:
         way_out = "give `-` to have standard input formatted to standard output"
         message = "the file cannot be written: it is no ordinary file"
         raise UNWRITABLE_FILE.error(SourceLocation(str(path)), message, help=way_out)
-    with written_whole(path) as stream:
+    with written_whole(path, in_place=True) as stream:
         stream.write(data)

@@ -37,6 +37,13 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
     Raises RulecError R0703 with the nearest name and all those available.
     """
     text = str(reference)
+    if text == "-":
+        # Whatever files are called: a file of this name is `./-`.
+        raise NAME_NOT_FOUND.error(
+            None,
+            "standard input is no rulebook that can be found",
+            help="write it to a file first; `rulec check -` and `rulec fmt -` read it as it is",
+        )
     if "/" in text or text.endswith(SUFFIX):
         path = Path(text)
         inside = path / f"{path.name}{SUFFIX}"

@@ -11,6 +11,7 @@ from rulec.resource_limits import TYPE_DEPTH
 from rulec.rulebook.names import declaration_messages as say
 from rulec.rulebook.names.declaration_messages import TYPE_CIRCLE
 from rulec.syntax import tree
+from rulec.syntax.messages.lookalikes import looks_like, skeleton_of
 from rulec.vocabulary import Declaration, Enumeration, ObjectType, Quantity, Signal, Vocabulary
 from rulec.vocabulary.dimensions import Unit
 from rulec.vocabulary.units import parse_unit
@@ -132,6 +133,7 @@ def symbol_table(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolT
             if isinstance(item, tree.EnumerationItem | tree.SignalItem | tree.QuantityItem):
                 _declare_item(symbols, item, _roots(symbols, file))
     _note_clashes(symbols, files)
+    _note_lookalikes(symbols)
     for (first, again), names in symbols.shared.items():
         uses = [_use_of(source, files) for source in (first, again)]
         symbols.mistakes.append(say.both_declare(names, *uses))
@@ -141,6 +143,18 @@ def symbol_table(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolT
 def _use_of(vocabulary: Source, files: Sequence[tree.File]) -> tree.UseLine:
     (name,) = (file.name.text for file in files if file.name and file.span.source == vocabulary)
     return [use for file in files for use in file.uses if use.name.text == name][-1]
+
+
+def _note_lookalikes(symbols: SymbolTable) -> None:
+    """Warn of a name that looks like one of another file; within a file the parser does."""
+    spans = {**symbols.type_spans, **symbols.spans}
+    if all(map(str.isascii, spans)):
+        return
+    seen: dict[str, Span] = {}
+    for span in spans.values():
+        other = seen.setdefault(skeleton_of(span.text), span)
+        if other.text != span.text and other.source != span.source:
+            symbols.mistakes.append(looks_like(span, other.text, other))
 
 
 def _note_clashes(symbols: SymbolTable, files: Sequence[tree.File]) -> None:

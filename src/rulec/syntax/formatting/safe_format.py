@@ -26,12 +26,12 @@ def format_source(source: Source) -> str:
         FormattingError: a check has failed, which is a mistake in rulec.
     """
     tree, mistakes = parse(source)
-    if mistakes:
+    if any(mistake.severity == "error" for mistake in mistakes):
         raise RulecError(mistakes)
     text = arranged(source)
     made = Source(source.name, text)
-    again, mistakes = parse(made)
-    if mistakes or again != tree:
+    again, of_it = parse(made)
+    if len(of_it) != len(mistakes) or again != tree:
         raise FormattingError(f"formatting would change what {source.name} means")
     if _signs(made) != _signs(source):
         raise FormattingError(f"formatting would change words or signs of {source.name}")

@@ -1,0 +1,122 @@
+"""Files of a folder that belong together: all of them are the new ones, or all the old ones.
+
+A list of what is to get which name (the manifest) is written once all new files are on the disk.
+From then on the new ones count: whoever writes to the folder next does what a killed program had
+left to do. Before, what it left behind is removed.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from rulec.files import as_before, is_replaced, put_folder_on_disk, put_on_disk, refusals
+from rulec.trees import is_ordinary, refuse_no_source
+
+MANIFEST = ".rulec-writing.json"
+_PART = re.compile(r"\.rulec-[0-9a-f]{16}-[0-9]+\.part")
+_MOST_BYTES = 100_000_000
+
+
+def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
+    """Write files of a folder, given by their names, together or not at all.
+
+    One file is open at a time.
+
+    Raises RulecError: R0702 if one cannot be written, R0730 for links out of the tree, R0731 for
+        pipes and devices.
+    """
+    with refusals(folder), _alone_in(folder):
+        _finish(folder)
+        mark = os.urandom(8).hex()
+        names: dict[str, str] = {}
+        try:
+            for number, (name, content) in enumerate(contents.items()):
+                path = folder / name
+                refuse_no_source(path)
+                with refusals(path):
+                    is_replaced(path)
+                    part = f".rulec-{mark}-{number}.part"
+                    names[part] = name
+                    _write_new(folder / part, path, content)
+            _commit(folder, mark, names)
+        finally:
+            # Whatever happened: if there is a manifest the new files count, else the old ones.
+            _finish(folder)
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Wait until no other program writes files of a folder together."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):  # some file systems have no locks
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _write_new(part: Path, path: Path, content: bytes) -> None:
+    with part.open("xb") as stream:
+        stream.write(content)
+        put_on_disk(stream)
+    as_before(part, path)
+
+
+def _commit(folder: Path, mark: str, names: Mapping[str, str]) -> None:
+    """Let new files count from now on, in one step: the manifest gets its name."""
+    part = f".rulec-{mark}-{len(names)}.part"
+    try:
+        _write_new(folder / part, folder / MANIFEST, json.dumps(names).encode())
+        put_folder_on_disk(folder)
+        os.replace(folder / part, folder / MANIFEST)  # noqa: PTH105 - one call for both steps
+    except BaseException:
+        (folder / part).unlink(missing_ok=True)
+        raise
+    put_folder_on_disk(folder)
+
+
+def _finish(folder: Path) -> None:
+    """Give new files their names if they count, and remove what is left of them."""
+    for part, name in _left_to_do(folder / MANIFEST).items():
+        if is_part(folder / part):
+            with refusals(folder / name):
+                os.replace(folder / part, folder / name)  # noqa: PTH105
+    put_folder_on_disk(folder)
+    (folder / MANIFEST).unlink(missing_ok=True)
+    with os.scandir(folder) as entries:
+        left = [entry.name for entry in entries if is_part(folder / entry.name)]
+    for name in left:
+        (folder / name).unlink(missing_ok=True)
+
+
+def is_part(path: Path) -> bool:
+    """True for a file that was to get another name, and is no link."""
+    return bool(_PART.fullmatch(path.name)) and not path.is_symlink() and is_ordinary(path)
+
+
+def _left_to_do(manifest: Path) -> Mapping[str, str]:
+    """New files and the names that they get; none without a manifest, or if it is not ours."""
+    if manifest.is_symlink() or not is_ordinary(manifest):
+        return {}
+    try:
+        with manifest.open("rb") as stream:
+            names = json.loads(stream.read(_MOST_BYTES))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    is_own = isinstance(names, dict) and all(
+        isinstance(name, str) and _is_name(name) and _PART.fullmatch(part)
+        for part, name in names.items()
+    )
+    return names if is_own else {}
+
+
+def _is_name(name: str) -> bool:
+    """True for the name of a file in the folder itself, which a manifest may give away."""
+    return bool(name) and name not in (".", "..") and "/" not in name and "\0" not in name

@@ -1,0 +1,138 @@
+"""What a file shows otherwise than it is read: characters in comments, and names alike.
+
+After UTS #39 (Unicode Security Mechanisms): two names are confusable if they have one skeleton, the
+text with each letter replaced by the one that all that look like it stand for.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from unicodedata import name as name_of
+from unicodedata import normalize
+
+from rulec.diagnostics import Diagnostic, Label, Source, Span
+from rulec.diagnostics.code import Code
+from rulec.resources import grammar_file
+from rulec.syntax.keywords import RESERVED
+from rulec.syntax.literals import misleads
+from rulec.syntax.scanner import Token
+
+HIDDEN_IN_COMMENT = Code(
+    "R0118",
+    title="a comment holds a control character",
+    why="A character that drives a terminal, or turns the direction of the text around, can show a "
+    "comment as if it were a rule, or a rule as if it were a comment (CVE-2021-42574). Comments "
+    "hold what can be seen, and tabs.",
+    bad=r"printf 'rulebook a signal p # \342\200\256\nhard rule r { require p }' | rulec check -",
+    good="printf 'rulebook a signal p # left\\nhard rule r { require p }' | rulec check -",
+    kind="command",
+)
+
+CONFUSABLE_NAME = Code(
+    "R0119",
+    title="a name looks like another one",
+    why="Two names look alike and are not the same; or a name that looks Latin mixes letters of "
+    "several scripts, or is in one that the file has no other word of (Unicode Technical Standard "
+    "39). A rule about the wrong one of them is never violated. Write one of them otherwise.",
+    bad="rulebook example\nsignal stop, \u0455top\n"
+    "hard rule r { require not (stop and \u0455top) }\n",
+    good="rulebook example\nsignal stop, halt\nhard rule r { require not (stop and halt) }\n",
+)
+
+
+def hidden_in_comment(place: Span) -> Diagnostic:
+    return HIDDEN_IN_COMMENT.at(
+        place, "a comment may not hold this invisible character", help="delete it"
+    )
+
+
+def looks_like(place: Span, other: str, first: Span | None) -> Diagnostic:
+    codes = ", ".join(f"U+{ord(letter):04X}" for letter in place.text if not letter.isascii())
+    return CONFUSABLE_NAME.at(
+        place,
+        f"`{place.text}` ({codes}) looks like `{other}`, and is another name",
+        help="write it in the letters of the other names, or call it otherwise",
+        labels=() if first is None else (Label(first.place, "the other name is here"),),
+        severity="warning",
+    )
+
+
+_SUSPECT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+MOST = 20
+"""So many places of a kind are named."""
+
+
+def hidden_meaning(source: Source, tokens: Sequence[Token]) -> list[Diagnostic]:
+    """Mistakes for what drives or reorders a line of a comment, warnings for names alike."""
+    found = []
+    if _SUSPECT.search(source.text):
+        found += [hidden_in_comment(place) for place in _hidden(source, tokens)]
+    if not source.text.isascii():
+        found += _alike(source, tokens)
+    return found
+
+
+def _hidden(source: Source, tokens: Sequence[Token]) -> Iterator[Span]:
+    """The first hidden character of each comment; of those in texts others speak."""
+    ends = [token.end for token in tokens]
+    starts = [token.start for token in tokens]
+    for end, start in zip([0, *ends], [*starts, len(source.text)], strict=True):
+        for comment in re.finditer(r"#[^\n]*", source.text[end:start]):
+            at = next((n for n, sign in enumerate(comment[0]) if _is_hidden(sign)), None)
+            if at is not None:
+                place = end + comment.start() + at
+                yield Span(source, place, place + 1)
+
+
+def _is_hidden(character: str) -> bool:
+    return misleads(character) or character in "\u061c\u200e\u200f"
+
+
+def _alike(source: Source, tokens: Sequence[Token]) -> Iterator[Diagnostic]:
+    first = {token.text: token for token in reversed(tokens) if token.kind == "word"}
+    foreign = [name for name in reversed(first) if not name.isascii()]
+    own = _own_scripts(foreign)
+    skeletons: dict[str, str] = {name: name for name in (*RESERVED, *first) if name.isascii()}
+    left = MOST
+    for name in foreign:
+        skeleton = skeleton_of(name)
+        other = skeletons.setdefault(skeleton, name)
+        token = first[name]
+        place = Span(source, token.start, token.end)
+        scripts = {_script(letter) for letter in name if letter.isalpha()}
+        seems_latin = skeleton.isascii() and scripts != {"LATIN"}
+        is_odd = seems_latin and (len(scripts) > 1 or not scripts <= own)
+        if left and (other != name or is_odd):
+            left -= 1
+            seen = first.get(other) if other != name else None
+            label = None if seen is None else Span(source, seen.start, seen.end)
+            yield looks_like(place, other if other != name else skeleton, label)
+
+
+def _own_scripts(names: Sequence[str]) -> set[str]:
+    """Scripts that the file uses: not only for letters that look like Latin ones."""
+    letters = {letter for name in names for letter in name}
+    return {_script(letter) for letter in letters if not skeleton_of(letter).isascii()}
+
+
+@cache
+def _script(letter: str) -> str:
+    """The first word of a letter's name in Unicode, which is its script for nearly all."""
+    return name_of(letter, "").partition(" ")[0]
+
+
+def skeleton_of(name: str) -> str:
+    """What a name looks like: equal for all names that look alike (UTS #39, section 4)."""
+    table = _table()
+    letters = normalize("NFD", name)
+    return normalize("NFD", "".join(table.get(letter, letter) for letter in letters))
+
+
+@cache
+def _table() -> Mapping[str, str]:
+    data = json.loads(grammar_file("confusables.json").read_text(encoding="utf-8"))
+    alike: Mapping[str, str] = data["alike"]
+    return {letter: prototype for prototype, letters in alike.items() for letter in letters}
