@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.map_matching import MatchedStretch
 from rulec.recordings.recording import Recording
-from rulec.scenario.recorded.route import lanelet_length
 
 _SHIFT_COST, _SHORT_COST = 1e6, 1e5
 
@@ -44,10 +43,11 @@ class RouteStretch:
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """Lanes beside each other, and how many states were in each."""
+    """Lanes beside each other, how many states were in each, and how long each is (m)."""
 
     lanes: tuple[str, ...]
     states: tuple[int, ...]
+    lengths: tuple[float, ...]
 
     def away(self, lane: str) -> int:
         """How many lanes the states are away from one, in sum."""
@@ -92,7 +92,8 @@ def route_stretches(
     rows = []
     for number, piece in enumerate(pieces):
         lanes = graph.row(piece[0])
-        rows.append(_Row(lanes, tuple(counts[number, lane] for lane in lanes)))
+        states = tuple(counts[number, lane] for lane in lanes)
+        rows.append(_Row(lanes, states, tuple(map(graph.length, lanes))))
     start = 0
     while start < len(rows):
         stop, route = _cheapest(recording, rows, start)
@@ -119,10 +120,7 @@ def _cheapest(
             return number, _least(best).lanelets
         best = {
             lane: min(
-                (
-                    _through(recording, row, entry, lane, choice)
-                    for entry, choice in entries.items()
-                ),
+                (_through(row, entry, lane, choice) for entry, choice in entries.items()),
                 key=lambda choice: (choice.cost, choice.lanelets),
             )
             for lane in row.lanes
@@ -143,11 +141,11 @@ def _entry(
     return min(leading, key=lambda choice: (choice.cost, choice.lanelets), default=None)
 
 
-def _through(recording: Recording, row: _Row, entry: str, lane: str, choice: _Choice) -> _Choice:
+def _through(row: _Row, entry: str, lane: str, choice: _Choice) -> _Choice:
     if entry == lane:
         return _Choice(choice.cost + row.away(lane), (*choice.lanelets, lane))
-    changes = abs(row.lanes.index(entry) - row.lanes.index(lane))
-    length = lanelet_length(recording.lanelets[entry])
+    own = row.lanes.index(entry)
+    changes, length = abs(own - row.lanes.index(lane)), row.lengths[own]
     shift = changes * (_SHIFT_COST + _SHORT_COST / max(length, 1.0))
     away = min(row.away(entry), row.away(lane))
     return _Choice(choice.cost + shift + away, (*choice.lanelets, entry, lane))

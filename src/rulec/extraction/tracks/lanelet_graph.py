@@ -46,11 +46,18 @@ class LaneletGraph:
         self._recording = recording
         self._ways: dict[str, Mapping[str, Way]] = {}
         self._rows: dict[str, tuple[str, ...]] = {}
+        self._lengths: dict[str, float] = {}
         self._bordering: dict[str, list[str]] = defaultdict(list)
         for pair in bordering(recording.lanelets.values()):
             if pair.length >= _SHORTEST_M:
                 self._bordering[pair.right.id].append(pair.left.id)
                 self._bordering[pair.left.id].append(pair.right.id)
+
+    def length(self, start: str) -> float:
+        """The length (m) of a lane's middle."""
+        if start not in self._lengths:
+            self._lengths[start] = lanelet_length(self._recording.lanelets[start])
+        return self._lengths[start]
 
     def beside(self, start: str, end: str) -> bool:
         """Is a lane beside another one, in its row or along a part of its border?"""
@@ -106,7 +113,7 @@ class LaneletGraph:
         added = []
         for here in ring:
             way = found[here]
-            length = way.length + lanelet_length(self._recording.lanelets[here])
+            length = way.length + self.length(here)
             for lanelet in self.successors(here):
                 known = found.get(lanelet.id)
                 if known is None or way.changes < known.changes:

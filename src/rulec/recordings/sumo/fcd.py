@@ -122,15 +122,20 @@ def read_fcd(path: Path) -> FloatingCarData:
 def _add(data: FloatingCarData, element: XmlElement) -> None:
     name, attributes = element.name, element.attributes
     try:
-        row = tuple(map(float, _place_of(attributes)))
+        row = x, y, angle, speed = tuple(map(float, _place_of(attributes)))
         acceleration = float(attributes.get("acceleration", "nan"))
         key = attributes["id"]
     except (KeyError, ValueError):
         raise _wrong(element) from None
-    if row[0] == row[1] == _NOWHERE:
+    if x == y == _NOWHERE:
         return
-    # NaN is not below anything
-    if not (max(map(abs, row)) < LARGEST and sum(row) == sum(row)):
+    # NaN is not between anything
+    if not (
+        -LARGEST < x < LARGEST
+        and -LARGEST < y < LARGEST
+        and -LARGEST < angle < LARGEST
+        and -LARGEST < speed < LARGEST
+    ):
         raise _wrong(element)
     track = data.tracks.get(key)
     if track is not None and track.element != name:
