@@ -27,7 +27,7 @@ _EITHER = frozenset(
         *("lateral", "lateral_gap", "light", "limit", "marked_lanes", "merged", "narrowing"),
         "near_lane_is_free",
         *("needs_access", "obstructed", "on_call", "on_priority_road", "on_solid_line"),
-        *("begins_to_overtake", "one_between", "own_lane_queue"),
+        *("begins_to_overtake", "leads_elsewhere", "one_between", "own_lane_queue"),
         *("oncoming", "oncoming_clear", "one_way", "other_in_junction", "other_lane_available"),
         *("other_road_ends", "overtaking", "own_road_ends", "parked", "position", "precedes"),
         *("preparing_to_leave", "road_class", "room_on_near_side", "roundabout"),

@@ -240,3 +240,13 @@ def test_nobody_goes_to_the_near_lane_across_a_solid_line(mark, free):
     ]
     behind = steady(9, 0, 4, 10.0)
     assert signals(lanes, ego(100, y=4), behind)["near_lane_is_free"][0] == free
+
+
+@pytest.mark.parametrize(("kind", "free"), [("busLane", "False"), ("urban", "True")])
+def test_nobody_goes_to_a_lane_for_buses(kind, free):
+    lanes = [
+        replace(straight(1, 0, 600, left_of=2), types=frozenset({kind})),
+        straight(2, 0, 600, 4, right_of=1),
+    ]
+    behind = steady(9, 0, 4, 10.0)
+    assert signals(lanes, ego(100, y=4), behind)["near_lane_is_free"][0] == free

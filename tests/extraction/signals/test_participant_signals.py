@@ -11,7 +11,7 @@ from rulec.extraction.signals.participant_signals import (
     safe_distance,
 )
 from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording, vehicle
+from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 STEP_S = 0.5
@@ -200,3 +200,22 @@ def test_who_stands_beside_the_lanes_all_the_time_is_parked(y, moves_on, parked)
     ways = [20.0 + (10.0 * max(k - 4, 0) if moves_on else 0.0) for k in range(8)]
     other = vehicle(8, {k: (x, y) for k, x in enumerate(ways)}, speed=0)
     assert about(other)["parked"] == parked
+
+
+@pytest.mark.parametrize(
+    ("x", "goes_on", "elsewhere"), [(90, False, True), (90, True, False), (40, False, False)]
+)
+def test_a_lane_that_ends_at_the_junction_leads_elsewhere(x, goes_on, elsewhere):
+    """The junction begins at 112 m: near it is who is 50 m before it."""
+    inside = frozenset({"intersection"})
+    road = [
+        straight(1, 0, 112, successors=(2,), left_of=5),
+        straight(2, 112, 132, predecessors=(1,), successors=(3,), types=inside),
+        straight(3, 132, 300, predecessors=(2,), left_of=6 if goes_on else None),
+        straight(5, 0, 112, 4, right_of=1),
+        *([straight(6, 132, 300, 4, right_of=3)] if goes_on else []),
+    ]
+    other = vehicle(8, dict.fromkeys(range(8), (x, 4)), speed=0)
+    found = recording(road, [steady(7, 0, 0, speed=10, steps=8), other])
+    signals = participant_signals(context_of(found, ("1", "2", "3")))
+    assert signals.about["leads_elsewhere"][0, 0] == elsewhere

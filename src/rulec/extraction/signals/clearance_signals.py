@@ -189,7 +189,7 @@ def _far_lane_is_free(context: DriveContext) -> Flags:
 def _near_lane_is_free(context: DriveContext) -> Flags:
     """Flags of states in which ego, in the next lane to the kerb, would be at safe distances.
 
-    It cannot go there across a solid line, as beside lanes for who turns off.
+    It cannot go there across a solid line, as beside lanes for who turns off, nor to a bus lane.
     """
     limits = context.thresholds
     inside, there = _on_next_lane(context, context.side)
@@ -200,8 +200,21 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * limits.braking_mps2)
     taken = inside & ((station == relations.BESIDE) | (gap < safe))
     parted = own_lanelets(context).flags(lambda lanelet: _near_mark(lanelet, context) in _SOLID)
-    free: Flags = ~there | ~(taken.any(axis=0) | parted)
+    free: Flags = ~there | ~(taken.any(axis=0) | parted | _bus_lane_beside(context))
     return free
+
+
+def _bus_lane_beside(context: DriveContext) -> Flags:
+    """Flags of states in which the next lane to the kerb is for buses, and ego is none."""
+    own, way = own_lanelets(context), -1 if context.side == "right" else 1
+    if context.ego.of_type("bus")[0]:
+        return np.zeros(context.states, dtype=bool)
+    of_each = np.zeros(len(own.places), dtype=bool)
+    for number, (piece, lane) in enumerate(own.places):
+        row = context.road.rows[piece]
+        beside = row[lane + way] if 0 <= lane + way < len(row) else None
+        of_each[number] = beside is not None and "busLane" in beside.types
+    return of_each[own.number]
 
 
 def _near_mark(lanelet: Lanelet, context: DriveContext) -> LaneMark | None:

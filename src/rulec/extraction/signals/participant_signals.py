@@ -27,6 +27,9 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
 
+_BEYOND_M = 1.0
+"""So far behind a junction the lanes are those that go on."""
+
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
 
@@ -254,6 +257,19 @@ def _stays_aside(context: DriveContext) -> Flags:
     return aside
 
 
+def _leads_elsewhere(context: DriveContext) -> SignalColumns:
+    """Whether the lane of those before a junction does not go on beside ego's beyond it."""
+    others, reach = context.extents, context.thresholds.approach_m
+    elsewhere = np.zeros(context.relevant.shape, dtype=bool)
+    for low, high in context.road.junctions:
+        (beyond,) = context.road.lanes.existing_at(np.array([high + _BEYOND_M]))
+        near = context.on_lanes & (others.s < low) & (low - others.s_max <= reach)
+        if beyond.any():
+            lane = np.clip(others.lane, 0, len(beyond) - 1)
+            elsewhere |= near & ~beyond[lane]
+    return SignalColumns(about={"leads_elsewhere": elsewhere})
+
+
 def _two_wheeled(context: DriveContext) -> SignalColumns:
     two_wheeled = [body.type in _TWO_WHEELED for body in context.tracks.participants]
     return SignalColumns(about={"two_wheeled": _constant(context, two_wheeled)})
@@ -285,6 +301,7 @@ _PASSES: Passes = {
     ("goes_across",): _goes_across,
     ("stopped",): _stopped,
     ("parked",): _parked,
+    ("leads_elsewhere",): _leads_elsewhere,
     ("two_wheeled",): _two_wheeled,
     ("in_the_road",): _in_the_road,
 }
