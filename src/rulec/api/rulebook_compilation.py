@@ -41,7 +41,10 @@ def machines(
         return rules
     if not recalls or not isinstance(rules, str | Path) or Path(rules).suffix == ".json":
         return compile_rulebook(rules, search_path, warn, at=at, any_step=True)
+    from rulec.automata.bundle.required_signature import refuse_source
     from rulec.automata.compiled_cache import asked, recalled
+
+    refuse_source(rules)
 
     question = asked(rules, search_path, at)
     known = None if question is None else recalled(question)
@@ -88,8 +91,10 @@ def compile_rulebook(
     step = None if step_s is None else exact_step(step_s)
     if isinstance(reference, str | Path):
         if Path(reference).suffix != ".json":
+            from rulec.automata.bundle.required_signature import refuse_source
             from rulec.pipeline import compile_source
 
+            refuse_source(reference)
             return compile_source(
                 reference, search_path, at, step, any_step=any_step, on_warning=warn
             )

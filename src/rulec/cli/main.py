@@ -44,6 +44,31 @@ VERBS = {
 }
 
 
+WITH_COMPILED = (
+    *("draw", "envelopes", "fleet", "maneuvers", "monitor", "show", "traces", "verify"),
+    "verify-compiled",
+)
+"""The verbs that take compiled rulebooks."""
+
+
+def _require_signed(context: click.Context, _: click.Parameter, key: str | None) -> None:
+    if key:
+        # 20 ms: only where a key is given.
+        from rulec.automata.bundle.required_signature import in_force
+
+        context.with_resource(in_force(key))
+
+
+_REQUIRE_SIGNED = click.Option(
+    ["--require-signed"],
+    metavar="PUBLIC_KEY",
+    help="Take only compiled rulebooks that are signed by a key in minisign's format, given by its "
+    "file or as it is.",
+    expose_value=False,
+    callback=_require_signed,
+)
+
+
 class _Verbs(click.Group):
     """Imports a verb's file only when that verb is called."""
 
@@ -57,6 +82,11 @@ class _Verbs(click.Group):
         command: click.Command = import_module(f"rulec.cli.commands.{module}").command
         command.short_help = VERBS[cmd_name]  # a shell that completes shows it, too
         command.name = cmd_name  # in the files all of them are called `command`
+        if cmd_name in WITH_COMPILED:
+            kinds = command.commands.values() if isinstance(command, click.Group) else (command,)
+            for verb in kinds:
+                if _REQUIRE_SIGNED not in verb.params:
+                    verb.params.append(_REQUIRE_SIGNED)
         return command
 
     def resolve_command(

@@ -7,9 +7,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TypeAlias
 
-from rulec.automata.bundle.bundle_file import from_json
+from rulec.automata.bundle.bundle_file import from_json, read_signed
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.files import opened
 from rulec.fleet.fleet_messages import not_compiled
 
 CompiledRules: TypeAlias = str | Path | bytes | CompiledRulebook
@@ -46,7 +45,6 @@ def carried(rules: CompiledRules) -> CarriedRulebook:
     else:
         if Path(rules).suffix != ".json":
             raise not_compiled(str(rules))
-        with opened(Path(rules)) as stream:
-            result = CarriedRulebook(stream.read(), str(rules))
+        result = CarriedRulebook(read_signed(Path(rules)), str(rules))
     result.read()
     return result

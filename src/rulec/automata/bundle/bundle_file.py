@@ -29,6 +29,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRulebook,
     alike,
 )
+from rulec.automata.bundle.required_signature import check_signed
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.automata.bundle.stored_steps import StoredSteps
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -211,9 +212,19 @@ def _damaged(file: str, message: str) -> RulecError:
 
 
 def read_compiled(path: Path) -> CompiledRulebook:
-    """Read a compiled rulebook's file. Raises RulecError: R0701, R0404, R0410, R0411."""
+    """Read a compiled rulebook's file.
+
+    Raises RulecError: R0701, R0404, R0410, R0411, and as ``check_signed``.
+    """
+    return from_json(read_signed(path), str(path))
+
+
+def read_signed(path: Path) -> bytes:
+    """The bytes of a file. Raises RulecError: R0701, and as ``check_signed``."""
     with opened(path) as stream:
-        return from_json(stream.read(), str(path))
+        data = stream.read()
+    check_signed(path, data)
+    return data
 
 
 def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:

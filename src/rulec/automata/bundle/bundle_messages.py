@@ -42,6 +42,38 @@ NO_DIGEST = Code(
     kind="command",
 )
 
+_KEY = "RWQkF88c9hIe+Ip+cBE8srVQ+AZLA9rUsl5RNpje9LC8FABS7WICckWL"
+_COMPILED = "rulec compile esterle2019 -o build > log\n"
+NOT_SIGNED = Code(
+    "R0412",
+    title="a compiled rulebook is not signed by the key that is required",
+    why="With `--require-signed KEY` only compiled rulebooks are taken beside which lies a "
+    "signature by that key, in minisign's format: `RULEBOOK.json.minisig`. A signature of another "
+    "key, of other content, without the digest (`minisign -S -l`), and none at all are refused, "
+    "and so are sources, which nobody signs.",
+    bad=f"{_COMPILED}rulec show build/esterle2019.json --require-signed {_KEY}",
+    good=f"{_COMPILED}rulec show build/esterle2019.json",
+    kind="command",
+)
+
+NO_KEY = Code(
+    "R0413",
+    title="a public key is none",
+    why="A public key in minisign's format is a file of two lines, of which the second is Base64 "
+    "of 42 bytes. Either the path of such a file is given, or that line itself.",
+    bad=f"{_COMPILED}rulec show build/esterle2019.json --require-signed minisign.pub",
+    good=f"{_COMPILED}rulec show build/esterle2019.json",
+    kind="command",
+)
+
+NO_CRYPTOGRAPHY = Code(
+    "R0414",
+    title="signatures cannot be checked: the package `cryptography` is missing",
+    why="Ed25519 takes the package `cryptography`, which is installed on request: `pip install "
+    "'rulec[signed]'`.",
+    kind="circumstance",
+)
+
 _TWO_STEPS = """\
 cat > soon.rules <<.
 rulebook soon

@@ -82,9 +82,11 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
     # Rulebooks, 130 ms: not for --help.
     from rulec.automata.bundle.bundle_file import read_compiled
     from rulec.automata.bundle.compiled_rulebook import CompiledRule
+    from rulec.automata.bundle.required_signature import refuse_source
     from rulec.rulebook.rulebook_model import Rule, Rulebook
 
     if Path(reference).suffix != ".json":
+        refuse_source(reference)
         return rulec.Session(search_path(), at).load_rulebook(reference), None
     compiled = read_compiled(Path(reference))
     # What a compiled rule has besides is what it was compiled into.

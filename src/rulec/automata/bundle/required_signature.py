@@ -1,0 +1,104 @@
+"""Compiled rulebooks that have to be signed, if somebody says so.
+
+The key is an environment variable's, so that processes that are started meanwhile ask for it, too.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rulec.automata.bundle.bundle_messages import NO_CRYPTOGRAPHY, NO_KEY, NOT_SIGNED
+from rulec.automata.bundle.minisign import (
+    PublicKey,
+    SignatureFormatError,
+    detached_signature,
+    has_signed,
+    public_key,
+)
+from rulec.diagnostics import RulecError, SourceLocation
+
+VARIABLE = "RULEC_REQUIRE_SIGNED"
+"""The path of a public key, or the key itself; unset or empty if nothing has to be signed."""
+
+_LARGEST = 10_000
+
+
+@contextmanager
+def in_force(key: str) -> Iterator[None]:
+    """Let all compiled rulebooks that are read in a block have to be signed by a key.
+
+    Raises RulecError R0413 if it is none.
+    """
+    _key(key)
+    before = os.environ.get(VARIABLE)
+    os.environ[VARIABLE] = key
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[VARIABLE]
+        else:
+            os.environ[VARIABLE] = before
+
+
+def check_signed(path: Path, data: bytes) -> None:
+    """Refuse a file that is not signed by the key that is required, if one is.
+
+    Raises RulecError R0412, R0413 for a key that is none, R0414 without ``cryptography``.
+    """
+    if not (required := os.environ.get(VARIABLE)):
+        return
+    key = _key(required)
+    beside = path.with_name(f"{path.name}.minisig")
+    if not beside.is_file():
+        raise _not_signed(path, f"there is no signature beside it: `{beside.name}`")
+    try:
+        signature = detached_signature(_text(beside))
+    except (OSError, ValueError) as problem:
+        message = f"`{beside.name}` beside it is no signature: {problem}"
+        raise _not_signed(path, message) from None
+    try:
+        signed = has_signed(key, signature, data)
+    except ImportError:
+        raise NO_CRYPTOGRAPHY.error(
+            None,
+            "a signature cannot be checked: the package `cryptography` is not installed",
+            help="`pip install 'rulec[signed]'`",
+        ) from None
+    if not signed:
+        raise _not_signed(path, "it is not signed by the key that is required")
+
+
+def refuse_source(reference: str | Path) -> None:
+    """Refuse (R0412) a rulebook that is not compiled where a signature is required."""
+    if os.environ.get(VARIABLE):
+        raise _not_signed(Path(reference), "only compiled rulebooks are signed, and this is none")
+
+
+def _not_signed(path: Path, message: str) -> RulecError:
+    return NOT_SIGNED.error(
+        SourceLocation(str(path)),
+        message,
+        help="get the file and its signature from who made them, or sign it with "
+        "`minisign -S -m FILE`",
+    )
+
+
+def _key(required: str) -> PublicKey:
+    try:
+        path = Path(required)
+        return public_key(_text(path) if path.is_file() else required)
+    except (OSError, SignatureFormatError, ValueError) as problem:
+        raise NO_KEY.error(
+            SourceLocation(required),
+            f"this is no public key of minisign's: {problem}",
+            help="give the path of a key that `minisign -G` made, or its second line",
+        ) from None
+
+
+def _text(path: Path) -> str:
+    with path.open("rb") as stream:
+        return stream.read(_LARGEST).decode()
