@@ -20,6 +20,7 @@ from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Recording, Side
+from rulec.trace.plain_arrays import distinct, median
 
 _ENOUGH_TRACKS = 10
 _ENOUGH_IN_LANE = 3
@@ -136,7 +137,7 @@ class DriveContext:
         away = np.add(*extents.from_middle(lane)) / 2
         away = np.where(self.driving_along[rows], away, np.nan)
         by_state = np.zeros(self.states)
-        for number in np.unique(self.ego_lane).tolist():
+        for number in distinct(self.ego_lane).tolist():
             inside = np.where(lane == number, away, np.nan)
             inside = inside[~np.isnan(inside).all(axis=1)]
             enough = len(inside) >= _ENOUGH_IN_LANE
@@ -172,7 +173,7 @@ def _telling(away: Floats, enough: int) -> float:
     """The median of rows' medians, 0 if there are too few or it is next to nothing."""
     if len(away) < enough:
         return 0.0
-    offset = float(np.median(_medians(away)))
+    offset = median(_medians(away))
     return offset if abs(offset) > _LEAST_OFFSET_M else 0.0
 
 

@@ -18,6 +18,7 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.trace.plain_arrays import median
 
 _EGO_TYPES = {
     "truck": "ego_truck",
@@ -47,7 +48,8 @@ def _ego_type(context: DriveContext) -> SignalColumns:
 
 
 def _ego_length(context: DriveContext) -> SignalColumns:
-    length = np.nanmedian(context.ego_extents.s_max - context.ego_extents.s_min)
+    lengths = context.ego_extents.s_max - context.ego_extents.s_min
+    length = median(lengths[~np.isnan(lengths)])
     return SignalColumns({"ego_length": rounded(np.full(context.states, length))})
 
 

@@ -26,6 +26,7 @@ from rulec.extraction.signals.queues import (
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, next_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.trace.plain_arrays import distinct
 
 _DRIFT_MPS = 0.2
 """Who moves sideways by less keeps its lane."""
@@ -206,7 +207,7 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     comes &= (relations.lateral(context) == near) & context.going_along
     closing = relations.gap(context) <= faster_mps * limits.passed_s
     rows, states = (comes & (closing | (station == relations.BESIDE))).nonzero()
-    gets_past, lost = (flags[rows, states] for flags in _gets_past(context, np.unique(rows)))
+    gets_past, lost = (flags[rows, states] for flags in _gets_past(context, distinct(rows)))
     next_lane, lanes = _next_lane(context)[states], context.touched.shape[-1]
     there = (next_lane >= 0) & (next_lane < lanes)
     reaches = there & context.touched[rows, states, np.clip(next_lane, 0, lanes - 1)]

@@ -26,6 +26,7 @@ from rulec.extraction.signals.signal_columns import (
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
+from rulec.trace.plain_arrays import distinct
 
 _BEYOND_M = 1.0
 """So far behind a junction the lanes are those that go on."""
@@ -126,7 +127,7 @@ def _parts_soon(context: DriveContext, rows: NDArray[intp]) -> Flags:
     Of these rows, False in all others.
     """
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
-    parts, rows = np.zeros(context.relevant.shape, dtype=bool), np.unique(rows)
+    parts, rows = np.zeros(context.relevant.shape, dtype=bool), distinct(rows)
     apart = (context.extents.lane[rows] != context.ego_extents.lane) & context.relevant[rows]
     states = np.arange(context.states)
     parts[rows] = next_state(apart, context.states + horizon) <= states + horizon

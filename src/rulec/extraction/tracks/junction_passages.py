@@ -21,6 +21,7 @@ from rulec.extraction.tracks.junctions import Interval, Junction, JunctionWay, j
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import Recording
 from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.plain_arrays import distinct
 
 _FARTHEST_M = 2.5
 """Who is farther from a way's middle on average is not on it."""
@@ -167,7 +168,7 @@ def junction_passages(recording: Recording, tracks: Tracks) -> JunctionPassages:
         points = shapely.points(tracks.x[rows, columns], tracks.y[rows, columns])
         areas = [junction.area for junction in junctions]
         at, where = shapely.STRtree(areas).query(points, predicate="intersects")
-        for number in np.unique(where).tolist():
+        for number in distinct(where).tolist():
             inside = np.zeros(tracks.present.shape, dtype=bool)
             chosen = at[where == number]
             inside[rows[chosen], columns[chosen]] = True

@@ -23,6 +23,7 @@ from rulec.recordings.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at
 from rulec.scenario.recorded.route import lanelet_length, lanes_beside
+from rulec.trace.plain_arrays import distinct, median
 
 if TYPE_CHECKING:
     from rulec.scenario.scenario_model import MissingLane
@@ -120,7 +121,7 @@ def lanes_along(
     """
     lanelets = [recording.lanelets[number] for number in way]
     borders = borders_along(lanelets, line)
-    grid = np.union1d(np.arange(0.0, line.length, _EVERY_M), borders)
+    grid = distinct(np.concatenate([np.arange(0.0, line.length, _EVERY_M), borders]))
     grid = grid[np.concatenate(([True], np.diff(grid) > _HAIR_M))]
     own_number = np.zeros(len(way), dtype=int) if numbers is None else np.array(numbers)
     strip = _Strip(recording, lanelets, line, borders, grid, own_number=own_number)
@@ -187,7 +188,7 @@ def _usual_widths(
         if own[at]:
             yield float(np.interp(ego_s, grid, width))
         else:
-            yield float(np.median(width[:-1][own])) if own.any() else NARROWEST_LANE_M
+            yield median(width[:-1][own]) if own.any() else NARROWEST_LANE_M
 
 
 def _by_number(

@@ -22,6 +22,7 @@ from rulec.recordings.polylines import densified, without_repeats
 from rulec.recordings.recording import Points
 from rulec.scenario.recorded.line_fans import LineFans, line_fans
 from rulec.scenario.recorded.sure_feet import PieceFans, sure_feet, sure_feet_near
+from rulec.trace.plain_arrays import distinct
 
 BEYOND_M = 2000.0
 """How far the line goes on straight beyond its ends."""
@@ -201,7 +202,7 @@ def _bends(points: Points) -> NDArray[intp]:
     share = np.hypot(*steps.T) / _PIECE_M + turned / _TURN_RAD
     reached = np.concatenate(([0.0], np.cumsum(share)))
     wanted = np.linspace(0.0, reached[-1], int(np.ceil(reached[-1])) + 1)
-    numbers: NDArray[intp] = np.unique(np.searchsorted(reached, wanted).clip(0, len(points) - 1))
+    numbers: NDArray[intp] = distinct(np.searchsorted(reached, wanted).clip(0, len(points) - 1))
     return numbers
 
 

@@ -11,6 +11,7 @@ from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns,
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Light, ObservedLight
+from rulec.trace.plain_arrays import distinct
 
 STOP_SIGNS = frozenset({"STOP", "STOP_4_WAY"})
 _LINE_REACH_M = 40.0
@@ -170,7 +171,7 @@ def _crosses_stop_line(context: DriveContext) -> Flags:
     crosses, front = np.zeros(context.states, dtype=bool), context.ego_extents.s_max[0]
     for piece in range(len(context.road.rows)):
         if any(row and STOP_SIGNS & row.signs for row in context.road.rows[piece]):
-            for lane in np.unique(context.ego_lane).tolist():
+            for lane in distinct(context.ego_lane).tolist():
                 if STOP_SIGNS & context.road.lanelet(piece, lane).signs:
                     _, line = stop_line(context, piece, lane)
                     crosses |= _passes(front, line) & (context.ego_lane == lane)
@@ -198,7 +199,7 @@ def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags, 
     """
     colours = np.full(context.states, "no_light", dtype="<U11")
     crosses, changed = np.zeros((2, context.states), dtype=bool)
-    lanes = np.unique(context.ego_lane).tolist()
+    lanes = distinct(context.ego_lane).tolist()
     for piece in range(len(context.road.rows) - 1, -1, -1):
         if not any(row is not None and row.lights for row in context.road.rows[piece]):
             continue

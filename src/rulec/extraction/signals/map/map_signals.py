@@ -18,6 +18,7 @@ from rulec.extraction.signals.signal_columns import (
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet
+from rulec.trace.plain_arrays import distinct
 
 NO_LIMIT_KMH = 1000.0
 NO_CROSSING_M = 1000.0
@@ -95,7 +96,7 @@ def _holds_to_line(context: DriveContext, sign: str) -> Flags:
     for piece, row in enumerate(context.road.rows):
         if any(lanelet is not None and sign in lanelet.signs for lanelet in row):
             begins = float(context.road.borders[piece])
-            for lane in np.unique(context.ego_lane).tolist():
+            for lane in distinct(context.ego_lane).tolist():
                 if sign in context.road.lanelet(piece, lane).signs:
                     _, line = stop_line(context, piece, lane)
                     there = (before >= begins) & (before <= line)

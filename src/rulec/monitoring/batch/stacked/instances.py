@@ -17,6 +17,7 @@ from rulec.monitoring.batch.stacked.stack import Places, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
+from rulec.trace.plain_arrays import distinct
 
 _MOST_TOGETHER = 1 << 20
 """So many states of pairs are looked at together."""
@@ -70,7 +71,7 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     stack = reader.stack
     busy = ~_are_idle(rule, numbers_at(rule, reader, None), stack.n_states)
     if not rule.variables:
-        traces = np.unique(np.searchsorted(stack.begins, np.flatnonzero(busy), side="right") - 1)
+        traces = distinct(np.searchsorted(stack.begins, np.flatnonzero(busy), side="right") - 1)
         return Instances(traces, (), stack.begins[traces], stack.begins[traces + 1] - 1)
     chosen = [
         _busy_cells(rule, reader, busy, (variable, kind))
@@ -120,14 +121,14 @@ def _pairs(
     n_objects = len(stack.types)
     found = [np.empty(0, dtype=np.intp)]
     for one, other in _joined(first, second, stack):
-        distinct = stack.object_of[one] != stack.object_of[other]
-        one, other = one[distinct], other[distinct]
+        differ = stack.object_of[one] != stack.object_of[other]
+        one, other = one[differ], other[differ]
         cells = dict(zip(rule.variables, (one, other), strict=True))
         numbers = numbers_at(rule, reader, Spots(stack.state_of[one], cells), rule.variables)
         busy = ~_are_idle(rule, numbers, len(one))
         pairs = stack.object_of[one[busy]] * n_objects + stack.object_of[other[busy]]
-        found.append(np.unique(pairs))
-    every = np.unique(np.concatenate(found))
+        found.append(distinct(pairs))
+    every = distinct(np.concatenate(found))
     return every // n_objects, every % n_objects
 
 
@@ -138,7 +139,7 @@ def _joined(first: Places, second: Places, stack: Stack) -> Iterator[tuple[Place
     begins = np.searchsorted(theirs, states, side="left")
     counts = np.searchsorted(theirs, states, side="right") - begins
     parts = np.cumsum(counts) // _MOST_TOGETHER
-    for part in np.unique(parts):
+    for part in distinct(parts):
         own = np.flatnonzero(parts == part)
         repeats = counts[own]
         before = np.cumsum(repeats) - repeats

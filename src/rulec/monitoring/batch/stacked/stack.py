@@ -21,6 +21,7 @@ from rulec.monitoring.batch.columns.columnize import (
     encode_values,
     one_value,
 )
+from rulec.trace.plain_arrays import distinct
 from rulec.trace.trace_arrays import Flags, TraceArrays, starts_of
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
@@ -132,9 +133,7 @@ class Stack:
         """The traces of a name's values at some places."""
         if name in self.traces[0].about:
             places = self.state_of[places]
-        found: list[int] = np.unique(
-            np.searchsorted(self.begins, places, side="right") - 1
-        ).tolist()
+        found: list[int] = distinct(np.searchsorted(self.begins, places, side="right") - 1).tolist()
         return found
 
     def column(self, name: str) -> StackColumn | None:
