@@ -9,6 +9,7 @@ from rulec import files
 from rulec.automata import compiler, spot_worker
 from rulec.cli.main import main
 from rulec.extraction import traffic_thresholds
+from rulec.rates import finding_rows
 from rulec.recordings import recording
 from rulec.report.findings.code_registry import all_codes
 from rulec.resource_limits import LIMITS, MOST_DIGITS
@@ -33,6 +34,7 @@ FIXED = {
     "bytes of one line of traces": json_line_problems.LONGEST_LINE_BYTES,
     "time steps of a recording, from the first to the last": recording.MOST_STEPS,
     "time steps of a recording for one that is in it": recording.SPARSEST,
+    "a number in findings that `rates` reads": finding_rows.LARGEST,
     "`--threshold`, in its unit": traffic_thresholds.LARGEST,
     "bytes of a scenario in TOML": scenario_files.LARGEST_BYTES,
     "obstacles of a scenario": schema.MOST_OBSTACLES,

@@ -1,5 +1,6 @@
 """Runs over a fleet: the same findings however it is cut, killed, resumed, or shared out."""
 
+import json
 import os
 import random
 import re
@@ -197,9 +198,12 @@ def test_a_folder_of_another_fleet_is_refused(folder_of, tmp_path):
         run([sorted(folder_of.iterdir())[-1]], out)
     with pytest.raises(RulecError, match="no _manifest"):
         run([folder_of], folder_of)
-    (out / "_manifest.json").write_text("[")
-    with pytest.raises(RulecError, match="cannot be read"):
-        run([folder_of], out)
+    sound = (out / "_manifest.json").read_text()
+    damaged = json.dumps({**json.loads(sound), "inputs": 5})
+    for text in ("[", "[" * 100_000, damaged):
+        (out / "_manifest.json").write_text(text)
+        with pytest.raises(RulecError, match="cannot be read"):
+            run([folder_of], out)
 
 
 def test_files_that_hold_no_drives_are_named_and_the_others_are_judged(folder_of, tmp_path):

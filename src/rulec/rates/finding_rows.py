@@ -15,6 +15,9 @@ from rulec.rates.rates_messages import no_findings
 from rulec.trace.formats.arrow.parquet import rows_of_columns
 from rulec.trees import refuse_link_out, tree_of
 
+LARGEST = 1e12
+"""No fleet drives so many metres or seconds in one drive; sums of larger numbers overflow."""
+
 _JSON_LINES = (".jsonl", ".ndjson")
 _PARQUET = (".parquet", ".pq")
 
@@ -106,11 +109,19 @@ def _row(row: Mapping[str, Any], path: Path, number: int) -> FindingRow:
     values = {name: value for name, value in row.items() if name in _FIELDS and value is not None}
     for name, value in values.items():
         is_text = _FIELDS[name] == "str"
-        if is_text is not isinstance(value, str) or isinstance(value, bool):
-            raise no_findings(str(path), f"row {number} has {value!r} for its `{name}`")
-        if not is_text and not 0 <= value < float("inf"):
-            raise no_findings(str(path), f"row {number} has {value} for its `{name}`")
+        if not (_is_text(value) if is_text else _is_amount(value)):
+            wanted = "text" if is_text else f"number from 0 to {LARGEST:,.0f}"
+            raise no_findings(str(path), f"row {number} has no {wanted} as its `{name}`")
     return FindingRow(**values)
+
+
+def _is_text(value: object) -> bool:
+    # JSON may spell halves of characters, which no output can have.
+    return isinstance(value, str) and not any("\ud800" <= sign <= "\udfff" for sign in value)
+
+
+def _is_amount(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value <= LARGEST
 
 
 def _json_rows(path: Path) -> Iterator[Mapping[str, Any]]:

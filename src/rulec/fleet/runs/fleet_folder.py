@@ -100,7 +100,10 @@ class FleetFolder:
             if known.get(name) != value:
                 was, now = _shown(known.get(name)), _shown(value)
                 raise other_fleet(self.path, f"its {name} is {was}, and would be {now}")
-        missing = [path for path in before.get("inputs", ()) if path not in {*inputs}]
+        earlier = before.get("inputs", [])
+        if not isinstance(earlier, list) or not all(isinstance(path, str) for path in earlier):
+            raise _damaged(self.path / MANIFEST)
+        missing = [path for path in earlier if path not in {*inputs}]
         if missing:
             more = f" and {len(missing) - 1:,} more" if len(missing) > 1 else ""
             raise other_fleet(
@@ -123,7 +126,7 @@ def _map(path: Path | None) -> str:
 def _read(manifest: Path) -> Mapping[str, Any]:
     try:
         found = json.loads(manifest.read_bytes())
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         found = None
     if not isinstance(found, dict):
         raise _damaged(manifest)
