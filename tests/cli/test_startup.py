@@ -26,7 +26,7 @@ HEAVY = {
 
 
 def test_no_verb_imports_at_its_top_what_only_its_run_needs():
-    verbs = [f"rulec.cli.commands.{verb}" for verb in VERBS if verb != "list"]
+    verbs = [f"rulec.cli.commands.{verb.replace('-', '_')}" for verb in VERBS if verb != "list"]
     program = (
         "import sys; from importlib import import_module\n"
         f"for verb in {verbs}: import_module(verb)\n"
