@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import drive_context
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_trace
@@ -28,6 +30,12 @@ FEWEST_STATES = 2
 
 MOST_PLACES = 1 << 17
 """Extents of recordings with more participants times steps are computed drive by drive."""
+
+SHARED_BY = 8
+"""They are computed for all drives on a road if one takes more than this part of them."""
+
+MOST_KEPT = 1 << 21
+"""So many participants times steps are kept, of all roads; each takes some 150 bytes."""
 
 _LONGEST_M = 50.0
 """Bodies whose ends count are shorter."""
@@ -63,6 +71,7 @@ class Drives:
         self._matching = MapMatching(recording, self._tracks, self._graph)
         self._numbers = {name: number for number, name in enumerate(recording.lanelets)}
         self._surroundings = Surroundings(recording, self._tracks)
+        self._first = self._tracks.present.argmax(axis=1)
         self._roads: dict[tuple[str, ...], tuple[DrivenRoad, int] | str] = {}
         self._places: dict[DrivenRoad, RoadPlaces] = {}
 
@@ -106,34 +115,50 @@ class Drives:
             return NoDrive(ego, laid_out)
         road, first_piece = laid_out
         columns = slice(stretch.first, stretch.last + 1)
-        if self._tracks.present.size <= MOST_PLACES and not road.meets_itself:
+        rows = self._tracks.present[:, columns].any(axis=1).nonzero()[0]
+        if self._is_shared(road, len(rows) * (columns.stop - columns.start)):
             places = self._places_on(road)
         else:
-            places = self._places_during(road, first_piece, row, stretch)
+            places = self._places_during(road, first_piece, row, stretch, rows)
             row, columns = int(np.searchsorted(places.tracks.rows, row)), slice(0, None)
         if np.isnan(places.extents.s[row, columns]).any():
             return NoDrive(ego, "it is far from its road for a while")
         context = drive_context(self._surroundings, places, self._side, row, columns)
         return to_trace(context, ego, name, self._writer)
 
+    def _is_shared(self, road: DrivenRoad, size: int) -> bool:
+        """Whether the places of everybody are worth it for a drive, which takes so many of them."""
+        if road.meets_itself:
+            return False
+        all_places = self._tracks.present.size
+        return road in self._places or all_places <= min(MOST_PLACES, SHARED_BY * size)
+
     def _places_on(self, road: DrivenRoad) -> RoadPlaces:
         """The places of everybody on a road."""
         if road not in self._places:
+            everybody = np.arange(len(self._tracks.participants))
             extents = road_extents(self._tracks, road)
+            elsewhere = self._elsewhere(road, everybody, slice(0, self._tracks.present.shape[1]))
             self._places[road] = RoadPlaces(
-                road, self._tracks, extents, self._thresholds, self._elsewhere(road)
+                road, self._tracks, extents, self._thresholds, elsewhere
             )
+            if len(self._places) * self._tracks.present.size > MOST_KEPT:
+                del self._places[next(iter(self._places))]
         return self._places[road]
 
     def _places_during(
-        self, road: DrivenRoad, first_piece: int, row: int, stretch: RouteStretch
+        self,
+        road: DrivenRoad,
+        first_piece: int,
+        row: int,
+        stretch: RouteStretch,
+        rows: NDArray[intp],
     ) -> RoadPlaces:
-        """The places on a road of those who are there during a drive of one of them.
+        """The places on a road of those in ``rows``, who are there during a drive of one of them.
 
         ``first_piece`` is the road's that the drive begins in.
         """
         columns = slice(stretch.first, stretch.last + 1)
-        rows = self._tracks.present[:, columns].any(axis=1).nonzero()[0]
         tracks, lanelets = self._tracks.part(rows, columns), self._matching.lanelets[rows, columns]
         expected = None
         if road.meets_itself:
@@ -143,16 +168,18 @@ class Drives:
             reach_m = self._thresholds.near_m + _LONGEST_M
             expected = expected_places(tracks, road, ego, lanelets, reach_m)
         extents = road_extents(tracks, road, expected)
-        elsewhere = self._elsewhere(road)[rows, columns]
+        elsewhere = self._elsewhere(road, rows, columns)
         return RoadPlaces(road, tracks, extents, self._thresholds, elsewhere)
 
-    def _elsewhere(self, road: DrivenRoad) -> Flags:
-        """Flags of who drives on lanelets that are not of a road."""
-        lanelets = self._matching.lanelets
+    def _elsewhere(self, road: DrivenRoad, rows: NDArray[intp], columns: slice) -> Flags:
+        """Flags of who of some rows drives on lanelets that are not of a road, in some columns."""
+        first = int(self._first[rows].min(initial=columns.start))
+        lanelets = self._matching.lanelets[rows, first : columns.stop]
         own = np.zeros(len(self._numbers) + 1, dtype=bool)
         own[self._numbers_along(road)] = True
         # Who turns off is still ahead until it has left, unlike who comes from elsewhere
-        return (lanelets >= 0) & ~np.logical_or.accumulate(own[lanelets], axis=1)
+        flags = (lanelets >= 0) & ~np.logical_or.accumulate(own[lanelets], axis=1)
+        return flags[:, columns.start - first :]
 
     def _numbers_along(self, road: DrivenRoad) -> list[int]:
         return [self._numbers[one.id] for row in road.rows for one in row if one is not None]
