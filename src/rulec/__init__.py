@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from rulec.diagnostics import SourceLocation as SourceLocation
     from rulec.diagnostics.code import Code as Code
     from rulec.extraction.drives import NoDrive as NoDrive
+    from rulec.extraction.moment_search import DriveMoments as DriveMoments
     from rulec.extraction.recording_verdicts import DriveVerdict as DriveVerdict
     from rulec.extraction.recording_verdicts import RecordingVerdicts as RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives as RequestedDrives
@@ -60,6 +61,7 @@ if TYPE_CHECKING:
     from rulec.monitoring.assumptions import Assumptions as Assumptions
     from rulec.monitoring.batch.verdict_columns import VerdictColumns as VerdictColumns
     from rulec.monitoring.explain.explanation import Explanation as Explanation
+    from rulec.monitoring.moments.formula_moments import Moment as Moment
     from rulec.monitoring.online.four_valued import VerdictRange as VerdictRange
     from rulec.monitoring.online.monitor_state import SoFar as SoFar
     from rulec.monitoring.online.monitor_state import VerdictChange as VerdictChange
@@ -84,6 +86,10 @@ if TYPE_CHECKING:
     from rulec.planning.ranking.homotopy import HomotopyClasses as HomotopyClasses
     from rulec.planning.ranking.homotopy import Variant as Variant
     from rulec.planning.ranking.penalties import PenaltyRank as PenaltyRank
+    from rulec.rates.finding_rows import FindingRow as FindingRow
+    from rulec.rates.rule_rates import Rate as Rate
+    from rulec.rates.rule_rates import RuleRates as RuleRates
+    from rulec.rates.rule_rates import ViolationRates as ViolationRates
     from rulec.recordings.building import build_lanelet as build_lanelet
     from rulec.recordings.building import build_participant as build_participant
     from rulec.recordings.building import build_recording as build_recording
@@ -127,10 +133,10 @@ _HOME = {
     "rulec.api.session": "Session",
     "rulec.api.verbs": "alternative_counts analyze audit audit_source check compile "
     "compile_rulebook coverage diff doc draw draw_drive envelope envelopes explain "
-    "find_maneuvers format formats judge_recording lineage list load_rulebook load_scenario "
-    "load_vocabulary navigation_graph new_rulebook parse_rulebook read_recording read_traces "
-    "rule_probabilities show test traces tree verify verify_cells verify_columns verify_many "
-    "verify_recording write_compiled write_traces",
+    "find find_maneuvers format formats judge_recording lineage list load_rulebook load_scenario "
+    "load_vocabulary navigation_graph new_rulebook parse_rulebook rates_of_findings "
+    "read_recording read_traces rule_probabilities show test traces tree verify verify_cells "
+    "verify_columns verify_many verify_recording write_compiled write_traces",
     "rulec.automata.bundle.compiled_rulebook": "CompiledRule CompiledRulebook",
     "rulec.automata.mealy_monitor": "MealyMonitor",
     "rulec.book_tests.example_coverage": "RuleCoverage UncoveredEdge",
@@ -138,6 +144,7 @@ _HOME = {
     "rulec.diagnostics": "Diagnostic Label RulecError SourceLocation",
     "rulec.diagnostics.code": "Code",
     "rulec.extraction.drives": "NoDrive",
+    "rulec.extraction.moment_search": "DriveMoments",
     "rulec.extraction.recording_verdicts": "DriveVerdict RecordingVerdicts",
     "rulec.extraction.selection": "RequestedDrives",
     "rulec.extraction.to_trace": "Drive",
@@ -145,6 +152,7 @@ _HOME = {
     "rulec.monitoring.assumptions": "Assumptions",
     "rulec.monitoring.batch.verdict_columns": "VerdictColumns",
     "rulec.monitoring.explain.explanation": "Explanation",
+    "rulec.monitoring.moments.formula_moments": "Moment",
     "rulec.monitoring.online.four_valued": "VerdictRange",
     "rulec.monitoring.online.monitor_state": "SoFar VerdictChange",
     "rulec.monitoring.online.running_monitor": "Monitor",
@@ -159,6 +167,8 @@ _HOME = {
     "rulec.planning.ranking.cheapest": "Maneuver",
     "rulec.planning.ranking.homotopy": "HomotopyClasses Variant",
     "rulec.planning.ranking.penalties": "PenaltyRank",
+    "rulec.rates.finding_rows": "FindingRow",
+    "rulec.rates.rule_rates": "Rate RuleRates ViolationRates",
     "rulec.report.recordings.format_listing": "ListedFormat",
     "rulec.report.text.listing": "Listed",
     "rulec.rulebook.batch.batch_check": "Checked",

@@ -2,6 +2,7 @@
 
 import copy
 import inspect
+import json
 import pickle
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
@@ -68,6 +69,12 @@ def values():
     audited = rulec.audit_source("de", "sumo")
     ranged = rulec.VerdictRange("violated", "holds so far")
     undecided = rulec.OpenVerdict("r", "hard", {"v": "1"}, ("not told",), ("p",))
+    found = tmp / "found.jsonl"
+    drive_row = {"kind": "drive", "vehicle": "7", "outcome": "kept", "duration_s": 1800}
+    rule_row = {"kind": "rule", "vehicle": "7", "rule": "r", "opportunities": 10, "violated": 1}
+    found.write_text("".join(f"{json.dumps(row)}\n" for row in (drive_row, rule_row)))
+    rates = rulec.rates_of_findings(found)
+    moments = next(rulec.find("(v: vehicle) b(v)", traces, "esterle2019"))
     known = [
         *(rulec.Session(), mistake, mistake.place, error, rulec.explain("R0104")),
         *(rulec.Label(mistake.place, "here"), book.vocabulary, example, book.rules[0], book),
@@ -100,6 +107,8 @@ def values():
         *(rulec.formats()[0], rulec.Light(0, (("red", 3),)), rulec.ObservedLight({0: "red"})),
         *(rulec.Weather(wet=True), rulec.read_map(NET, recording.step_s)),
         rulec.SettingPair("option", "limit", "1", "2"),
+        *(rates, rates.rules[0], rates.rules[0].per_hour, rates.judged_by[0]),
+        *(moments, moments.moments[0]),
     ]
     return {type(one).__name__: one for one in known}
 

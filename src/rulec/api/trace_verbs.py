@@ -13,11 +13,14 @@ from rulec.api.session_settings import SessionSettings
 if TYPE_CHECKING:
     from rulec.api.rulebook_compilation import Rules
     from rulec.diagnostics import RulecError
+    from rulec.extraction.moment_search import DriveMoments
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives
     from rulec.monitoring.assumptions import Assumptions
     from rulec.monitoring.batch.verdict_columns import VerdictColumns
     from rulec.monitoring.verdict import NotJudged, Verdict
+    from rulec.rates.drive_counts import GroupKey
+    from rulec.rates.rule_rates import ViolationRates
     from rulec.recordings.recording import Recording
     from rulec.report.pictures.drawing.picture_formats import Format as PictureFormat
     from rulec.report.pictures.drawing.styles import Theme
@@ -143,6 +146,71 @@ class TraceVerbs(SessionSettings):
         return RecordingVerdicts(recording, compiled, wanted or RequestedDrives(), str(file))
 
     judge_recording = verify_recording
+
+    def find(
+        self,
+        formula: str,
+        drives: str | Path | Recording | Iterable[Trace | RulecError],
+        rulebook: str = "",
+        wanted: RequestedDrives | None = None,
+        map_path: str | Path | None = None,
+        *,
+        vocabulary: str = "road",
+    ) -> Iterator[DriveMoments | RulecError]:
+        """Find the moments at which a formula holds in drives: of a file, a recording, or traces.
+
+        The formula has its variables before it, as in ``(v: vehicle) gap(v) < 5 m``. It is in the
+        words of a ``vocabulary``, or of a ``rulebook``, with its definitions. ``wanted`` and
+        ``map_path`` are as for ``verify_recording``. In place of a trace that cannot be asked there
+        is the RulecError.
+
+        Raises:
+            RulecError: for a formula that is none, a file that cannot be read, and what
+                ``verify_recording`` raises of recordings.
+        """
+        from rulec.extraction.moment_search import in_recordings, in_traces
+        from rulec.extraction.selection import RequestedDrives
+        from rulec.monitoring.assumptions import Assumptions
+        from rulec.recordings.recording import Recording
+        from rulec.recordings.recording_files import is_recording, read_recordings
+        from rulec.recordings.recording_format import RecordingSource
+        from rulec.rulebook.formula_query import read_query
+
+        words = {"rulebook": rulebook, "vocabulary": vocabulary}
+        query = read_query(formula, **words, search_path=self.search_path, at=self.at)
+        request = wanted or RequestedDrives()
+        if isinstance(drives, Recording):
+            return in_recordings([drives], query, request, drives.name)
+        assumed = Assumptions(None, request.assumed, request.defaults)
+        if not isinstance(drives, str | Path):
+            return in_traces(drives, query, assumed, "")
+        if not is_recording(str(drives)):
+            return in_traces(self.read_traces(drives), query, assumed, str(drives))
+        roads = None if map_path is None else Path(map_path)
+        recordings = read_recordings(RecordingSource(Path(drives), roads))
+        return in_recordings(recordings, query, request, str(drives))
+
+    def rates_of_findings(
+        self,
+        findings: str | Path | Sequence[str | Path],
+        by: Sequence[GroupKey] = (),
+        *,
+        confidence: float = 0.95,
+        seed: int = 0,
+    ) -> ViolationRates:
+        """How often rules are violated, with intervals, from files and folders of findings.
+
+        These are what ``rulec verify --exposure -o FILE`` and ``rulec fleet`` write. ``by`` is what
+        drives are told apart by, ``seed`` what drives of the bootstrap are drawn by.
+
+        Raises:
+            RulecError: R0701, R0706, R0715 if drives were judged differently, R0716 for what has
+                none, R0717 without ``rulec[rates]``.
+        """
+        from rulec.rates.rates_of_findings import rates_of_findings
+
+        paths = [findings] if isinstance(findings, str | Path) else findings
+        return rates_of_findings([*map(str, paths)], by, confidence=confidence, seed=seed)
 
     def draw_drive(
         self,

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
+from rulec.logic.bounds import NotAMultipleError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.moments.formula_moments import Moment, moments
 from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
 from rulec.recordings.recording import Recording
 from rulec.rulebook.asked_formula import FormulaQuery
+from rulec.rulebook.formula_query import bound_between_states
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
 from rulec.value_display import short_repr
@@ -37,6 +40,14 @@ class DriveMoments:
     def time_s(self, state: int) -> float:
         """The time of a state."""
         return round(self.start_s + state * self.step_s, 9)
+
+
+def in_recordings(
+    recordings: Iterable[Recording], query: FormulaQuery, wanted: RequestedDrives, file: str
+) -> Iterator[DriveMoments]:
+    """The moments of each drive of recordings, as ``in_recording``."""
+    for recording in recordings:
+        yield from in_recording(recording, query, wanted, file)
 
 
 def in_recording(
@@ -68,6 +79,22 @@ def in_recording(
                 step_s=arrays.step_s,
                 moments=found,
             )
+
+
+def in_traces(
+    traces: Iterable[Trace | RulecError], query: FormulaQuery, assumed: Assumptions, file: str
+) -> Iterator[DriveMoments | RulecError]:
+    """The moments of each trace; in place of one that cannot be asked there is the reason."""
+    for item in traces:
+        if isinstance(item, RulecError):
+            yield item
+            continue
+        try:
+            yield in_trace(item, query, assumed, file)
+        except NotAMultipleError as misfit:
+            yield bound_between_states(query, misfit)
+        except RulecError as error:
+            yield error
 
 
 def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str) -> DriveMoments:

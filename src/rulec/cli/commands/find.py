@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
@@ -30,9 +30,7 @@ from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.extraction.moment_search import DriveMoments
-    from rulec.monitoring.assumptions import Assumptions
     from rulec.rulebook.asked_formula import FormulaQuery
-    from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
 
 FORMATS = {**endings_of("text", "json"), **TABLES}
@@ -150,7 +148,7 @@ def _found(
 ) -> Iterator[DriveMoments | RulecError]:
     """The moments of all drives of all files, and why some could not be read."""
     # As above: not for --help.
-    from rulec.extraction.moment_search import in_recording
+    from rulec.extraction.moment_search import in_recordings, in_traces
     from rulec.recordings.recording_files import is_recording, read_recordings
     from rulec.trace.formats.trace_files import format_of, read_chunks
 
@@ -163,39 +161,15 @@ def _found(
         is_stream = path == STANDARD_OUTPUT
         try:
             if form is None and (named or (not is_stream and is_recording(path))):
-                for recording in read_recordings(replace(source, path=Path(path))):
-                    yield from in_recording(recording, query, wanted, path)
+                recordings = read_recordings(replace(source, path=Path(path)))
+                yield from in_recordings(recordings, query, wanted, path)
                 continue
             if is_stream:
                 chunks = read_chunks(sys.stdin.buffer, "standard input", form or "jsonl")
-                yield from _in_traces(chunks, query, assumed, path)
+                yield from in_traces(chain.from_iterable(chunks), query, assumed, path)
                 continue
             with opened(Path(path)) as stream:
                 chunks = read_chunks(stream, path, form or format_of(path))
-                yield from _in_traces(chunks, query, assumed, path)
-        except RulecError as error:
-            yield error
-
-
-def _in_traces(
-    chunks: Iterable[Sequence[Trace | RulecError]],
-    query: FormulaQuery,
-    assumed: Assumptions,
-    path: str,
-) -> Iterator[DriveMoments | RulecError]:
-    """The moments of traces, a chunk of them in memory at a time."""
-    # As above: not for --help.
-    from rulec.extraction.moment_search import in_trace
-    from rulec.logic.bounds import NotAMultipleError
-    from rulec.rulebook.formula_query import bound_between_states
-
-    for item in chain.from_iterable(chunks):
-        if isinstance(item, RulecError):
-            yield item
-            continue
-        try:
-            yield in_trace(item, query, assumed, path)
-        except NotAMultipleError as misfit:
-            yield bound_between_states(query, misfit)
+                yield from in_traces(chain.from_iterable(chunks), query, assumed, path)
         except RulecError as error:
             yield error
