@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -251,8 +252,9 @@ def noted(traces_in, read):
         lambda data: data.replace(b"\n", b"\r\n"),
         lambda data: b"\xef\xbb\xbf" + data,
         lambda data: data.removesuffix(b"\n"),
+        lambda data: re.sub(rb"(?<=[,\n])([^,\n]+)(?=[,\n])", rb'"\1"', data),
     ],
-    ids=["line ends", "byte order mark", "no last line end"],
+    ids=["line ends", "byte order mark", "no last line end", "quotes"],
 )
 def test_csv_that_is_plain_too(change, monkeypatch):
     data = change(written(drives()[:60], "csv"))
@@ -289,7 +291,9 @@ def test_steps_that_are_none(steps, kind):
     assert problem.message.startswith("the step is `")
 
 
-@pytest.mark.parametrize("odd", ['"', "\r", "\n\n", "\x00", "\ufeff", "x" * 140_000])
+@pytest.mark.parametrize(
+    "odd", ['"', '"a\nb",', '"x,"', 'a"b', "\r", "\n\n", "\x00", "\ufeff", "x" * 140_000]
+)
 def test_csv_is_read_by_rows_from_where_it_is_not_plain(odd):
     lines = written(drives()[:60], "csv").decode().splitlines(keepends=True)
     for place in (2, len(lines) // 2, len(lines) - 1):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from itertools import chain
 from typing import IO, Any, cast
@@ -58,29 +59,30 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
     read_state = _StateReader()
     torn: _Torn | None = None
     for lines in lines_as_they_come(stream, json_line_problems.LONGEST_LINE_BYTES):
+        if not number:
+            lines[0] = lines[0].removeprefix(b"\xef\xbb\xbf")
+            error = _no_traces(lines[0], SourceLocation(file, 1))
+            if error is not None:
+                yield [error]
+                return
         chunk: list[Trace | RulecError] = []
-        for line in lines:
-            number += 1
-            place = SourceLocation(file, number)
-            if number == 1:
-                line = line.removeprefix(b"\xef\xbb\xbf")
-                error = _no_traces(line, place)
-                if error is not None:
-                    yield [error]
-                    return
-            if line.isspace() or not line:
-                continue
-            trace = _trace(line, place, read_state)
-            if torn is not None:
-                if isinstance(trace, RulecError) and not line.startswith(b"{"):
-                    torn.goes_on = True
+        with _no_collection():
+            for line in lines:
+                number += 1
+                place = SourceLocation(file, number)
+                if line.isspace() or not line:
                     continue
-                chunk.append(torn.error(at_the_end=False))
-                torn = None
-            if isinstance(trace, RulecError) and json_line_problems.is_beginning(line):
-                torn = _Torn(line, place)
-            else:
-                chunk.append(trace)
+                trace = _trace(line, place, read_state)
+                if torn is not None:
+                    if isinstance(trace, RulecError) and not line.startswith(b"{"):
+                        torn.goes_on = True
+                        continue
+                    chunk.append(torn.error(at_the_end=False))
+                    torn = None
+                if isinstance(trace, RulecError) and json_line_problems.is_beginning(line):
+                    torn = _Torn(line, place)
+                else:
+                    chunk.append(trace)
         result += len(chunk)
         if chunk:
             yield chunk
@@ -88,6 +90,18 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
         yield [torn.error(at_the_end=True)]
     elif not result:
         yield [_TRACE.bad("there is no trace in this file: it is empty", SourceLocation(file))]
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Time in which nobody searches for circles: of what is decoded there is much, and none."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 @dataclass(slots=True)
@@ -132,12 +146,15 @@ def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trac
     if read_state.pays and len(line) <= json_line_problems.LONGEST_LINE_BYTES:
         with suppress(ValueError, RecursionError):  # msgspec's errors are, too
             outline = _OUTLINE_DECODER.decode(line)
+            read_state.read += len(outline.states)
             if BOUNDS.isdisjoint(outline.objects):
                 return _made(outline, [read_state[bytes(raw)] for raw in outline.states], place)
     # Read as a whole, it says what is wrong.
     record = _TRACE.read(line, place)
     if isinstance(record, RulecError):
         return record
+    if _is_plain(line):
+        return _made(record, cast("list[State]", record.states), place)
     return _of_record(record, place)
 
 
@@ -176,6 +193,13 @@ def _made(record: _Header, states: Sequence[State], place: SourceLocation) -> Tr
     )
 
 
+def _is_plain(text: bytes) -> bool:
+    """Whether all that JSON says is known: then what is decoded is a state."""
+    return (
+        b"null" not in text and b'"from"' not in text and b'"to"' not in text and b"\\" not in text
+    )
+
+
 class _StateReader(dict[bytes, State]):
     """Decoder of states that decodes equal ones once while that pays."""
 
@@ -183,15 +207,18 @@ class _StateReader(dict[bytes, State]):
     _LONGEST = 1 << 12
     _DECODE = msgspec.json.Decoder(dict[str, bool | float | str | dict[str, Any] | None]).decode
 
+    _FEW = 1 << 12
+
     pays = True
+    read = 0
     _met = 0
 
     def __missing__(self, text: bytes) -> State:
         decoded = self._DECODE(text)
-        plain = b"null" not in text and b'"from"' not in text and b'"to"' not in text
-        state = cast("State", decoded) if plain and b"\\" not in text else from_json(decoded, ())
+        state = cast("State", decoded) if _is_plain(text) else from_json(decoded, ())
         self._met += 1
-        if self._met > self._MOST or len(text) > self._LONGEST:
+        few = self._met < self._FEW or self._met * 2 < self.read
+        if self._met > self._MOST or len(text) > self._LONGEST or not few:
             # There is no end to them: what is remembered is of no use.
             self.pays = False
             self.clear()

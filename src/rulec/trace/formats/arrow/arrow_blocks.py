@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import Any
@@ -42,6 +43,8 @@ _SHORT = 15
 """Numbers of so many characters are floats, but for tiny ones with an exponent."""
 
 _TINY = 1e-290
+
+_DIGIT = re.compile(r"\A[-+.]?[0-9]")
 
 
 def cut(
@@ -211,13 +214,15 @@ def _texts_read(array: Any, value: Callable[[str], PartialValue]) -> blocks.Colu
 
 def _numbers_said(array: Any) -> blocks.Numbers | None:
     """The numbers of a column in which each text is the decimal that its float stands for."""
-    if array.null_count == len(array):
+    given = given_in(array)
+    # It takes Arrow long to refuse texts that are none.
+    if not given.any() or not _DIGIT.search(array[int(given.argmax())].as_py()):
         return None
     try:
         found = array.cast(pyarrow.float64())
     except pyarrow.ArrowInvalid:  # of numbers there are some that Arrow does not read, such as `.5`
         return None
-    numbers, given = numbers_in(found), given_in(array)
+    numbers = numbers_in(found)
     sizes = np.abs(numbers[given])
     # Arrow reads `nan`; and what is written with an exponent may be nearer to 0 than any float.
     if not np.isfinite(sizes).all():

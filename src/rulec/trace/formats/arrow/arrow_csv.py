@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import IO
 
 import pyarrow
-from pyarrow import compute, csv
+from pyarrow import csv
 
+from rulec.trace.formats.arrow.arrow_arrays import lengths_in
 from rulec.trace.formats.arrow.arrow_blocks import Piece
 from rulec.trace.formats.table_reader import Row
 
@@ -16,7 +17,7 @@ _BLOCK_BYTES = 1 << 22
 _LONGEST_CELL = 1 << 17
 
 _BLANK = (b"\n\n", b"\n\r\n")
-_NEVER_PLAIN = (b'"', b"\0", *_BLANK)
+_NEVER_PLAIN = (b"\0", *_BLANK)
 
 RowsFrom = Callable[[IO[bytes], int], Iterator[Row]]
 
@@ -59,7 +60,15 @@ def _is_plain(lines: bytes) -> bool:
         not lines.startswith((b"\n", b"\r", b"\xef\xbb\xbf"))
         and not any(mark in lines for mark in _NEVER_PLAIN)
         and lines.count(b"\r") == lines.count(b"\r\n")
+        and (b'"' not in lines or _is_plainly_quoted(lines))
     )
+
+
+def _is_plainly_quoted(lines: bytes) -> bool:
+    """Test that every quote begins or ends a cell."""
+    begin = lines.count(b',"') + lines.count(b'\n"') + lines.startswith(b'"')
+    end = lines.count(b'",') + lines.count(b'"\n') + lines.count(b'"\r\n') + lines.endswith(b'"')
+    return begin == end and begin + end == lines.count(b'"')
 
 
 def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
@@ -70,7 +79,7 @@ def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
             csv.ReadOptions(
                 use_threads=False, block_size=len(lines) + 1, column_names=list(columns)
             ),
-            csv.ParseOptions(quote_char=False),
+            csv.ParseOptions(quote_char='"' if b'"' in lines else False, newlines_in_values=True),
             csv.ConvertOptions(
                 column_types=dict.fromkeys(columns, pyarrow.string()),
                 null_values=[""],
@@ -79,8 +88,8 @@ def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
         )
     except pyarrow.ArrowException:
         return None
-    lengths = [compute.max(compute.binary_length(column)).as_py() for column in table.columns]
-    if any(length and length > _LONGEST_CELL for length in lengths):
-        return None
     (piece,) = table.combine_chunks().to_batches(max_chunksize=len(table))
-    return piece
+    if len(piece) != lines.count(b"\n") + (not lines.endswith(b"\n")):
+        return None  # there are lines within quotes
+    longest = max(int(lengths_in(column).max(initial=0)) for column in piece.columns)
+    return piece if longest <= _LONGEST_CELL else None
