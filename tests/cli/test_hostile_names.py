@@ -80,7 +80,7 @@ def tree(tmp_path_factory):
     (folder / "no_source.rules").write_text("x")
     (folder / f"{FILE}.toml").write_text(f'[scenario]\nname = """{HOSTILE[3:8]}"""\n')
     objects = {HOSTILE: "vehicle", "::add-mask::": "vehicle"}
-    states = [{"b": dict.fromkeys(objects, True)}, {HOSTILE: True}]
+    states = [{"position": dict.fromkeys(objects, "b")}, {HOSTILE: True}]
     lines = [
         {"id": HOSTILE, "objects": objects, "states": states[:1]},
         {"id": "::t", "objects": objects, "states": states},
@@ -113,6 +113,14 @@ def test_no_line_of_any_output_drives_anything(arguments, tree, capfd, monkeypat
     for text in (out, err, *texts):
         assert FORBIDDEN.findall(text.replace("\r\n", "\n")) == []
         assert COMMAND.findall(OWN.sub("", text)) == []
+
+
+def test_the_first_trace_is_judged_and_its_violation_explained(tree, capfd):
+    main(["verify", TRACES, "-r", SAFE])
+    out = capfd.readouterr().out
+    assert "1 violated" in out
+    assert "\\x1b]0;own" in out
+    assert "state" in out
 
 
 @pytest.mark.parametrize("form", ["csv", "jsonl"])

@@ -38,6 +38,9 @@ def outgoing(text: str, form: str = "text", *, color: bool = False) -> str:
         return "\r\n".join(outgoing(line, form) for line in text.split("\r\n"))
     if form in JSON:
         return _ANYWHERE.sub(r"\\u0023", _HIDDEN.sub(_as_json, text))
+    if form == "junit":
+        # Its texts have lines of their own; styles of pages begin lines so, too.
+        text = _AT_START.sub(r"\1&#x3a;", text)
     if form in MARKUP:
         return _ANYWHERE.sub("&#x23;", _HIDDEN.sub(_as_reference, text))
     if _HIDDEN.search(text):
