@@ -243,14 +243,10 @@ def _stays_aside(context: DriveContext) -> Flags:
 
     By their middles: those who wait in a lane do not, however long.
     """
-    tracks, lanes = context.surroundings.tracks, context.existing_lanes
-    least = context.thresholds.standing_kmh / KMH
-    rows = context.tracks.rows
-    moves = (tracks.present[rows] & (tracks.speed[rows] >= least)).any(axis=1)
-    stays: Flags = ~moves & context.tracks.of_type("vehicle")
+    lanes, vehicles = context.existing_lanes, np.flatnonzero(context.tracks.of_type("vehicle"))
     aside = np.zeros(context.relevant.shape, dtype=bool)
     first, end = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
-    still = np.flatnonzero(stays)
+    still = vehicles[relations.stays(context, vehicles)]
     if len(still):
         others = context.extents.part(still, slice(None))
         out = (others.middle_from(first) < 0) | (others.middle_from(end) > 0)

@@ -29,6 +29,7 @@ assert STATIONS == ("behind", "beside", "in_front_of")
 assert LATERALS == ("right_of", "same_lane", "left_of")
 
 _STANDS_MPS = 0.1
+_DRIFT_M = 1.5
 _FACING: tuple[Facing, ...] = ("along", "left", "against", "right")
 
 
@@ -264,3 +265,19 @@ def _facing(others: RoadExtents) -> NDArray[intp]:
     angle = np.round(np.degrees(np.nan_to_num(angle)), 6)
     across = np.where(angle > 0, 1, 3)
     return np.where(np.abs(angle) < 45, 0, np.where(np.abs(angle) > 135, 2, across))
+
+
+def stays(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Flags of those of these rows who stand all the time that they are recorded.
+
+    Boxes of one that stands drift by up to ``_DRIFT_M``.
+    """
+    tracks, whole = context.surroundings.tracks, context.tracks.rows[rows]
+    there = tracks.present[whole]
+    spreads = [
+        np.where(there, places[whole], -np.inf).max(axis=1, initial=-np.inf)
+        - np.where(there, places[whole], np.inf).min(axis=1, initial=np.inf)
+        for places in (tracks.x, tracks.y)
+    ]
+    still: Flags = np.hypot(spreads[0], spreads[1]) <= _DRIFT_M
+    return still

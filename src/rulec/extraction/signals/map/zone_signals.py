@@ -214,16 +214,13 @@ def _ahead_on_lane(context: DriveContext) -> Flags:
 
 def _left_aside(context: DriveContext, ahead: Flags) -> Flags:
     """Flags of those ahead who stand all the time and leave ego room to pass them in its lane."""
-    aside, limits = np.zeros(ahead.shape, dtype=bool), context.thresholds
-    tracks, rows = context.surroundings.tracks, np.flatnonzero(ahead.any(axis=1))
-    whole = context.tracks.rows[rows]
-    moves = tracks.present[whole] & (tracks.speed[whole] * KMH >= limits.standing_kmh)
-    still = rows[~moves.any(axis=1)]
+    aside, rows = np.zeros(ahead.shape, dtype=bool), np.flatnonzero(ahead.any(axis=1))
+    still = rows[relations.stays(context, rows)]
     if len(still):
         others, own = context.extents.part(still, slice(None)), context.ego_extents
         left, _ = others.from_bound(context.ego_lane)
         _, right = others.from_bound(context.ego_lane + 1)
-        room = own.d_max[0] - own.d_min[0] + 2 * limits.touching_m
+        room = own.d_max[0] - own.d_min[0] + 2 * context.thresholds.touching_m
         aside[still] = np.maximum(left, -right) >= room
     return aside
 
