@@ -18,6 +18,7 @@ PAGE = HERE.parents[1] / "docs" / "benchmarks.md"
 NAMES = (
     "batch",
     "reading",
+    "ready",
     "peers",
     "long",
     "online",
