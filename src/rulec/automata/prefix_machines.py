@@ -17,7 +17,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.compiler import CPU_LIMIT_S, answers_to
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, Read
 from rulec.automata.outcome_machine import OutcomeMachine, of_prefixes
-from rulec.automata.spot_worker import Done, Failed, Job
+from rulec.automata.spot_worker import MOST_LETTERS, Done, Failed, Job
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import PAST, in_steps, operations_of
 from rulec.logic.semantics import Semantics
@@ -84,6 +84,8 @@ def _jobs(rule: CompiledRule, rulebook: CompiledRulebook) -> Iterator[Job]:
             semantics=semantics,
             groups=groups,
             cpu_s=CPU_LIMIT_S,
+            # The signal that the word has begun comes on top of what a rule may read.
+            most_letters=2 * MOST_LETTERS,
         )
 
 

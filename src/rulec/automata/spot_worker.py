@@ -125,6 +125,7 @@ class Job:
     semantics: Semantics
     groups: tuple[AxiomGroup, ...]
     cpu_s: int
+    most_letters: int = MOST_LETTERS
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +192,7 @@ def main(confined: Confinement) -> None:
 def _answer(job: Job) -> Done | Failed:
     from rulec.automata import spot_bridge  # Spot is loaded in the worker alone
 
-    if count_letters(job.reads) > MOST_LETTERS:
+    if count_letters(job.reads) > job.most_letters:
         return Failed("letters")
     if _farthest_step(job.formula) > MOST_STEPS_AHEAD:
         return Failed("steps")
