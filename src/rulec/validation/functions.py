@@ -21,7 +21,7 @@ FALSE: Function = frozenset()
 MOST_TERMS = 1 << 10
 """A function of more conjunctions is beyond this checker."""
 
-MOST_WORK = 1 << 23
+MOST_WORK = 1 << 21
 """So many values may be combined for one table."""
 
 _First = TypeVar("_First", bound=Hashable)
