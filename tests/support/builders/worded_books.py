@@ -5,6 +5,7 @@ from dataclasses import replace
 import rulec
 from rulec.automata.alphabet import letters_with, propositions_of
 from rulec.automata.bundle.stored_prefixes import stored
+from rulec.diagnostics import RulecError
 from rulec.logic.bounds import in_steps
 from rulec.logic.semantics import holds
 from support.generators.worded_rules import worded_rulebook
@@ -13,7 +14,10 @@ from support.generators.worded_rules import worded_rulebook
 def compiled_at_random(chance, n_rules=8, most=5):
     """A compiled random rulebook, with machines for traces that are cut."""
     rulebook = rulec.parse_rulebook(worded_rulebook(chance, n_rules, most))
-    compiled = rulec.compile_rulebook(rulebook, step_s=1)
+    try:
+        compiled = rulec.compile_rulebook(rulebook, step_s=1)
+    except RulecError:  # a formula whose automaton is too large
+        return compiled_at_random(chance, n_rules, most)
     return replace(compiled, prefixes=stored(compiled))
 
 
