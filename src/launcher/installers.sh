@@ -6,6 +6,7 @@
 settle_installers() {
     unset VIRTUAL_ENV UV_PYTHON UV_SYSTEM_PYTHON PIP_PYTHON PIP_TARGET PIP_PREFIX PIP_ROOT \
         PIP_REQUIRE_VIRTUALENV PIP_REQUIREMENT PIP_EDITABLE PIP_NO_DEPS PIP_DRY_RUN PIP_REPORT
+    [ -n "${RULEC_UNLOCKED:-}" ] || unset PIP_CONSTRAINT UV_CONSTRAINT # the lock chooses
     export PIP_USER=0 PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_RETRIES="${PIP_RETRIES:-2}"
     [ -z "${PIP_INDEX_URL:-}" ] || export UV_DEFAULT_INDEX="${UV_DEFAULT_INDEX:-$PIP_INDEX_URL}"
     [ -z "${PIP_EXTRA_INDEX_URL:-}" ] || export UV_INDEX="${UV_INDEX:-$PIP_EXTRA_INDEX_URL}"
@@ -61,6 +62,14 @@ to the certificates of your network, and call again."
         keep=yes
         reason="the package index cannot be reached. Check the network (behind a proxy or with a \
 mirror: HTTPS_PROXY, PIP_INDEX_URL), and call again."
+    elif log_has 'do not match the hashes|hash mismatch'; then
+        tail -n 20 "$log" | sed 's/^/  | /' >&2
+        reason="a package is not the one that the lock names: its hash differs, so nothing of it was \
+installed. Ask whoever runs your package index before you call again."
+    elif log_has 'no matching distribution|could not find a version|no solution found'; then
+        tail -n 20 "$log" | sed 's/^/  | /' >&2
+        reason="the package index lacks a release that the lock names. Use another index \
+(PIP_INDEX_URL), or take the releases that it has, unchecked, with RULEC_UNLOCKED=1, and call again."
     elif log_has 'no space left|disk quota' || [ ! -s "$log" ]; then # the log had no room either
         reason="the disk is full, it seems; the environment takes up to 500 MB. Make room, and \
 call again."

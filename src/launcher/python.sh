@@ -69,12 +69,16 @@ apt install python$version-venv)"
         "Install one${uv:+ (uv python install 3.13)}, or set RULEC_PYTHON to one, and call again."
 }
 
-# Sets own_spot to the version of the Spot that python itself brings, where no wheel fits.
+# Sets own_spot to the version of the Spot that python itself brings, where no wheel fits or none is
+# wanted.
 check_platform() {
     own_spot=
-    [ "$place" != wheel ] || return 0
-    own_spot=$("$python" -E -c 'import spot; print(spot.version())' 2>/dev/null </dev/null) ||
-        stop "Spot, which rulec compiles with, comes ready-made only for Linux on x86-64 with" \
+    if [ "$place" = wheel ] && [ -z "${RULEC_OWN_SPOT:-}" ]; then return; fi
+    own_spot=$("$python" -E -c 'import spot; print(spot.version())' 2>/dev/null </dev/null) && return
+    [ "$place" != wheel ] ||
+        stop "RULEC_OWN_SPOT asks for a Spot of your own, but $python has none. Set RULEC_PYTHON to" \
+            "the Python into which it was installed."
+    stop "Spot, which rulec compiles with, comes ready-made only for Linux on x86-64 with" \
             "glibc 2.34 or newer, and this is $place. Install Spot from conda-forge (conda create" \
             "-n rulec -c conda-forge python=3.12 spot) and set RULEC_PYTHON to that environment's" \
             "python."

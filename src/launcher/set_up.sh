@@ -71,12 +71,27 @@ bring_own_spot() {
         >"$site/spottl-$own_spot.dist-info/METADATA"
 }
 
-# The project, editable, with an extra ("[test]") or none.
+# Every release is one of the lock's, and every file has one of its hashes, the tools that build rulec
+# included; then the project itself, editable, without looking for anything. RULEC_UNLOCKED takes
+# today's releases within the ranges of pyproject.toml instead.
 install_project() {
+    if [ -n "${RULEC_UNLOCKED:-}" ]; then
+        install_with -e ".$extra"
+        return
+    fi
+    kept=$stamps/requirements.txt
+    # The wheel that a Spot from elsewhere stands for is left out.
+    awk -v own="$own_spot" '/^[^ #]/ { left_out = own != "" && /^spottl==/ } !left_out' \
+        "$home/src/launcher/locks/python$version${extra:+-test}.txt" >"$kept" || return
+    install_with --require-hashes -r "$kept" && install_with --no-deps --no-build-isolation -e . &&
+        rm -f "$kept"
+}
+
+install_with() {
     if [ -n "$uv" ]; then
-        quietly "$uv" pip install --quiet --python "$environment/bin/python" -e ".$extra"
+        quietly "$uv" pip install --quiet --python "$environment/bin/python" "$@"
     else
-        quietly "$environment/bin/python" -m pip install --quiet --no-input -e ".$extra"
+        quietly "$environment/bin/python" -m pip install --quiet --no-input "$@"
     fi
 }
 

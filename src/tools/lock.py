@@ -1,61 +1,69 @@
-"""Write ``.ci/requirements-dev.lock``: the releases that pip chooses for rulec's developers.
+"""Write ``src/launcher/locks``: the releases that the launcher installs, with their hashes.
 
-``python -m tools.lock``. They are resolved anew, whatever else the environment has.
+``python -m tools.lock``, with uv on PATH. Releases are resolved anew for each Python and all
+platforms (of Spot there is a wheel for one), with what builds rulec and the installer itself.
 """
 
 from __future__ import annotations
 
-import json
-import platform
 import subprocess
 import sys
-from collections.abc import Mapping
+import tempfile
 from pathlib import Path
-from typing import Any
 
+from rulec.diagnostics import Source
+from rulec.file_messages import WRONG_SETTINGS
 from rulec.files import written_whole
+from rulec.toml import parsed_toml
 
 ROOT = Path(__file__).resolve().parents[2]
-LOCK = ROOT / ".ci" / "requirements-dev.lock"
+LOCKS = ROOT / "src" / "launcher" / "locks"
+PYTHONS = ("3.10", "3.11", "3.12", "3.13")
+PURPOSES = {"": (), "-test": ("--extra", "test")}
+"""Ending of a lock's name -> what it has beyond rulec's own needs."""
+UV = ("uv", "pip", "compile", "--quiet", "--universal", "--generate-hashes", "--no-header")
+INSTALLERS = ("editables", "pip", "setuptools; python_version < '3.12'")
+"""What hatchling asks for, besides, to install a checkout; and newer ones than Python brings."""
 HEAD = """\
-# What rulec's developers and its workflow on Python {python} install, on {system} ({machine}).
-# PIP_CONSTRAINT=.ci/requirements-dev.lock tests/run uses it; `.ci/task lock` writes it anew.
+# What ./rulec installs on Python {python}{tests}. `.ci/task lock` writes it anew.
+# Elsewhere: pip install --require-hashes -r THIS_FILE, or uv pip install with the same.
 """
 
 
-def lock(report: Mapping[str, Any]) -> str:
-    """Format pip's installation report as requirements, sorted by name."""
-    environment = report["environment"]
-    head = HEAD.format(
-        python=environment["python_version"],
-        system=environment["platform_system"],
-        machine=environment["platform_machine"],
-    )
-    releases = sorted(
-        f"{metadata['name'].lower().replace('_', '-')}=={metadata['version']}"
-        for metadata in (item["metadata"] for item in report["install"])
-        if metadata["name"] != "rulec"
-    )
-    return head + "\n".join([*releases, ""])
+def build_tools() -> tuple[str, ...]:
+    """What builds rulec, as pyproject.toml asks for it."""
+    file = ROOT / "pyproject.toml"
+    project = parsed_toml(Source(file.name, file.read_text(encoding="utf-8")), WRONG_SETTINGS, "")
+    return tuple(project["build-system"]["requires"])
 
 
-def resolved() -> Mapping[str, Any]:
-    """Ask pip for the releases of a new environment with rulec's tests."""
-    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--dry-run", "--ignore-installed"]
-    done = subprocess.run(
-        [*pip, "--report", "-", f"{ROOT}[test]"], stdout=subprocess.PIPE, check=True
-    )
-    report: Mapping[str, Any] = json.loads(done.stdout)
-    return report
+def lock(python: str, extras: tuple[str, ...]) -> str:
+    """The requirements of a new environment, one release each, with all of its files' hashes."""
+    with tempfile.TemporaryDirectory() as folder:
+        tools = Path(folder) / "build.in"
+        tools.write_text("\n".join([*build_tools(), *INSTALLERS, ""]), encoding="utf-8")
+        command = [*UV, "--no-annotate", "--python-version", python, *extras]
+        done = subprocess.run(
+            [*command, str(ROOT / "pyproject.toml"), str(tools)], stdout=subprocess.PIPE, check=True
+        )
+    return done.stdout.decode("utf-8")
 
 
 def main() -> None:
-    """Resolve, and write the lock."""
-    text = lock(resolved())
-    with written_whole(LOCK) as stream:
-        stream.write(text.encode())
-    print(f"wrote {LOCK.relative_to(ROOT)} for Python {platform.python_version()}")
+    """Resolve, and write the locks."""
+    LOCKS.mkdir(exist_ok=True)
+    for python in PYTHONS:
+        for ending, extras in PURPOSES.items():
+            file = LOCKS / f"python{python}{ending}.txt"
+            tests = ", with its tests" if extras else ""
+            text = HEAD.format(python=python, tests=tests) + lock(python, extras)
+            with written_whole(file) as stream:
+                stream.write(text.encode())
+            print(f"wrote {file.relative_to(ROOT)}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except FileNotFoundError as error:
+        sys.exit(f"{error.filename} is not there: pip install uv")

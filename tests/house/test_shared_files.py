@@ -23,7 +23,9 @@ HOOKS = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf
 OWN_HOOKS = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8"))
 PYPROJECT = Source("pyproject.toml", (ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = parsed_toml(PYPROJECT, "R0601", "")["project"]
-LOCK = (ROOT / ".ci" / "requirements-dev.lock").read_text(encoding="utf-8")
+BUILD_TOOLS = parsed_toml(PYPROJECT, "R0601", "")["build-system"]["requires"]
+LOCKS = ROOT / "src" / "launcher" / "locks"
+PYTHONS = re.findall(r"Python :: (3\.\d+)", "\n".join(PROJECT["classifiers"]))
 
 GOOD = """rulebook lane
 use paper
@@ -71,8 +73,7 @@ def test_every_python_that_is_supported_is_tested():
         for job in yaml.safe_load(workflow.read_text(encoding="utf-8"))["jobs"].values()
         if "strategy" in job
     ]
-    classifiers = re.findall(r"Python :: (3\.\d+)", "\n".join(PROJECT["classifiers"]))
-    assert tests == classifiers
+    assert tests == PYTHONS
 
 
 @pytest.fixture
@@ -180,17 +181,53 @@ def test_the_image_is_made_of_what_there_is_and_runs_as_nobody_in_particular():
     assert text.index("\nUSER rulec") < text.index('\nENTRYPOINT ["rulec"]')
 
 
-def test_the_lock_has_a_release_of_all_that_tests_need():
-    locked = dict(re.findall(r"^([\w.-]+)==(\S+)$", LOCK, re.MULTILINE))
+def locked(python, purpose):
+    """Name -> release, of those that this Python takes; each has its files' hashes."""
+    releases = {}
+    text = (LOCKS / f"python{python}{purpose}.txt").read_text(encoding="utf-8")
+    for line in text.replace("\\\n", " ").splitlines():
+        if line.startswith("#"):
+            continue
+        said, *hashes = line.split("--hash=")
+        assert hashes
+        assert all(re.fullmatch(r"sha256:[0-9a-f]{64}\s*", one) for one in hashes)
+        requirement = Requirement(said.strip())
+        here = {
+            "python_version": python,
+            "python_full_version": f"{python}.0",
+            "platform_system": "Linux",
+            "sys_platform": "linux",
+            "platform_machine": "x86_64",
+        }
+        if requirement.marker is None or requirement.marker.evaluate(here):
+            (pin,) = requirement.specifier
+            assert pin.operator == "=="
+            assert requirement.name not in releases
+            releases[canonicalize_name(requirement.name)] = pin.version
+    return releases
+
+
+@pytest.mark.parametrize("purpose", ["", "-test"])
+@pytest.mark.parametrize("python", PYTHONS)
+def test_the_locks_have_a_release_of_all_that_is_asked_for(python, purpose):
+    releases = locked(python, purpose)
     extras = PROJECT["optional-dependencies"]
     # Spark is large, and has an environment of its own in the long profile.
-    needed = (listed for extra, listed in extras.items() if extra != "spark")
-    for requirement in map(Requirement, chain(PROJECT["dependencies"], *needed)):
+    optional = [listed for extra, listed in extras.items() if extra != "spark"] if purpose else []
+    asked = [*PROJECT["dependencies"], *BUILD_TOOLS, *chain(*optional), "pip", "editables"]
+    for requirement in map(Requirement, asked):
+        marker = requirement.marker
         if requirement.name == "rulec" or (
-            requirement.marker and not requirement.marker.evaluate({"python_version": "3.11"})
+            marker and not marker.evaluate({"python_version": python})
         ):
             continue
-        assert requirement.specifier.contains(locked[canonicalize_name(requirement.name)])
+        assert requirement.specifier.contains(releases[canonicalize_name(requirement.name)])
+
+
+def test_a_lock_is_for_a_python_that_is_supported():
+    assert {file.name for file in LOCKS.iterdir()} == {
+        f"python{python}{purpose}.txt" for python in PYTHONS for purpose in ("", "-test")
+    }
 
 
 CONTRIBUTING = (ROOT / ".github" / "CONTRIBUTING.md").read_text(encoding="utf-8")

@@ -50,6 +50,8 @@ def behave(tool: str) -> None:
             "environment": kept,
             "folder": str(Path.cwd()),
         }
+        if "-r" in sys.argv:
+            call["requirements"] = Path(sys.argv[sys.argv.index("-r") + 1]).read_text()
         journal.write(json.dumps(call) + "\n")
     plan = json.loads((FOLDER / "behaviour.json").read_text()).get(tool, {})
     if plan.get("waits"):

@@ -7,6 +7,8 @@ import pytest
 NETWORK = "the package index cannot be reached"
 TRUST = "certificate that is not trusted here"
 DISK = "the disk is full, it seems"
+OTHER = "its hash differs, so nothing of it was installed"
+OLD = "lacks a release that the lock names"
 INSTALLERS_WORDS = [
     ("WARNING: Retrying … NewConnectionError('… Temporary failure in name resolution')", NETWORK),
     ("WARNING: Retrying … [Errno 101] Network is unreachable", NETWORK),
@@ -39,6 +41,23 @@ def test_known_reason_is_one_sentence_with_the_way_out(checkout, tool, words, re
     assert reason in said[-1]
     assert said[-1].endswith("and call again.")
     assert not any(line.startswith("  | ") for line in said)
+    assert not checkout.environment.exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        ("ERROR: THESE PACKAGES DO NOT MATCH THE HASHES FROM THE REQUIREMENTS FILE.", OTHER),
+        ("error: Hash mismatch for `lark==1.3.1`", OTHER),
+        ("ERROR: No matching distribution found for lark==1.3.1", OLD),
+        ("  x No solution found when resolving dependencies:", OLD),
+    ],
+)
+def test_what_the_lock_refuses_is_shown_with_the_way_out(checkout, words, reason):
+    checkout.tell("pip", status=1, says=words)
+    said = lines(checkout.call())
+    assert said[-2] == f"  | {words}"
+    assert reason in said[-1]
     assert not checkout.environment.exists()
 
 
@@ -97,7 +116,7 @@ def test_renewal_that_breaks_off_in_uv_is_made_anew_with_pip(ready):
     ready.tell("uv pip", status=1, says="half of the files written")
     (ready.folder / "pyproject.toml").write_text("# pulled\n")
     assert ready.call().returncode == 0
-    assert [call["tool"] for call in ready.calls()] == ["uv pip", "venv", "pip"]
+    assert [call["tool"] for call in ready.calls()] == ["uv pip", "venv", "pip", "pip"]
 
 
 def test_too_small_a_disk_is_told_before_anything_is_written(checkout):

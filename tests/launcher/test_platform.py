@@ -41,6 +41,23 @@ def test_own_spot_stands_for_the_wheel(checkout, tool):
     assert "--system-site-packages" in checkout.calls(tool)[0]["arguments"]
     stand_in = checkout.environment / "site" / "spottl-2.14.1.dist-info" / "METADATA"
     assert "Name: spottl\nVersion: 2.14.1\n" in stand_in.read_text()
+    needed = checkout.calls(tool.replace("venv", "pip").strip())[0]["requirements"]
+    assert "spottl" not in needed
+    assert "\nshapely==" in needed
+
+
+def test_own_spot_is_taken_where_the_wheel_would_fit_if_asked_for(checkout):
+    checkout.add_tool("python3", spot="2.14.1")
+    assert checkout.call(RULEC_OWN_SPOT="1").returncode == 0
+    assert (checkout.environment / "site" / "spottl-2.14.1.dist-info").is_dir()
+    assert "spottl" not in checkout.calls("pip")[0]["requirements"]
+
+
+def test_own_spot_that_is_not_there_is_refused_with_the_way_out(checkout):
+    result = checkout.call(RULEC_OWN_SPOT="1")
+    assert result.returncode == 2
+    assert "has none. Set RULEC_PYTHON to the Python into which it was installed." in result.stderr
+    assert checkout.calls() == []
 
 
 def test_own_spot_stays_with_the_environment(checkout):

@@ -4,7 +4,9 @@ import shutil
 
 import pytest
 
-MADE = ["venv", "pip"]
+INSTALLED = ["pip", "pip"]
+"""What the lock names, and then the project alone."""
+MADE = ["venv", *INSTALLED]
 
 
 def tools(checkout):
@@ -14,8 +16,10 @@ def tools(checkout):
 def test_first_call_makes_the_environment_and_says_what_it_does(checkout):
     result = checkout.call()
     assert tools(checkout) == MADE
-    assert checkout.calls("pip")[0]["arguments"][-2:] == ["-e", "."]
-    assert checkout.calls("pip")[0]["folder"] == str(checkout.folder)
+    needed, project = checkout.calls("pip")
+    assert needed["arguments"][-3:-1] == ["--require-hashes", "-r"]
+    assert project["arguments"][-4:] == ["--no-deps", "--no-build-isolation", "-e", "."]
+    assert {needed["folder"], project["folder"]} == {str(checkout.folder)}
     environment = f"{checkout.environment} (Python 3.11, venv and pip)"
     assert result.stderr.splitlines() == [
         f"rulec: making a private environment in {environment} ...",
@@ -23,6 +27,35 @@ def test_first_call_makes_the_environment_and_says_what_it_does(checkout):
         "rulec: ready.",
     ]
     assert len(result.stdout.splitlines()) == 1  # the command's own line
+
+
+@pytest.mark.parametrize("version", [(3, 10, 9), (3, 11, 7), (3, 12, 1), (3, 13, 0)])
+def test_the_lock_of_the_python_is_installed(checkout, version):
+    checkout.add_tool("python3", version=version)
+    checkout.call()
+    lock = checkout.folder / f"src/launcher/locks/python3.{version[1]}.txt"
+    assert checkout.calls("pip")[0]["requirements"] == lock.read_text()
+
+
+def test_a_changed_lock_is_installed_once(ready):
+    with (ready.folder / "src/launcher/locks/python3.11.txt").open("a") as file:
+        file.write("# pulled\n")
+    assert "installing again" in ready.call().stderr
+    assert tools(ready) == INSTALLED
+    assert ready.call().stderr == ""
+
+
+def test_unlocked_the_newest_releases_are_asked_for(checkout):
+    assert checkout.call(RULEC_UNLOCKED="1", PIP_CONSTRAINT="own.txt").returncode == 0
+    (call,) = checkout.calls("pip")
+    assert call["arguments"][-2:] == ["-e", "."]
+    assert call["environment"]["PIP_CONSTRAINT"] == "own.txt"
+
+
+def test_no_constraint_of_others_meets_the_lock(checkout):
+    checkout.call(PIP_CONSTRAINT="own.txt", UV_CONSTRAINT="own.txt")
+    asked = [call["environment"].keys() for call in checkout.calls("pip")]
+    assert not {"PIP_CONSTRAINT", "UV_CONSTRAINT"} & set().union(*asked)
 
 
 def test_set_up_leaves_nothing_but_the_environment(checkout):
@@ -36,7 +69,7 @@ def test_changed_pyproject_is_installed_once(ready):
     with (ready.folder / "pyproject.toml").open("a") as file:
         file.write("\n# pulled\n")
     assert "pyproject.toml has changed; installing again" in ready.call().stderr
-    assert tools(ready) == ["pip"]
+    assert tools(ready) == INSTALLED
     assert ready.call().stderr == ""
 
 
@@ -109,16 +142,16 @@ def test_python_asked_for_later_is_honoured_and_kept(ready):
     assert ready.call().stderr == ""  # asked once, kept
     (ready.folder / "pyproject.toml").write_text("# pulled\n")
     ready.call()
-    assert tools(ready) == [*MADE, "pip"]
+    assert tools(ready) == [*MADE, *INSTALLED]
     assert ready.call(RULEC_PYTHON=other).stderr == ""
 
 
 def test_uv_is_taken_where_it_is(checkout):
     checkout.add_tool("uv")
     result = checkout.call()
-    assert tools(checkout) == ["uv venv", "uv pip"]
+    assert tools(checkout) == ["uv venv", "uv pip", "uv pip"]
     assert "(Python 3.11, uv)" in result.stderr
-    made, filled = checkout.calls()
+    made, filled, _ = checkout.calls()
     assert str(checkout.tools / "python3") in made["arguments"]
     assert str(checkout.environment / "bin/python") in filled["arguments"]
 
@@ -131,7 +164,7 @@ def test_where_uv_fails_pip_starts_afresh(checkout, failing):
     assert result.returncode == 0
     assert "uv could not; trying venv and pip" in result.stderr
     assert "UnknownIssuer" not in result.stderr
-    assert tools(checkout)[-2:] == MADE
+    assert tools(checkout)[-3:] == MADE
 
 
 def test_settings_of_pip_that_choose_the_source_hold_for_both(checkout):

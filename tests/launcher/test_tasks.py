@@ -31,7 +31,7 @@ def tools(checkout):
 def test_a_task_calls_its_tools_from_anywhere(ready, tmp_path, task, called):
     result = run(ready, task, cwd=tmp_path)
     assert result.returncode == 0, result.stderr
-    assert tools(ready) == ["pip", *called]
+    assert tools(ready) == ["pip", "pip", *called]
     assert {call["folder"] for call in ready.calls()} == {str(ready.folder)}
 
 

@@ -16,8 +16,8 @@ def tools(checkout):
 def test_test_dependencies_come_first_then_every_check(checkout):
     result = run(checkout)
     assert result.returncode == 0
-    assert tools(checkout) == ["venv", "pip", *CHECKS]
-    assert checkout.calls("pip")[0]["arguments"][-1] == ".[test]"
+    assert tools(checkout) == ["venv", "pip", "pip", *CHECKS]
+    assert "\npytest==" in checkout.calls("pip")[0]["requirements"]
     assert "adding" not in result.stderr
     assert result.stdout.splitlines() == [
         "formatting ... green",
@@ -30,9 +30,9 @@ def test_test_dependencies_come_first_then_every_check(checkout):
 
 def test_dependencies_are_added_to_the_launchers_environment_once(ready):
     assert "adding what the tests need" in run(ready).stderr
-    assert tools(ready) == ["pip", *CHECKS]
+    assert tools(ready) == ["pip", "pip", *CHECKS]
     assert run(ready).stderr == ""
-    assert tools(ready) == ["pip", *CHECKS, *CHECKS]
+    assert tools(ready) == ["pip", "pip", *CHECKS, *CHECKS]
     assert ready.call().stderr == ""
 
 
@@ -58,7 +58,7 @@ def test_red_check_is_shown_and_the_others_still_run(ready, tool, name):
     assert result.returncode == 1
     assert "RED\nwhat is wrong\n" in result.stdout
     assert result.stderr.splitlines()[-1] == f"red: {name}"
-    assert tools(ready)[1:] == CHECKS
+    assert tools(ready)[2:] == CHECKS
 
 
 @pytest.mark.parametrize("status", [1, 5])
@@ -72,7 +72,7 @@ def test_red_tests_are_red(ready, status):
 def test_arguments_go_to_pytest_alone(ready):
     ready.tell("pytest", status=4)
     assert run(ready, "tests/a b", "-k", "x or y").returncode == 4
-    assert tools(ready) == ["pip", "pytest"]
+    assert tools(ready) == ["pip", "pip", "pytest"]
     assert ready.calls("pytest")[0]["arguments"] == ["-m", "pytest", "tests/a b", "-k", "x or y"]
 
 
@@ -100,5 +100,5 @@ def test_without_environment_nothing_is_run(checkout):
 def test_ci_runs_the_same_from_anywhere(checkout, tmp_path):
     result = checkout.call(command=[checkout.folder / ".ci/run"], cwd=tmp_path)
     assert result.returncode == 0
-    assert tools(checkout) == ["venv", "pip", *CHECKS]
+    assert tools(checkout) == ["venv", "pip", "pip", *CHECKS]
     assert {call["folder"] for call in checkout.calls(*CHECKS)} == {str(checkout.folder)}
