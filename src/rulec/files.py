@@ -182,6 +182,14 @@ def as_before(name: Path, path: Path) -> bool:
     return is_kept
 
 
+def is_folder(path: Path) -> bool:
+    """True for a folder; a name that nothing can have, such as one too long, is none."""
+    try:
+        return path.is_dir()
+    except (OSError, ValueError):
+        return False
+
+
 def make_folder(path: Path) -> None:
     """Make a folder and those above it. Raises RulecError R0702, R0730."""
     refuse_link_out(path)

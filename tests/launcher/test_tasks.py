@@ -46,6 +46,7 @@ def test_every_task_of_the_list_is_there(ready):
         "coverage",
         "bench",
         "mutations",
+        "fuzz",
         "worlds",
         "docs",
         "regenerate",

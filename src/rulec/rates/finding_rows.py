@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from rulec.files import opened
+from rulec.files import is_folder, opened
 from rulec.rates.rates_messages import no_findings
 from rulec.trace.formats.arrow.parquet import rows_of_columns
 from rulec.trees import refuse_link_out, tree_of
@@ -67,7 +67,7 @@ def finding_files(paths: Sequence[str]) -> Iterator[Path]:
     """
     for name in paths:
         path = Path(name)
-        if not path.is_dir():
+        if not is_folder(path):
             yield path
             continue
         inside = [x for x in sorted(path.rglob("*")) if x.suffix in _PARQUET and _counts(x, path)]

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.file_messages import UNREADABLE_FILE
+from rulec.files import is_folder
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_format import RECORDING, Glance
 from rulec.trees import refuse_link_out, tree_of
@@ -80,7 +81,7 @@ def _matching(argument: str, problems: list[RulecError]) -> Sequence[str]:
 
 def _is_searched(path: Path) -> bool:
     """True for a folder, unless that is itself a recording of some format."""
-    return path.is_dir() and not _is_recording(path)
+    return is_folder(path) and not _is_recording(path)
 
 
 def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:

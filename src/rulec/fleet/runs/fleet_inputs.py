@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError
 from rulec.file_messages import LINK_OUT
-from rulec.files import opened
+from rulec.files import is_folder, opened
 from rulec.fleet.fleet_messages import no_fleet_input
 from rulec.fleet.table_kind import RECORDING
 from rulec.recordings.encodings.csv_head import PARQUET
@@ -59,7 +59,7 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
 
 def _tables_below(argument: str) -> Iterator[str]:
     folder = Path(argument)
-    if not folder.is_dir() or (argument != STANDARD_INPUT and is_recording(argument)):
+    if not is_folder(folder) or (argument != STANDARD_INPUT and is_recording(argument)):
         return
     tree = tree_of(folder)
     for ending in PARQUET:

@@ -1,0 +1,1 @@
+"""Hostile inputs for every verb: it answers, or refuses in words of its own."""

@@ -1,0 +1,139 @@
+"""One command after another, in this process: what each came to, how long it took."""
+
+import contextlib
+import io
+import os
+import re
+import resource
+import signal
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from random import Random
+
+from rulec.cli.main import main
+from support.fuzz.targets import TARGETS, Workplace
+
+STATUSES = {0, 1, 2}
+LONGEST_S = 10
+MOST_BYTES = 2 << 30
+COMMANDS = re.compile(r"^::(?!error |warning |notice )", re.MULTILINE)
+"""What a runner of workflows would obey, but for annotations."""
+CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+
+
+class HangError(BaseException):
+    """A command took too long: no ``except Exception`` holds it up."""
+
+
+@dataclass
+class FuzzTrial:
+    """What came of some inputs of a target: failures by seed, and the longest time."""
+
+    target: str
+    inputs: int = 0
+    statuses: dict[int, int] = field(default_factory=dict)
+    failures: dict[int, str] = field(default_factory=dict)
+    longest_s: float = 0.0
+
+
+def tried(target, folder, seeds, until=None):
+    """A trial of a target; ``until``: the time (``time.monotonic``) at which it ends early."""
+    trial = FuzzTrial(target)
+    with _quiet():
+        place = Workplace(folder).fill()
+    for seed in seeds:
+        if until is not None and time.monotonic() >= until:
+            break
+        _try_one(trial, place, seed)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss << 10
+    assert peak < MOST_BYTES, f"{target}: {peak >> 20} MiB"
+    return trial
+
+
+def _try_one(trial, place, seed):
+    words = TARGETS[trial.target](place, Random(seed))
+    started = time.monotonic()
+    status, problem = None, ""
+    with _quiet() as streams, _in(place.folder):
+        signal.signal(signal.SIGALRM, _hang)
+        signal.alarm(LONGEST_S)
+        try:
+            status = int(main(words))
+        except HangError:
+            problem = f"still at it after {LONGEST_S} s"
+        except BaseException as error:
+            problem = f"{type(error).__name__}: {error}"
+        finally:
+            signal.alarm(0)
+    said = "".join(stream.getvalue() for stream in streams)
+    trial.inputs += 1
+    trial.longest_s = max(trial.longest_s, time.monotonic() - started)
+    if status is not None:
+        trial.statuses[status] = trial.statuses.get(status, 0) + 1
+    if not problem and status not in STATUSES:
+        problem = f"status {status}: {said[-300:]}"
+    if not problem and "Traceback" in said:
+        problem = f"a traceback: {said[-300:]}"
+    # Files of rulec's own are quoted as they are, on standard output alone
+    if not problem and (found := COMMANDS.search(said) or CONTROLS.search(streams[1].getvalue())):
+        problem = f"{found[0]!r} goes out: {said[max(0, found.start() - 100) :][:200]!r}"
+    if problem:
+        trial.failures[seed] = f"{words}: {problem}"[:1000]
+
+
+@contextlib.contextmanager
+def _in(folder):
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        yield
+    finally:
+        os.chdir(before)
+
+
+def _hang(*_):
+    raise HangError
+
+
+class _Text(io.TextIOWrapper):
+    """Standard output that is kept."""
+
+    def __init__(self):
+        super().__init__(io.BytesIO(), encoding="utf-8", errors="surrogateescape", newline="")
+        # What is sent past Python goes nowhere.
+        self._file = open(os.devnull, "wb")  # noqa: SIM115, PTH123
+
+    def fileno(self):
+        """A file of its own."""
+        return self._file.fileno()
+
+    def close(self):
+        """End both."""
+        self._file.close()
+        super().close()
+
+    def getvalue(self):
+        """What was written."""
+        self.flush()
+        return self.buffer.getvalue().decode("utf-8", "replace")
+
+
+@contextlib.contextmanager
+def _quiet():
+    before = sys.stdout, sys.stderr, sys.stdin
+    streams = _Text(), _Text()
+    sys.stdout, sys.stderr = streams
+    sys.stdin = io.TextIOWrapper(io.BytesIO(b'{"b": ["v"]}\n'), encoding="utf-8")
+    try:
+        yield streams
+    finally:
+        sys.stdout, sys.stderr, sys.stdin = before
+
+
+def summary(trial):
+    """One line on a trial, and one for each failure."""
+    came = ", ".join(f"{count} of status {key}" for key, count in sorted(trial.statuses.items()))
+    head = f"{trial.target}: {trial.inputs:,} inputs, {came}; longest {trial.longest_s:.2f} s"
+    return "\n".join([head, *(f"  {seed}: {said}" for seed, said in trial.failures.items())])
