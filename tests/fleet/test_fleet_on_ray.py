@@ -1,8 +1,8 @@
 """Ray judges as one process does: the units of a run, and a data set that is grouped by drives."""
 
 import logging
-import os
 
+import pyarrow
 import pytest
 from pyarrow import parquet
 
@@ -11,7 +11,7 @@ from rulec.extraction.selection import RequestedDrives
 from rulec.fleet import FleetJudge
 from rulec.fleet.runs.fleet_run import FleetSettings, run_fleet
 from rulec.recordings.recording_format import RecordingSource
-from support.builders.fleet_inputs import fleet_file, trace_table
+from support.builders.fleet_inputs import fleet_file, lanes, trace_table, tracks
 
 
 def in_order(table):
@@ -20,10 +20,10 @@ def in_order(table):
 
 @pytest.fixture(scope="module")
 def ray():
-    """One processor's worth of Ray, which takes seconds to start."""
+    """A little of Ray, which takes seconds to start: an actor, and tasks that read and write."""
     ray = pytest.importorskip("ray", reason="no release for this Python")
     pytest.importorskip("ray.data")
-    ray.init(num_cpus=1, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
+    ray.init(num_cpus=3, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
     logging.getLogger("ray.data").setLevel(logging.ERROR)
     ray.data.DataContext.get_current().enable_progress_bars = False
     yield ray
@@ -43,10 +43,31 @@ def test_ray_finds_what_one_process_finds(ray, tmp_path):
     assert (done.units, done.tally.judged) == (2, 6)
     found = parquet.read_table(done.findings, partitioning=None)
     assert in_order(found.to_pylist()) == expected
-    if os.environ.get("RULEC_TEST_PROFILE") != "long":
-        return  # to shuffle a data set takes half a minute
-    drives = ray.data.from_arrow([traces.slice(0, half), traces.slice(half)])
-    judged = drives.groupby("trace").map_groups(
-        FleetJudge(compiled, grouped=True), batch_format="pyarrow"
-    )
-    assert in_order(judged.take_all()) == expected
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize(
+    "grouped", [False, pytest.param(True, marks=pytest.mark.long)], ids=["whole", "grouped"]
+)
+def test_the_recipe_finds_the_same(grouped, ray, tmp_path):
+    """A class, its arguments and actors, as docs/fleet.md has it; a shuffle takes a minute."""
+    table, compiled = pyarrow.table(tracks([0, 1])), str(fleet_file(tmp_path))
+    roads = str(lanes(tmp_path))
+    expected = in_order(FleetJudge(compiled, roads)(table).to_pylist())
+    half = len(table) // 2 if grouped else len(tracks([0])["t"])
+    (tmp_path / "in").mkdir()
+    for number, part in enumerate((table.slice(0, half), table.slice(half))):
+        parquet.write_table(part, tmp_path / "in" / f"{number}.parquet")
+    drives = ray.data.read_parquet(str(tmp_path / "in"), include_paths=False)
+    shared = {
+        "fn_constructor_args": (compiled, roads),
+        "batch_format": "pyarrow",
+        "compute": ray.data.ActorPoolStrategy(size=1),
+    }
+    if grouped:
+        more = {"fn_constructor_kwargs": {"grouped": True}}
+        found = drives.groupby("recording").map_groups(FleetJudge, **shared, **more)
+    else:
+        found = drives.map_batches(FleetJudge, batch_size=None, **shared)
+    found.write_parquet(str(tmp_path / "found"))
+    assert in_order(parquet.read_table(tmp_path / "found").to_pylist()) == expected
