@@ -80,4 +80,4 @@ def test_where_it_cannot_be_confined_it_is_refused_if_so_asked_for(monkeypatch):
     monkeypatch.setenv("RULEC_REQUIRE_CONFINED", "1")
     with pytest.raises(rulec.RulecError, match=r"could write files \(no Landlock\)") as caught:
         compiler.answers_to([])
-    assert [problem.code for problem in caught.value.diagnostics] == ["R0412"]
+    assert [problem.code for problem in caught.value.diagnostics] == ["R0415"]

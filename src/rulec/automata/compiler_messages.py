@@ -48,7 +48,7 @@ SPOT_MISSING = Code(
 )
 
 SPOT_NOT_CONFINED = Code(
-    "R0412",
+    "R0415",
     title="the process that compiles cannot be confined",
     why="Spot runs in a process that can write no file, open no connection and start no program: "
     "Linux keeps it from that, by Landlock from 5.13 on and by seccomp. On other systems and older "
@@ -130,7 +130,7 @@ def no_spot(problem: str) -> Diagnostic:
 
 
 def not_confined(confined: Confinement) -> Diagnostic:
-    """R0412: the worker can do more than its task needs."""
+    """R0415: the worker can do more than its task needs."""
     left = {"write files (no Landlock)": confined.files}
     left["connect and run programs (no seccomp)"] = confined.connections
     able = " and ".join(what for what, is_held in left.items() if not is_held)
