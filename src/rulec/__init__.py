@@ -119,6 +119,7 @@ if TYPE_CHECKING:
     from rulec.trace.trace_columns import TraceCells as TraceCells
     from rulec.trace.trace_columns import TraceColumns as TraceColumns
     from rulec.trace.trace_columns import layout_of as layout_of
+    from rulec.validation.file_proof import RuleProof as RuleProof
     from rulec.version import __version__ as __version__
     from rulec.vocabulary import Vocabulary as Vocabulary
     from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN
@@ -136,7 +137,7 @@ _HOME = {
     "find find_maneuvers format formats judge_recording lineage list load_rulebook load_scenario "
     "load_vocabulary navigation_graph new_rulebook parse_rulebook rates_of_findings "
     "read_recording read_traces rule_probabilities show test traces tree verify verify_cells "
-    "verify_columns verify_many verify_recording write_compiled write_traces",
+    "verify_columns verify_compiled verify_many verify_recording write_compiled write_traces",
     "rulec.automata.bundle.compiled_rulebook": "CompiledRule CompiledRulebook",
     "rulec.automata.mealy_monitor": "MealyMonitor",
     "rulec.book_tests.example_coverage": "RuleCoverage UncoveredEdge",
@@ -184,6 +185,7 @@ _HOME = {
     "rulec.recordings.tracks.track_table": "recording_from_columns",
     "rulec.trace": "Trace TraceGraph",
     "rulec.trace.trace_columns": "TraceCells TraceColumns layout_of",
+    "rulec.validation.file_proof": "RuleProof",
     "rulec.vocabulary": "Vocabulary",
     "rulec.vocabulary.partial_values": "UNKNOWN Interval",
 }

@@ -111,7 +111,7 @@ NOTHING_LEFT = Code(
 NOT_THE_SAME_FILE = Code(
     "R0734",
     title="a file would not be the same after it is rewritten",
-    why="`rulec fmt` writes a file anew and gives it the old one's name, so that it is never half "
+    why="What `rulec fmt` changes is a new file with the old one's name, so that none is ever half "
     "written. A file with several names (hard links) would then be two, and one whose owner you "
     "are not might have you for its owner. Such files are left as they are.",
     bad="echo 'rulebook a  signal p hard rule r { require p }' > a.rules\n"

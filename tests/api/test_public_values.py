@@ -100,6 +100,7 @@ def values():
         next(iter(recording.participants[0].states.values())),
         rulec.PlanningProblem("1", 0, next(iter(recording.participants[0].states.values())), ()),
         rulec.PenaltyRank("soft", ("",)),
+        rulec.verify_compiled(rulec.write_compiled(rules, tmp)[-1])[0],
         *(audited, audited.rules[0], rulec.Interval(1.0, 2.0), ranged),
         *(rulec.Assumptions("cut", {"p": True}), rulec.RuleNotJudged("r", "hard", ("p",))),
         *(rulec.ConditionalOutcome({"p": True}, "kept"), undecided),

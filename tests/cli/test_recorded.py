@@ -113,7 +113,7 @@ def test_who_is_known_at_one_moment_has_one_prediction(answer):
     )
     found = json.loads(out)
     assert (status, found["worlds"]) == (0, [])
-    assert "likeliest" not in found
+    assert found["likeliest"] == 1
 
 
 def test_the_step_gets_shorter_until_ego_has_room(tmp_path, capsys):

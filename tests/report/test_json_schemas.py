@@ -55,6 +55,7 @@ DOCUMENTS = [
     ),
     ("maneuvers", ["maneuvers", "KERB", "-r", "esterle2019", "--json", "--list", "9", "--worlds"]),
     ("maneuvers", ["maneuvers", RECORDING, "--ego", "g.0", "-r", "esterle2019", "--json"]),
+    ("proofs", ["verify-compiled", "COMPILED", "--json"]),
     ("rates", ["rates", "FOUND", "--by", "country", "--json"]),
     ("show", ["show", "esterle2019", "--json"]),
     ("show", ["show", "esterle2019", "R1", "--json"]),
@@ -107,8 +108,12 @@ def run(tmp_path, monkeypatch, capfdbinary):
     paths = {name: tmp_path / file for name, (file, _) in files.items()}
     for name, (_, text) in files.items():
         paths[name].write_text(text)
+    paths["COMPILED"] = tmp_path / "esterle2019.json"
 
     def answer(arguments):
+        if "COMPILED" in arguments:
+            main(["compile", "esterle2019", "-o", str(tmp_path)])
+            capfdbinary.readouterr()
         main([str(paths.get(argument, argument)) for argument in arguments])
         return capfdbinary.readouterr().out.decode()
 

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from rulec.rulebook.batch.batch_check import Checked
     from rulec.rulebook.rulebook_model import Rulebook
     from rulec.trace import Trace
+    from rulec.validation.file_proof import RuleProof
     from rulec.vocabulary import Vocabulary
 
 Kind = Literal["rulebooks", "vocabularies", "scenarios", "codes"]
@@ -90,6 +91,16 @@ class RulebookVerbs(SessionSettings):
         from rulec.automata.bundle.bundle_file import write_compiled
 
         return tuple(write_compiled(rulebook, Path(folder)))
+
+    def verify_compiled(self, path: str | Path) -> tuple[RuleProof, ...]:
+        """Hold the tables of a compiled rulebook's file against its formulas, without Spot.
+
+        What has been found of each rule; one is proved if its ``because`` is empty. Raises
+        RulecError: R0701, and for a file that is no compiled rulebook, or damaged.
+        """
+        from rulec.automata.bundle.bundle_proof import proofs_of_file
+
+        return tuple(proofs_of_file(Path(path)))
 
     def check(self, *references: str | Path) -> Checked:
         """List all diagnostics of rulebooks and vocabularies, and raise nothing.

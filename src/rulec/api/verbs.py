@@ -84,6 +84,7 @@ tree = _USUAL.tree
 verify = _USUAL.verify
 verify_cells = _USUAL.verify_cells
 verify_columns = _USUAL.verify_columns
+verify_compiled = _USUAL.verify_compiled
 verify_many = _USUAL.verify_many
 verify_recording = _USUAL.verify_recording
 write_compiled = _USUAL.write_compiled

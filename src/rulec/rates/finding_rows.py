@@ -14,6 +14,7 @@ from rulec.files import is_folder, opened
 from rulec.rates.rates_messages import no_findings
 from rulec.trace.formats.arrow.parquet import rows_of_columns
 from rulec.trees import refuse_link_out, tree_of
+from rulec.value_display import short_repr
 
 LARGEST = 1e12
 """No fleet drives so many metres or seconds in one drive; sums of larger numbers overflow."""
@@ -29,6 +30,8 @@ class FindingRow:
     A row of kind ``drive`` says how long and how far somebody drove, one of kind ``rule`` what a
     rule came to in it. Texts that do not apply are empty, numbers None.
     """
+
+    __repr__ = short_repr
 
     kind: str
     file: str = ""

@@ -26,28 +26,17 @@ def command(files: tuple[str, ...], to: Output) -> int:
 
     Exit status: 0 all rules are proved, 1 some are not, 2 a file could not be read.
     """
-    # The checker, 20 ms: not for --help.
+    # Compiled files and the checker, 60 ms: not for --help.
+    from rulec.automata.bundle.bundle_proof import proofs_of_file
     from rulec.report.rulebooks.proof_report import render
 
     proofs: list[tuple[str, list[RuleProof]]] = []
     for name in files:
         with errors_told():
-            proofs.append((name, _proofs(Path(name))))
+            proofs.append((name, proofs_of_file(Path(name))))
     if proofs or to.form == "json":
         put_answer(render(proofs, to.form), to)
     return ExitStatus.after(
         answered=len(proofs) == len(files),
         failed=any(proof.because for _, of_file in proofs for proof in of_file),
     )
-
-
-def _proofs(path: Path) -> list[RuleProof]:
-    # Compiled files and the checker, 60 ms: not for --help.
-    from rulec.automata.bundle.bundle_file import read_signed, refusal
-    from rulec.validation.file_proof import UnreadableError, proofs_of
-
-    data = read_signed(path)
-    try:
-        return proofs_of(data)
-    except UnreadableError as problem:
-        raise refusal(data, str(path), str(problem)) from None
