@@ -51,6 +51,9 @@ def run() -> int:
             signal.signal(signal.SIGINT, _interrupted)
         for stream in (sys.stdout, sys.stderr):
             _let_go_of(stream)
+        if signal.getsignal(signal.SIGINT) is _interrupted:
+            # When Python ends it gives signals back to the system, which would kill what is done.
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _prepare() -> None:
