@@ -34,3 +34,11 @@ def test_a_limit_goes_back_to_what_it_was_behind_its_block():
     with in_force(["choices=1"]), pytest.raises(RulecError, match="R0718"):
         next(choices(["car", "car"], objects, WORDS))
     assert len(list(choices(["car", "car"], objects, WORDS))) == 2
+
+
+def test_nothing_is_of_a_type_that_is_not_declared():
+    objects = {"a": "car", "b": "car"}
+    assert number_of_choices(["boat", "boat"], objects, WORDS) == 0
+    assert list(choices(["boat", "boat"], objects, WORDS)) == []
+    assert list(choices(["boat", "car"], objects, WORDS)) == []
+    assert list(choices(["car", "car"], {"a": "boat", "b": "boat"}, WORDS)) == []

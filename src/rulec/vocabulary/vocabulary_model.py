@@ -104,8 +104,8 @@ class Vocabulary:
             current = self.types[current].parent
 
     def is_subtype(self, type_name: str, of: str) -> bool:
-        """Tell whether every ``type_name`` is also an ``of``."""
-        return of in self._above[type_name]
+        """Tell whether every ``type_name`` is also an ``of``: never, where it is not declared."""
+        return of in self._above.get(type_name, ())
 
     @cached_property
     def _above(self) -> Mapping[str, frozenset[str]]:
@@ -148,8 +148,11 @@ def number_of_choices(
     """How many ``choices`` there are, without going through them.
 
     Types are a forest, so what fits one is all, some or none of what fits another. Where the
-    narrower ones choose first, each has taken one from whatever is above it.
+    narrower ones choose first, each has taken one from whatever is above it. Nothing is of a type
+    that is not declared, such as one in a vocabulary with mistakes.
     """
+    if not vocabulary.types.keys() >= set(types):
+        return 0
     depth = {name: len(list(vocabulary.ancestors(name))) for name in set(types)}
     number_of = {name: len(fitting_objects(name, objects, vocabulary)) for name in depth}
     number = 1

@@ -109,10 +109,9 @@ class _Text(io.TextIOWrapper):
         """A file of its own."""
         return self._file.fileno()
 
-    def close(self):
-        """End both."""
+    def end(self):
+        """Close the file; what was written stays."""
         self._file.close()
-        super().close()
 
     def getvalue(self):
         """What was written."""
@@ -130,6 +129,8 @@ def _quiet():
         yield streams
     finally:
         sys.stdout, sys.stderr, sys.stdin = before
+        for stream in streams:
+            stream.end()
 
 
 def summary(trial):
