@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.book_tests.example_runs import run_rulebook_examples
+from rulec.diagnostics import RulecError
 from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.monitoring.moments.name_tables import StateTables
@@ -140,3 +141,22 @@ def test_an_example_says_what_it_says():
     book = parse_rulebook(SOURCE.replace("v < 30 mph", examples), "n.rules")
     outcomes = run_rulebook_examples(book, compile_rulebook(book)).outcomes
     assert [one.passed for one in outcomes] == [True, True]
+
+
+def test_numbers_differ_that_have_one_nearest_float():
+    one, other = number_written("9007199254740993"), number_written("9007199254740992.5")
+    assert float(one) == float(other)
+    assert one != other
+    assert one != float(one)
+    assert not one != number_written("9007199254740993.0")  # noqa: SIM202 - its own operator
+
+
+def test_a_constant_with_two_values_of_one_float_is_refused():
+    words = "rulebook c\nquantity limit in m default 0\nconstant limit\n"
+    words += "hard rule r { require limit < 9 m }"
+    rules = compile_rulebook(parse_rulebook(words, "c.rules"))
+    values = (number_written("9007199254740993"), number_written("9007199254740992.5"))
+    trace = Trace("t", 1.0, {}, tuple({"limit": value} for value in values))
+    with pytest.raises(RulecError) as caught:
+        verify(trace, rules)
+    assert [problem.code for problem in caught.value.diagnostics] == ["R0503"]

@@ -51,6 +51,9 @@ class WrittenNumber(float):
             return bool(self.exact == _exact(other))
         return False
 
+    def __ne__(self, other: object) -> bool:
+        return not self == other  # float's own would compare the nearest ones
+
     def __lt__(self, other: Any) -> bool:
         return bool(self.exact < _exact(other))
 
