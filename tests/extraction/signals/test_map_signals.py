@@ -99,3 +99,54 @@ def test_surfaces_by_ego_s_middle():
         "carriageway",
         "bus_lane",
     ]
+
+
+def surfaces(bodies, lanes, route=("1", "2")):
+    found = map_signals(context_of(recording(lanes, [bodies]), route))
+    unknown = found.unknown["surface"].tolist()
+    return [
+        "?" if u else word for word, u in zip(found.world["surface"].tolist(), unknown, strict=True)
+    ]
+
+
+LANES = [straight(1, 0, 100, successors=(2,)), straight(2, 100, 200, predecessors=(1,))]
+
+
+@pytest.mark.parametrize(
+    ("x", "word"),
+    # The front is 2 m ahead, the crossing begins at 58, places are known to 0.05 m
+    [(55.94, "carriageway"), (55.98, "?"), (56.03, "?"), (56.06, "crossing")],
+)
+def test_who_stands_with_its_nose_at_the_edge_of_a_crossing(x, word):
+    places = dict.fromkeys(range(4), (x, 0))
+    assert surfaces(vehicle(7, places), [*LANES, zebra(8, 60)]) == [word] * 4
+
+
+def test_who_drives_onto_a_crossing_is_on_it_once():
+    places = {k: (x, 0) for k, x in enumerate((52, 56.01, 60, 64.01, 70))}
+    found = surfaces(vehicle(7, places), [*LANES, zebra(8, 60)])
+    assert found == ["carriageway", *["crossing"] * 2, *["carriageway"] * 2]
+
+
+@pytest.mark.parametrize(
+    ("heading", "word"), [(0.0, "carriageway"), (0.52, "?"), (np.pi / 2, "carriageway")]
+)
+def test_a_corner_that_is_turned_onto_a_crossing_decides_nothing(heading, word):
+    # Half a metre of a body turned by 30°: the middle of its front is at 57.6, a corner at 58.1
+    places = dict.fromkeys(range(4), (55.9, 0))
+    assert surfaces(vehicle(7, places, heading=heading), [*LANES, zebra(8, 60)]) == [word] * 4
+
+
+def test_who_stands_where_a_junction_or_a_bus_lane_begins():
+    for kind, word in (("intersection", "junction"), ("busLane", "bus_lane")):
+        lanes = [LANES[0], straight(2, 100, 200, predecessors=(1,), types=frozenset({kind}))]
+        for x, found in ((99.9, "carriageway"), (99.97, "?"), (100.02, "?"), (100.1, word)):
+            assert surfaces(vehicle(7, dict.fromkeys(range(4), (x, 0))), lanes) == [found] * 4
+
+
+def test_the_zone_before_a_crossing_begins_within_the_tolerance():
+    for x, word in ((50.9, False), (50.98, "?"), (51.02, "?"), (51.1, True)):
+        found = map_signals(context([x] * 3, zebra(8, 60)))
+        known = ~found.unknown["crossing_zone"]
+        assert known.all() == (word != "?")
+        assert not known.any() or set(found.world["crossing_zone"].tolist()) == {word}

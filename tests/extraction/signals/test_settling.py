@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.signals.settling import settled, without_blips
+from rulec.extraction.signals.settling import only_when, settled, without_blips
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.traffic_thresholds import LEAST_S
 
@@ -111,3 +111,29 @@ def test_durations_are_in_seconds_and_by_word():
     assert found.world["moment"].tolist() == flags.tolist()
     # Two steps of 0.2 s are long enough
     assert settled(signals, {"brief": 0.3}, 0.2).world["brief"].tolist() == flags.tolist()
+
+
+@pytest.mark.parametrize(
+    ("codes", "doubtful", "there", "only"),
+    [
+        # From behind to beside: when is in doubt, not whether
+        ("aabbb", ".??..", "-----", ".??.."),
+        # By way of a third code, at once
+        ("abbc", ".??.", "----", ".??."),
+        # To and fro, and back again
+        ("ababb", ".???.", "-----", "....."),
+        ("aabaa", ".???.", "-----", "....."),
+        # For longer than two states
+        ("aabbb", ".???.", "-----", "....."),
+        # Nobody knows what was before, or comes then
+        ("aabb", "??..", "----", "...."),
+        ("aabb", "..??", "----", "...."),
+        # Away in between, or when it is sure
+        ("aabbb", ".??..", "-- --", "....."),
+        ("aabbb", ".??..", " ----", "....."),
+    ],
+)
+def test_a_doubt_between_two_sure_codes_is_about_when(codes, doubtful, there, only):
+    rows = [np.array([list(text)]) for text in (codes, doubtful, there)]
+    (found,) = only_when(rows[0], rows[1] == "?", rows[2] == "-", 2)
+    assert "".join(".?"[flag] for flag in found.tolist()) == only

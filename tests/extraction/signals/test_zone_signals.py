@@ -45,8 +45,14 @@ def told(lanes, *bodies, complete=(), **more):
     return right
 
 
+def queueing(number, x):
+    """One that has moved over before it stands."""
+    return vehicle(number, {0: (x, 1.6)} | dict.fromkeys(range(1, 7), (x, 0)))
+
+
 def exit_clear(lanes, ego, *others):
-    found = told(lanes, going(7, ego), *others)
+    body = going(7, ego) if isinstance(ego, tuple) else ego
+    found = told(lanes, body, *others)
     unknown = found.unknown["exit_clear"].tolist()
     values = found.world["exit_clear"].tolist()
     return ["?" if u else v for u, v in zip(unknown, values, strict=True)]
@@ -76,7 +82,7 @@ def test_ego_stands_in_the_junction_for_another_reason():
 
 def test_a_queue_within_the_junction_takes_the_room_behind_it():
     # Room behind the junction: 131 - 120 = 11 m, less 5 m for each of the two that are in it
-    queue = [going(8, (133,) * 6), going(9, (118,) * 6), going(10, (113,) * 6)]
+    queue = [queueing(8, 133), queueing(9, 118), queueing(10, 113)]
     ego = (90, 103, 108, 108, 108, 108)
     assert exit_clear(road(), ego, *queue) == [False] * 6
     # With one of them only there is room enough, whatever ego waits for
@@ -90,7 +96,7 @@ def test_ego_waits_before_the_road_that_it_would_block():
         lanelet(6, [(115, -10), (115, 10)], predecessors=(5,), successors=(7,), types=INSIDE),
         lanelet(7, [(115, 10), (115, 40)], predecessors=(6,)),
     ]
-    queue = going(8, (125,) * 7)
+    queue = queueing(8, 125)
     before, within = ((90, 105, x, x, x, 120, 140) for x in (110, 112))
     assert exit_clear(road(None, None, *across), before, queue) == [True] * 7
     assert False in exit_clear(road(None, None, *across), within, queue)
@@ -103,11 +109,24 @@ def test_a_queue_on_the_lane_beside_is_not_ahead():
     assert exit_clear(lanes, STOPS, going(8, (125,) * 7, 4.0)) == [True] * 7
 
 
-@pytest.mark.parametrize(("y", "clear"), [(-2.5, True), (-1.0, False)])
-def test_one_that_stands_at_the_edge_leaves_room_beside_it(y, clear):
-    """Of the 4 m of ego's lane it takes 0.5 m, or 2 m: ego, which is 2 m wide, wants 2.4 m."""
+@pytest.mark.parametrize(("y", "word"), [(-2.5, True), (-1.0, "?")])
+def test_one_that_stands_at_the_edge_leaves_room_beside_it(y, word):
+    """Of the 4 m of ego's lane it takes 0.5 m, or 2 m: ego, which is 2 m wide, wants 2.4 m.
+
+    One that never moves may be parked there, and ego wait for others before it drives round it.
+    """
     found = exit_clear(road(), STOPS, going(8, (125,) * 7, y))
-    assert (False not in found) == clear
+    assert found[0] == word
+
+
+def test_whether_ego_stands_in_the_junction_within_the_tolerance_or_by_a_corner():
+    # Fronts in state 3 are at 99.98, 100.03 and 100.06, places are known to 0.05 m
+    for x, word in ((97.98, "?"), (98.03, "?"), (98.06, False), (97.94, True)):
+        ego = (78, 90, x, x, x, 120, 140)
+        assert exit_clear(road(), ego, queueing(8, 125))[0] == word, x
+    # Turned by 30° its right corner is 0.5 m farther ahead than the middle of its front
+    turned = vehicle(7, {k: (x, 0) for k, x in enumerate((78, 90, 97.8, 97.8, 97.8))}, heading=0.52)
+    assert exit_clear(road(), turned, queueing(8, 125))[0] == "?"
 
 
 def test_a_recording_that_ends_before_ego_is_through():
@@ -120,7 +139,7 @@ def test_a_recording_that_ends_before_ego_is_through():
 def test_what_ego_enters_is_not_the_crossing_behind_it():
     """Ego stands on the crossing at 124 to 128, and has left the junction by then."""
     lanes = road(None, None, zebra(126))
-    queue = going(8, (133,) * 6)
+    queue = queueing(8, 133)
     # Fronts are at 92, 107, 120 and 129: what ego enters is the crossing when it gets to it
     found = exit_clear(lanes, (90, 105, 118, 127, 127, 127), queue)
     assert found == [True, True, True, False, False, False]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.signal_passes import once_a_recording
-from rulec.extraction.tracks.tracks import Flags
+from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet
 
 _Value = TypeVar("_Value")
@@ -45,7 +45,12 @@ class OwnLanelets:
 @once
 def own_lanelets(context: DriveContext) -> OwnLanelets:
     """The lanelets of ego's lane."""
-    pieces, lanes = context.road.piece(context.ego_extents.s[0]), context.ego_lane
+    return lanelets_at(context, context.ego_extents.s[0], context.ego_lane)
+
+
+def lanelets_at(context: DriveContext, middle: Floats, lanes: NDArray[intp]) -> OwnLanelets:
+    """The lanelets at so far along the road, in a lane, by state."""
+    pieces = context.road.piece(middle)
     width = context.existing_lanes.shape[1]
     codes, number = np.unique(pieces * width + lanes, return_inverse=True)
     places = tuple(divmod(code, width) for code in codes.tolist())

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
+from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark
 
@@ -174,7 +175,7 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     tried = [(near, _across(context, low, high, other)) for other in others]
     # Where places are known so badly, a body's direction is that of its slow or slipping track
     if place >= context.thresholds.touching_m:
-        middle, half = context.ego_extents.left_of[0], _own_widths(context)[:, None] / 2
+        middle, half = context.ego_extents.left_of[0], own_widths(context)[:, None] / 2
         tried += [
             (near | found[:, 0], _across(context, middle - half, middle + half, other))
             for other in [(0.0, unmoved), *others]
@@ -250,29 +251,6 @@ def _near_a_line(context: DriveContext, margin_m: Floats) -> Flags:
     across = np.minimum(-own.left_of_min[0], own.left_of_max[0])
     near: Flags = (np.abs(across - context.thresholds.touching_m) <= margin_m[:, None]).any(axis=1)
     return near
-
-
-def _own_widths(context: DriveContext) -> Floats:
-    """The width (m) of ego's body by state."""
-    begins = context.first_step - context.surroundings.tracks.first
-    own: Floats = _widths(context)[context.ego.rows[0], begins : begins + context.states]
-    return own
-
-
-@once_a_recording
-def _widths(context: DriveContext) -> Floats:
-    """The widths (m) of bodies across their headings, of the whole recording; 0 where unknown."""
-    tracks = context.surroundings.tracks
-    bodies, widths = tracks.bodies, np.zeros(tracks.present.shape)
-    outlines, way = bodies.outlines, tracks.heading[bodies.rows, bodies.columns]
-    x, y = outlines.corners.T
-    sin, cos = (np.repeat(values, outlines.counts) for values in (np.sin(way), np.cos(way)))
-    across = y * cos - x * sin
-    most, least = (
-        extreme.reduceat(across, outlines.starts) for extreme in (np.maximum, np.minimum)
-    )
-    widths[bodies.rows, bodies.columns] = most - least
-    return widths
 
 
 _NONE = SignalColumns()

@@ -13,6 +13,7 @@ import numpy as np
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
+from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 LONGEST_S = 1000.0
@@ -117,3 +118,32 @@ def _ahead(context: DriveContext) -> tuple[Floats, Floats]:
     alike = np.cos(context.extents.turned) > _ALIKE
     others = np.where(alike & (others > 0), np.maximum(context.tracks.speed, others), others)
     return np.maximum(context.ego_extents.along, 0.0), others
+
+
+def own_widths(context: DriveContext) -> Floats:
+    """The width (m) of ego's body by state."""
+    begins = context.first_step - context.surroundings.tracks.first
+    own: Floats = _widths(context)[context.ego.rows[0], begins : begins + context.states]
+    return own
+
+
+def corner_ahead(context: DriveContext) -> Floats:
+    """How far (m) a corner of ego's body reaches along the road beyond the middle of its front."""
+    corner: Floats = own_widths(context) / 2 * np.abs(np.sin(context.ego_extents.turned[0]))
+    return corner
+
+
+@once_a_recording
+def _widths(context: DriveContext) -> Floats:
+    """The widths (m) of bodies across their headings, of the whole recording; 0 where unknown."""
+    tracks = context.surroundings.tracks
+    bodies, widths = tracks.bodies, np.zeros(tracks.present.shape)
+    outlines, way = bodies.outlines, tracks.heading[bodies.rows, bodies.columns]
+    x, y = outlines.corners.T
+    sin, cos = (np.repeat(values, outlines.counts) for values in (np.sin(way), np.cos(way)))
+    across = y * cos - x * sin
+    most, least = (
+        extreme.reduceat(across, outlines.starts) for extreme in (np.maximum, np.minimum)
+    )
+    widths[bodies.rows, bodies.columns] = most - least
+    return widths

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy import int8, intp
+from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
@@ -16,6 +16,7 @@ from rulec.extraction.signals.measured_numbers import (
     safe_distance,
     safe_distance_error,
 )
+from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
@@ -44,27 +45,20 @@ def _position(context: DriveContext) -> SignalColumns:
 
 
 def _station(context: DriveContext) -> SignalColumns:
+    """The stations; unknown within the tolerance of places, but for who passes.
+
+    There only the moment is in doubt. Who gets on so slowly that it is for long is beside ego, or
+    is not, all that time.
+    """
     station, others = relations.station(context), relations.possible_stations(context)
     doubtful = np.logical_or.reduce([station != codes for codes in others])
+    there = context.relevant & ~np.isnan(context.extents.s_min)
+    longest = round(context.thresholds.passed_s / context.recording.step_s)
     return SignalColumns(
         about={"station": station},
-        unknown={
-            "station": doubtful & ~_passing(station, ~doubtful & ~np.isnan(context.extents.s_min))
-        },
+        unknown={"station": doubtful & ~only_when(station, doubtful, there, longest)},
         texts={"station": STATIONS},
     )
-
-
-def _passing(codes: NDArray[int8], sure: Flags) -> Flags:
-    """Flags of states (columns) between sure ones of different codes: only when is in doubt."""
-    n_states = codes.shape[-1]
-    before = latest(sure)
-    behind = n_states - 1 - latest(sure[:, ::-1])[:, ::-1]
-    known = (before >= 0) & (behind < n_states)
-    rows = np.arange(len(codes))[:, None]
-    ends = codes[rows, before], codes[rows, np.minimum(behind, n_states - 1)]
-    passing: Flags = known & (ends[0] != ends[1])
-    return passing
 
 
 def _lateral(context: DriveContext) -> SignalColumns:

@@ -8,10 +8,16 @@ from math import ceil
 
 import numpy as np
 
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_columns import (
+    SignalColumn,
+    SignalColumns,
+    latest,
+    next_state,
+)
 from rulec.extraction.tracks.tracks import Flags
 
 _HAIR = 1e-6
+_MOST_CHANGES = 2
 
 
 def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float) -> SignalColumns:
@@ -108,3 +114,26 @@ def without_blips(column: SignalColumn, least: int) -> SignalColumn:
         if found[start - 1] == given[end]:
             found[start:end] = found[start - 1]
     return found.reshape(column.shape)
+
+
+def only_when(codes: SignalColumn, doubtful: Flags, there: Flags, most: int) -> Flags:
+    """Flags of doubtful states between sure ones of different codes: only when is in doubt.
+
+    Rows with a column per state. That is so of ``most`` states at a time, in all of which one is
+    ``there``, and whose codes do not go to and fro.
+    """
+    n_states = codes.shape[-1]
+    sure = there & ~doubtful
+    before, behind = latest(sure), next_state(sure, n_states)
+    first, last = np.maximum(before, 0), np.minimum(behind, n_states - 1)
+    rows = np.arange(len(codes))[:, None]
+    away = np.cumsum(~there, axis=-1)
+    changes = np.cumsum(codes[:, 1:] != codes[:, :-1], axis=-1)
+    changes = np.concatenate([np.zeros((len(codes), 1), dtype=changes.dtype), changes], axis=1)
+    between = (before >= 0) & (behind < n_states) & (behind - before - 1 <= most)
+    kept = away[rows, last] == away[rows, first]
+    # Codes that differ at the ends are all different, or go to and fro
+    one_way = changes[rows, last] - changes[rows, first] <= _MOST_CHANGES
+    differ = codes[rows, first] != codes[rows, last]
+    only: Flags = doubtful & between & kept & one_way & differ
+    return only

@@ -5,11 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
-from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
+from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import stop_line
+from rulec.extraction.signals.measured_numbers import corner_ahead
+from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
+    SignalColumn,
     SignalColumns,
     SignalNames,
     rounded,
@@ -55,8 +60,11 @@ def _distance_to_crossing(context: DriveContext) -> SignalColumns:
 
 
 def _crossing_zone(context: DriveContext) -> SignalColumns:
-    near = distance_to_crossing(context) <= context.thresholds.zone_m
-    return SignalColumns({"crossing_zone": near})
+    distance, zone = distance_to_crossing(context), context.thresholds.zone_m
+    near, unknown = distance <= zone, abs(distance - zone) < context.tolerances.place_m
+    return SignalColumns(
+        {"crossing_zone": near}, unknown={"crossing_zone": _in_doubt(context, near, unknown)}
+    )
 
 
 def _limit(context: DriveContext) -> SignalColumns:
@@ -126,14 +134,61 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def _surface(context: DriveContext) -> SignalColumns:
-    own, middle = own_lanelets(context), context.ego_extents.s[0]
+    """What ego is on: any part of it on a crossing, else its middle.
+
+    Unknown where places decide, or who is on the crossing with no more than a corner turned to it:
+    the direction in which a body points is known less well than where it is, and some sources turn
+    those who stand.
+    """
+    middle, place = context.ego_extents.s[0], context.tolerances.place_m
+    surfaces = _below_middle(context, middle, context.ego_lane)
+    others = [_below_middle(context, middle + way * place, context.ego_lane) for way in (-1, 1)]
+    if (context.steady_lane != context.ego_lane).any():
+        others.append(_below_middle(context, middle, context.steady_lane))
+    unknown = np.logical_or.reduce([other != surfaces for other in others])
+    on_it, surely, perhaps = _on_crossing(context)
+    surfaces[on_it] = "crossing"
+    unknown = (unknown | perhaps) & ~surely
+    return SignalColumns(
+        {"surface": surfaces}, unknown={"surface": _in_doubt(context, surfaces, unknown)}
+    )
+
+
+def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Flags:
+    """Flags of unknown states without those in which ego drives from one value to another.
+
+    There only the moment is in doubt.
+    """
+    moves = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
+    longest = round(context.thresholds.passed_s / context.recording.step_s)
+    (passing,) = only_when(values[None], unknown[None], moves[None], longest)
+    doubt: Flags = unknown & ~passing
+    return doubt
+
+
+def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) -> NDArray[np.str_]:
+    """The surface at so far along the road, in a lane, by state, crossings apart."""
     surfaces = np.full(context.states, "carriageway", dtype="<U14")
     for start, end in context.road.junctions:
         surfaces[(middle > start) & (middle < end)] = "junction"
-    for kind, surface in _SURFACES.items():
-        surfaces[own.flags(_is_of(kind))] = surface
-    surfaces[distance_to_crossing(context) <= 0] = "crossing"
-    return SignalColumns({"surface": surfaces})
+    kinds = [kind for kind in _SURFACES if kind in map_contents(context).types]
+    if kinds:
+        own = lanelets_at(context, middle, lane)
+        for kind in kinds:
+            surfaces[own.flags(_is_of(kind))] = _SURFACES[kind]
+    return surfaces
+
+
+def _on_crossing(context: DriveContext) -> tuple[Flags, Flags, Flags]:
+    """Flags of states in which a part of ego is on a crossing: as measured, surely and perhaps."""
+    own, place = context.ego_extents, context.tolerances.place_m
+    front, rear = own.s_max[0], own.s_min[0]
+    found = np.zeros((3, context.states), dtype=bool)
+    for start, end in context.road.crossings:
+        for flags, less in zip(found, (0.0, corner_ahead(context) + place, -place), strict=True):
+            flags |= (front - less >= start) & (rear + less < end)
+    on_it, surely, perhaps = found
+    return on_it, surely, perhaps
 
 
 _PASSES: Passes = {

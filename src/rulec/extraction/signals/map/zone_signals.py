@@ -13,6 +13,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_signals import room_beside
 from rulec.extraction.signals.map.map_signals import next_crossing
+from rulec.extraction.signals.measured_numbers import corner_ahead
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import (
     Passes,
@@ -173,30 +174,53 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
 
     There is none if the one ahead leaves too little behind the place where it is at that time, and
     it makes ego stand on it, where others cross or join its way. Where the recording ends before
-    ego is through it is unknown. What ego enters is the last place that it has got to, and before
-    any the next one.
+    ego is through it is unknown, and so it is where places decide whether it stands there, and of
+    one ahead that stands all the time: ego may wait to drive round it. What ego enters is the last
+    place that it has got to, and before any the next one.
     """
     places = [*context.road.junctions, *context.road.crossings, *_rail_stretches(context)]
     clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     entered = _entered(front, rear, places, context.thresholds.approach_m)
+    error = context.tolerances.place_m
+    beyond = corner_ahead(context) + error
+    ahead = _ahead_on_lane(context)
+    still = _standing_rows(context, ahead)
     for number, (start, end) in enumerate(places):
         nears, passed = entered == number, (rear >= end).any()
-        stuck = (front > _shared(context, start, end)) & (rear < end) & stands
-        if not nears.any() or (passed and not stuck.any()):
+        place = _shared(context, start, end)
+        stuck = (front - beyond > place) & (rear + beyond < end) & stands
+        perhaps = (front + error > place) & (rear - error < end) & stands
+        if not nears.any() or (passed and not perhaps.any()):
             continue
-        short = _free_beyond(context, start, end) < front - rear + _ROOM_M
-        held_later = np.maximum.accumulate((stuck & short)[::-1])[::-1]
-        clear &= ~(nears & short & held_later)
-        if not passed:
-            unknown |= nears & short & ~held_later
+        short, may_be_short = (
+            _free_beyond(context, those, (start, end)) < front - rear + _ROOM_M
+            for those in (ahead & ~still, ahead)
+        )
+        blocked = nears & short & _until(stuck & short)
+        clear &= ~blocked
+        may_be = _until(perhaps & may_be_short) | (not passed)
+        unknown |= nears & may_be_short & ~blocked & may_be
     return SignalColumns({"exit_clear": clear}, unknown={"exit_clear": unknown & clear})
 
 
-def _free_beyond(context: DriveContext, start: float, end: float) -> Floats:
+def _until(flags: Flags) -> Flags:
+    """Flags of states after which, or in which, others hold."""
+    held: Flags = np.maximum.accumulate(flags[::-1])[::-1]
+    return held
+
+
+def _standing_rows(context: DriveContext, ahead: Flags) -> Flags:
+    """Flags, one a row, of those ever ahead who stand all the time that they are recorded."""
+    still, rows = np.zeros((len(ahead), 1), dtype=bool), np.flatnonzero(ahead.any(axis=1))
+    still[rows, 0] = relations.stays(context, rows)
+    return still
+
+
+def _free_beyond(context: DriveContext, ahead: Flags, place: tuple[float, float]) -> Floats:
     """How much room (m) those ahead in ego's lane leave behind a place, by state."""
-    ahead, others = _ahead_on_lane(context), context.extents
+    others, (start, end) = context.extents, place
     room = np.where(ahead & (others.s_max > end), others.s_min - end, np.inf)
     inside = ahead & (others.s_max <= end) & (others.s_max > start)
     taken = np.where(inside, others.s_max - others.s_min + _ROOM_M, 0.0)
@@ -214,8 +238,7 @@ def _ahead_on_lane(context: DriveContext) -> Flags:
 
 def _left_aside(context: DriveContext, ahead: Flags) -> Flags:
     """Flags of those ahead who stand all the time and leave ego room to pass them in its lane."""
-    aside, rows = np.zeros(ahead.shape, dtype=bool), np.flatnonzero(ahead.any(axis=1))
-    still = rows[relations.stays(context, rows)]
+    aside, still = np.zeros(ahead.shape, dtype=bool), np.flatnonzero(_standing_rows(context, ahead))
     if len(still):
         others, own = context.extents.part(still, slice(None)), context.ego_extents
         left, _ = others.from_bound(context.ego_lane)
