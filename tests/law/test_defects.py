@@ -1,0 +1,48 @@
+"""What readers of the statutes found wrong in the books stays mended: each finding has its examples.
+
+A row names the finding, the book, the rule, and the labels of examples that come out otherwise without
+the mend; ``test_books`` runs them. A rule that is no law in a country is not in its book.
+"""
+
+import pytest
+
+from support.builders.national_books import read
+
+SHOWN = [
+    (3, "de", "speed_limit", ["a divided road outside town"], ["a sign on a divided road"]),
+    (3, "de", "speed_limit", ["two marked lanes each way outside town"], ["outside town"]),
+    (3, "de", "speed_limit_advisory", ["a divided road"], ["two marked lanes each way"]),
+    (10, "de", "rail_priority", ["a tram that comes from the left, where the right goes first"], []),
+    (10, "de", "rail_priority", [], ["a tram that goes on where ego turns"]),
+    (12, "vienna", "junction_overtaking", ["on a road with priority"], []),
+    (12, "vienna", "junction_overtaking", ["with an officer"], ["where a sign has ego give way"]),
+    (12, "vienna", "level_crossing_overtaking", ["a motorcycle"], []),
+    (13, "vienna", "emergency_vehicles", ["in time"], [""]),
+    (14, "de", "rail_side", ["tracks too far right"], ["on the left"]),
+    (23, "de", "keep_near_side", ["somebody was there a while ago"], []),
+    (23, "de", "keep_near_side", [], ["the middle of three, the right one empty"]),
+    (25, "de", "level_crossing_overtaking", ["past it"], ["from the warning sign on"]),
+]
+
+NO_LAW = [
+    (9, "de", "junction_overtaking"),
+    (11, "de", "straddling_lanes"),
+]
+
+
+def labels(book: str, name: str, accepts: bool) -> list[str]:
+    rule = next(one for one in read(book).rulebook.rules if one.name == name)
+    return [one.label for one in rule.examples if one.accepts is accepts]
+
+
+@pytest.mark.parametrize(("_finding", "book", "rule", "accepted", "rejected"), SHOWN)
+def test_examples_show_what_was_mended(_finding, book, rule, accepted, rejected):
+    assert set(accepted) <= set(labels(book, rule, accepts=True))
+    assert set(rejected) <= set(labels(book, rule, accepts=False))
+
+
+@pytest.mark.parametrize(("_finding", "book", "rule"), NO_LAW)
+def test_what_is_no_law_is_dropped_with_its_reason(_finding, book, rule):
+    rulebook = read(book).rulebook
+    assert rule not in {one.name for one in rulebook.rules}
+    assert [one.because for one in rulebook.remarks if one.name == rule and one.because]
