@@ -12,7 +12,7 @@ SHOWN = [
     (3, "de", "speed_limit", ["a divided road outside town"], ["a sign on a divided road"]),
     (3, "de", "speed_limit", ["two marked lanes each way outside town"], ["outside town"]),
     (3, "de", "speed_limit_advisory", ["a divided road"], ["two marked lanes each way"]),
-    (10, "de", "rail_priority", ["a tram that comes from the left, where the right goes first"], []),
+    (10, "de", "rail_priority", ["a tram where the right goes first"], []),
     (10, "de", "rail_priority", [], ["a tram that goes on where ego turns"]),
     (12, "vienna", "junction_overtaking", ["on a road with priority"], []),
     (12, "vienna", "junction_overtaking", ["with an officer"], ["where a sign has ego give way"]),
