@@ -1,6 +1,6 @@
-"""What readers of the statutes found wrong in the books stays mended: each finding has its examples.
+"""What readers of the statutes found wrong in the books stays mended.
 
-A row names the finding, the book, the rule, and the labels of examples that come out otherwise without
+A row names the finding, the book, the rule, and labels of examples that come out otherwise without
 the mend; ``test_books`` runs them. A rule that is no law in a country is not in its book.
 """
 
