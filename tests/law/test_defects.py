@@ -22,11 +22,25 @@ SHOWN = [
     (23, "de", "keep_near_side", ["somebody was there a while ago"], []),
     (23, "de", "keep_near_side", [], ["the middle of three, the right one empty"]),
     (25, "de", "level_crossing_overtaking", ["past it"], ["from the warning sign on"]),
+    (12, "fr", "junction_overtaking", ["on the road that has priority"], []),
+    (12, "fr", "junction_overtaking", ["an officer lets ego go"], ["before a give-way sign"]),
+    (19, "fr", "speed_limit", [], ["wet motorway with a sign of 110"]),
+    (19, "fr", "speed_limit_without_sight", ["50 km/h"], [""]),
+    (20, "fr", "roundabout_priority", ["without signs R415-5 holds"], []),
+    (21, "fr", "following_distance_heavy", [], ["a little faster, as measured"]),
+    (24, "gb", "crossing_overtaking", ["another one is nearer to the crossing"], []),
+    (24, "gb", "following_distance", ["icy, a second less than twenty"], ["icy"]),
+    (24, "gb", "heavy_vehicle_lanes", ["7.5 t"], ["goods"]),
+    (24, "gb", "closed_lane", ["stopped before it"], [""]),
+    (24, "gb", "red_light_at_level_crossings", ["waits"], [""]),
+    (25, "fr", "no_overtaking_sign", ["no sign"], ["all the way"]),
+    (25, "gb", "no_overtaking_sign", ["no sign"], [""]),
 ]
 
 NO_LAW = [
     (9, "de", "junction_overtaking"),
     (11, "de", "straddling_lanes"),
+    (11, "fr", "straddling_lanes"),
 ]
 
 
