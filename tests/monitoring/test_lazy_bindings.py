@@ -1,15 +1,19 @@
 """Bindings made only where a rule may not be kept: the same verdicts, far fewer choices."""
 
+import json
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.batch_verify import verify_chunk
+from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verify import verify
 from rulec.resource_limits import in_force
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.rulebooks import compile_here
 
 BOOK = """
@@ -113,3 +117,75 @@ def test_a_missing_value_is_missed_however_the_bindings_are_made(monkeypatch):
     monkeypatch.setattr("rulec.monitoring.bindings.MANY", 0)
     with pytest.raises(RulecError, match="R0504"):
         verify(trace, book)
+
+
+def eagerly(call):
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("rulec.monitoring.bindings.MANY", 10**9)
+        return call()
+
+
+def lazily(call):
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("rulec.monitoring.bindings.MANY", 0)
+        return call()
+
+
+UNKNOWN_TOO = st.fixed_dictionaries(
+    {},
+    optional={
+        "beside": per_object(st.sampled_from([True, False, UNKNOWN])),
+        "stopped": per_object(st.sampled_from([True, False, UNKNOWN])),
+        "wet": st.sampled_from([True, False, UNKNOWN]),
+        "gap": per_object(st.sampled_from([3, 7, Interval(4, 6), UNKNOWN])),
+    },
+)
+TOLD = st.sampled_from([None, ("beside", "stopped"), ("beside", "stopped", "behind", "wet", "gap")])
+
+
+@given(
+    st.lists(STATES | UNKNOWN_TOO, min_size=1, max_size=3),
+    st.lists(st.sampled_from(["car", "bus"]), min_size=4, max_size=4),
+    TOLD,
+    st.booleans(),
+)
+def test_verdicts_on_what_is_partly_known_are_those_of_all_bindings(book, states, kinds, told, cut):
+    objects = dict(zip(NAMES, kinds, strict=True))
+    ends = "cut" if cut else "complete"
+    trace = Trace("t", 1, objects, states, ends=ends, told=told)
+    assert lazily(lambda: verify(trace, book)) == eagerly(lambda: verify(trace, book))
+
+
+COMING_AND_GOING = st.lists(
+    st.tuples(
+        STATES | UNKNOWN_TOO,
+        st.dictionaries(st.sampled_from(NAMES), st.sampled_from(["car", "bus"]), min_size=3),
+    ),
+    min_size=1,
+    max_size=4,
+)
+
+
+def steps_of(book, layers, told, cut, again_at):
+    """What a monitor says, saved and restored on the way; and what the past would be."""
+    monitor, said = Monitor(book, told=told, cut=cut), []
+    for number, (state, objects) in enumerate(layers):
+        there = {
+            name: {item: x for item, x in value.items() if item in objects}
+            for name, value in state.items()
+            if isinstance(value, dict) and name != "behind"
+        }
+        if number == again_at:
+            monitor = Monitor.restore(book, json.loads(json.dumps(monitor.snapshot())))
+        so_far = monitor.step({**there, "wet": state.get("wet", False)}, objects)
+        said.append((so_far.verdict, dict(so_far.rules), so_far.changes))
+    past = None if cut else {about: n for about, n in monitor.past(objects).states.items() if n}
+    return said, monitor.violations, past
+
+
+@given(COMING_AND_GOING, TOLD, st.booleans(), st.integers(1, 4))
+def test_a_running_monitor_says_what_one_of_all_bindings_says(book, layers, told, cut, again_at):
+    def run():
+        return steps_of(book, layers, told, cut, again_at)
+
+    assert lazily(run) == eagerly(run)

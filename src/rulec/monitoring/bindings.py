@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
@@ -25,43 +25,56 @@ class Binding:
     last: int
 
 
-def bindings(
-    rule: CompiledRule,
-    vocabulary: Vocabulary,
-    objects: Mapping[str, str],
-    present: Mapping[str, tuple[int, int]],
-    n_states: int,
-) -> Iterator[Binding]:
-    """All bindings of a rule's variables to distinct objects of their types.
+@dataclass(frozen=True, slots=True)
+class Cast:
+    """The objects of a trace with their types, and in which of its states they are ``present``.
 
-    A binding counts on the stretch in which all its objects are present; one whose objects are
-    never present together is left out. A rule without variables has one binding, the empty one.
+    Those that have no stretch there are in all states. ``place`` is where they were read.
     """
-    names = [variable.name for variable in rule.variables]
-    types = [variable.type for variable in rule.variables]
-    for chosen in choices(types, objects, vocabulary, f"rule `{rule.name}`"):
-        binding = binding_of(dict(zip(names, chosen, strict=True)), present, n_states)
-        if binding.first <= binding.last:
-            yield binding
+
+    objects: Mapping[str, str]
+    vocabulary: Vocabulary
+    n_states: int
+    present: Mapping[str, tuple[int, int]]
+    place: SourceLocation | None = None
+
+    def bindings(self, rule: CompiledRule) -> Iterator[Binding]:
+        """All bindings of a rule's variables to distinct objects of their types.
+
+        A binding counts on the stretch in which all its objects are present; one whose objects are
+        never present together is left out. A rule without variables has one binding, the empty one.
+
+        Raises RulecError R0718 if there are more than the limit `choices`.
+        """
+        types = types_of(rule)
+        if len(types) > 1:
+            number = number_of_choices(types, self.objects, self.vocabulary)
+            CHOICES.within(number, self.place, f"rule `{rule.name}`")
+        names = [variable.name for variable in rule.variables]
+        for chosen in choices(types, self.objects, self.vocabulary):
+            binding = binding_of(dict(zip(names, chosen, strict=True)), self.present, self.n_states)
+            if binding.first <= binding.last:
+                yield binding
+
+    def has_many(self, types: Sequence[str]) -> bool:
+        """Whether the choices of objects for these types are too many to make them all."""
+        return len(types) > 2 and number_of_choices(types, self.objects, self.vocabulary) > MANY
 
 
-def check_choices(
-    rule: CompiledRule,
-    vocabulary: Vocabulary,
-    objects: Mapping[str, str],
-    place: SourceLocation | None,
-) -> None:
-    """Raise RulecError R0718 if a rule's bindings to a trace's objects are beyond the limit."""
-    types = [variable.type for variable in rule.variables]
-    if len(types) > 1:
-        number = number_of_choices(types, objects, vocabulary)
-        CHOICES.within(number, place, f"rule `{rule.name}`")
+def types_of(rule: CompiledRule) -> tuple[str, ...]:
+    """The types of a rule's variables."""
+    return tuple([variable.type for variable in rule.variables])
 
 
-def has_many(rule: CompiledRule, vocabulary: Vocabulary, objects: Mapping[str, str]) -> bool:
-    """Whether a rule's bindings are too many to make them all."""
-    types = [variable.type for variable in rule.variables]
-    return len(types) > 2 and number_of_choices(types, objects, vocabulary) > MANY
+def in_usual_order(chosen: Iterable[tuple[str, ...]], cast: Cast) -> list[tuple[str, ...]]:
+    """Choices of objects in the order in which all are made."""
+    return sorted(chosen, key=usual_order(cast))
+
+
+def usual_order(cast: Cast) -> Callable[[tuple[str, ...]], list[int]]:
+    """The key of that order."""
+    place_of = {item: place for place, item in enumerate(cast.objects)}
+    return lambda items: [place_of[item] for item in items]
 
 
 def binding_of(

@@ -7,156 +7,189 @@ machine, whoever the others are, no other is looked for. So a rule is bound vari
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from math import prod
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from heapq import merge
+from typing import TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import scale
 from rulec.diagnostics import RulecError
-from rulec.monitoring.bindings import Binding, binding_of, bindings, check_choices
-from rulec.monitoring.letter_reader import LetterReader
+from rulec.monitoring.bindings import (
+    Binding,
+    Cast,
+    binding_of,
+    in_usual_order,
+    types_of,
+    usual_order,
+)
+from rulec.monitoring.letter_reader import Digits, LetterReader
+from rulec.monitoring.uncertainty.idle_letters import IdleLetters
+from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.resource_limits import CHOICES
 from rulec.vocabulary.vocabulary_model import choices, fitting_objects
 
+ReadBits: TypeAlias = Callable[[Read | NumberRead, Mapping[str, str], tuple[int, int]], Digits]
+"""The digits, as bits, that a read may have of chosen objects in the states of a stretch.
 
-def doubtful_bindings(rule: CompiledRule, reader: LetterReader, n_states: int) -> Iterator[Binding]:
+Raises RulecError R0504.
+"""
+
+
+def doubtful_bindings(
+    rule: CompiledRule,
+    cast: Cast,
+    read: ReadBits,
+    idle: IdleLetters,
+    begun: Collection[tuple[str, ...]] = (),
+) -> Iterator[Binding]:
     """The bindings of a rule that may not be kept, and perhaps others, in the usual order.
 
-    Where something cannot be read it is for whoever reads all of them to say so: then all are
-    made.
+    Those that have ``begun`` before the first state are among them. Where something cannot be read
+    it is for whoever reads all of them to say so: then all are made.
 
     Raises RulecError R0718 if even of these more than the limit `choices` have to be looked at.
     """
-    search = _Search(rule, reader, n_states)
+    search = _Search(rule, cast, read, idle)
     try:
         search.read_all()
     except RulecError:
-        vocabulary = reader.rulebook.vocabulary
-        check_choices(rule, vocabulary, reader.objects, reader.place)
-        yield from bindings(rule, vocabulary, reader.objects, reader.present, n_states)
+        yield from cast.bindings(rule)
         return
-    yield from search.bindings()
+    names = [variable.name for variable in rule.variables]
+    for chosen in _in_order(search.choices(), begun, cast):
+        binding = binding_of(dict(zip(names, chosen, strict=True)), cast.present, cast.n_states)
+        if binding.first <= binding.last:
+            yield binding
+
+
+def known_bits(reader: LetterReader, rule: CompiledRule) -> ReadBits:
+    """The digits, as bits, of states in which all is known."""
+
+    def read_bits(
+        read: Read | NumberRead, chosen: Mapping[str, str], stretch: tuple[int, int]
+    ) -> Digits:
+        digits = reader.digits(read, chosen, stretch, rule.name)
+        return 1 << digits if isinstance(digits, int) else [1 << digit for digit in digits]
+
+    return read_bits
+
+
+def _in_order(
+    found: Iterator[tuple[str, ...]], begun: Collection[tuple[str, ...]], cast: Cast
+) -> Iterator[tuple[str, ...]]:
+    if not begun:
+        return found
+    both = merge(found, in_usual_order(begun, cast), key=usual_order(cast))
+    return iter(dict.fromkeys(both))
 
 
 class _Search:
-    """A search through the choices of objects, one variable after the other."""
+    """A search through the choices of objects, one variable after the other.
 
-    def __init__(self, rule: CompiledRule, reader: LetterReader, n_states: int) -> None:
-        self._rule, self._reader, self._n_states = rule, reader, n_states
+    Of every object and of all chosen ones together only those states are looked at in which what is
+    known of fewer of them has not shown that nothing is done.
+    """
+
+    def __init__(self, rule: CompiledRule, cast: Cast, read: ReadBits, idle: IdleLetters) -> None:
+        self._rule, self._cast, self._read, self._idle = rule, cast, read, idle
         self._variables = [variable.name for variable in rule.variables]
-        self._reads = [(read, _variables_of(read)) for read in rule.machine.reads]
-        self._idle = IdleReads(rule.machine)
+        self._reads = [(own, _variables_of(own)) for own in rule.machine.reads]
+        self._anything = tuple([(1 << own.size) - 1 for own in rule.machine.reads])
+        self._columns: dict[tuple[int, tuple[str, ...]], tuple[Digits, int]] = {}
+        self._busy: dict[tuple[tuple[int, ...], tuple[int, ...]], bool] = {}
         self._most = CHOICES.value()
         self._tried = 0
 
     def read_all(self) -> None:
-        """Read everything that any choice reads. Raises RulecError for what is not there."""
+        """Read whatever any choice reads and a state may lack. Raises RulecError."""
         type_of = {variable.name: variable.type for variable in self._rule.variables}
-        vocabulary, objects = self._reader.rulebook.vocabulary, self._reader.objects
-        for _, variables in self._reads:
-            for chosen in choices([type_of[x] for x in variables], objects, vocabulary):
-                self._is_idle(dict(zip(variables, chosen, strict=True)))
+        declarations, objects = self._cast.vocabulary.declarations, self._cast.objects
+        for number, (read, variables) in enumerate(self._reads):
+            if all(declarations[name].default is not None for name in names_of_read(read)):
+                continue
+            types = [type_of[variable] for variable in variables]
+            for chosen in choices(types, objects, self._cast.vocabulary):
+                self._column(number, dict(zip(variables, chosen, strict=True)))
 
-    def bindings(self) -> Iterator[Binding]:
-        """Those that may not be kept."""
-        vocabulary = self._reader.rulebook.vocabulary
-        fitting = [
-            [
-                item
-                for item in fitting_objects(variable.type, self._reader.objects, vocabulary)
-                if not self._is_idle({variable.name: item})
-            ]
-            for variable in self._rule.variables
-        ]
+    def choices(self) -> Iterator[tuple[str, ...]]:
+        """Those of which some state does something to the rule's machine."""
+        cast = self._cast
+        everywhere = range(cast.n_states)
+        fitting = []
+        for variable, kind in zip(self._variables, types_of(self._rule), strict=True):
+            busy = {
+                item: frozenset(self._busy_states({variable: item}, everywhere))
+                for item in fitting_objects(kind, cast.objects, cast.vocabulary)
+            }
+            fitting.append({item: states for item, states in busy.items() if states})
         if all(fitting):
-            yield from self._extended({}, fitting)
+            yield from self._extended({}, frozenset(everywhere), fitting)
 
     def _extended(
-        self, chosen: Mapping[str, str], fitting: Sequence[Sequence[str]]
-    ) -> Iterator[Binding]:
+        self,
+        chosen: Mapping[str, str],
+        states: frozenset[int],
+        fitting: Sequence[Mapping[str, frozenset[int]]],
+    ) -> Iterator[tuple[str, ...]]:
         if len(chosen) == len(fitting):
-            yield self._binding(chosen)
+            yield tuple(chosen.values())
             return
         variable = self._variables[len(chosen)]
-        for item in fitting[len(chosen)]:
+        for item, own in fitting[len(chosen)].items():
             if item in chosen.values():
                 continue
             self._tried += 1
             if self._tried > self._most:
-                whose = f"rule `{self._rule.name}`"
-                raise CHOICES.exceeded(self._reader.place, whose)
+                raise CHOICES.exceeded(self._cast.place, f"rule `{self._rule.name}`")
             longer = {**chosen, variable: item}
-            if not self._is_idle(longer):
-                yield from self._extended(longer, fitting)
+            both = self._busy_states(longer, sorted(states & own))
+            if both:
+                yield from self._extended(longer, frozenset(both), fitting)
 
-    def _binding(self, chosen: Mapping[str, str]) -> Binding:
-        return binding_of(chosen, self._reader.present, self._n_states)
+    def _busy_states(self, chosen: Mapping[str, str], states: Sequence[int]) -> list[int]:
+        """Those of some states in which the rule may not be kept, whoever the others are."""
+        own = binding_of(chosen, self._cast.present, self._cast.n_states)
+        states = [state for state in states if own.first <= state <= own.last]
+        known = tuple(
+            [n for n, (_, variables) in enumerate(self._reads) if chosen.keys() >= set(variables)]
+        )
+        parts: list[Sequence[int]] = []
+        for number in known:
+            column, first = self._column(number, chosen)
+            if isinstance(column, int):
+                parts.append([column] * len(states))
+            else:
+                parts.append([column[state - first] for state in states])
+        cubes = zip(*parts, strict=True) if parts else [()] * len(states)
+        return [
+            state for state, cube in zip(states, cubes, strict=True) if self._is_busy(known, cube)
+        ]
 
-    def _is_idle(self, chosen: Mapping[str, str]) -> bool:
-        """Whether the rule is kept for these objects, whoever the others are."""
-        own = self._binding(chosen)
-        if own.first > own.last:
-            return True  # they never meet
-        known, places = [], np.zeros(own.last - own.first + 1, dtype=np.intp)
-        stride = 1
-        for number, (read, variables) in enumerate(self._reads):
-            if chosen.keys() >= set(variables):
-                digits = self._reader.digits(read, chosen, (own.first, own.last), self._rule.name)
-                places += stride * np.asarray(digits, dtype=np.intp)
-                stride *= read.size
-                known.append(number)
-        return bool(self._idle.of(tuple(known))[places].all())
+    def _column(self, number: int, chosen: Mapping[str, str]) -> tuple[Digits, int]:
+        """What a read may be wherever its own objects are, and the first state of these."""
+        read, variables = self._reads[number]
+        key = number, tuple([chosen[variable] for variable in variables])
+        if key not in self._columns:
+            about = dict(zip(variables, key[1], strict=True))
+            own = binding_of(about, self._cast.present, self._cast.n_states)
+            met = own.first <= own.last
+            digits = self._read(read, about, (own.first, own.last)) if met else []
+            self._columns[key] = digits, own.first
+        return self._columns[key]
+
+    def _is_busy(self, known: tuple[int, ...], digits: tuple[int, ...]) -> bool:
+        """Whether some letter with these digits, as bits, of known reads is not idle."""
+        key = known, digits
+        busy = self._busy.get(key)
+        if busy is None:
+            cube = list(self._anything)
+            for number, own in zip(known, digits, strict=True):
+                cube[number] = own
+            busy = self._busy[key] = not self._idle.of_cube(cube)
+        return busy
 
 
 def _variables_of(read: Read | NumberRead) -> tuple[str, ...]:
     about = read if isinstance(read, Read) else scale(read)
     return tuple(dict.fromkeys(about.variables))
-
-
-class IdleReads:
-    """What has to be read to see that a letter does nothing to a machine.
-
-    Such letters lead the machine to where they keep it, with every word of them kept.
-    """
-
-    def __init__(self, machine: MealyMonitor) -> None:
-        self._sizes = [read.size for read in machine.reads]
-        assert prod(self._sizes) == len(machine.letters)
-        home = _idle_classes(machine)
-        # What cannot be is never idle, lest nobody notice it.
-        self._idle = np.array([n != IMPOSSIBLE and n in home for n in machine.letters])
-        self._known: dict[tuple[int, ...], NDArray[np.bool_]] = {}
-
-    def of(self, known: tuple[int, ...]) -> NDArray[np.bool_]:
-        """Whether all letters with some digits are idle, by the place that these digits make.
-
-        ``known`` are the numbers of the reads whose digits they are, in ascending order, the first
-        of which counts once.
-        """
-        if known not in self._known:
-            # The first read's digits are next to each other, so its axis is the last one.
-            letters = self._idle.reshape(self._sizes[::-1])
-            n_reads = len(self._sizes)
-            others = [n_reads - 1 - n for n in range(n_reads) if n not in known]
-            self._known[known] = letters.all(axis=tuple(others)).reshape(-1)
-        return self._known[known]
-
-
-def _idle_classes(machine: MealyMonitor) -> set[int]:
-    """The largest set of letter classes that keep the machine at one of its states."""
-    classes = range(len(machine.successors[0]))
-    best: set[int] = set()
-    for home in dict.fromkeys([0, *machine.successors[0]]):
-        staying = {
-            n
-            for n in classes
-            if machine.successors[0][n] == machine.successors[home][n] == home
-            and machine.outputs[0][n]
-            and machine.outputs[home][n]
-        }
-        best = max(best, staying, key=len)
-    return best

@@ -223,6 +223,15 @@ class CarriedState:
         """The states in which a machine may be."""
         return self.possible.get(about) or frozenset({self.states.get(about, 0)})
 
+    def begun(self, rule: str) -> set[tuple[str, ...]]:
+        """The objects for which a rule's machine may be anywhere but where it starts."""
+        return {
+            about[1]
+            for about in (*self.states, *self.possible, *self.perhaps_settled)
+            if about[0] == rule
+            and (about in self.perhaps_settled or self.starts(about) != frozenset({0}))
+        }
+
     @property
     def doubtful_rules(self) -> frozenset[str]:
         """The rules of which not all is known."""

@@ -11,7 +11,7 @@ from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.monitoring.axiom_violations import check_counting_axioms
-from rulec.monitoring.bindings import Binding, bindings, check_choices, has_many
+from rulec.monitoring.bindings import Binding, Cast, types_of
 from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
@@ -67,13 +67,15 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
 def _bindings(rule: CompiledRule, trace: Trace, reader: LetterReader) -> Iterator[Binding]:
     """A rule's bindings; of many only those that may not be kept."""
     vocabulary = reader.rulebook.vocabulary
-    if has_many(rule, vocabulary, trace.objects):
-        # numpy, a tenth of a second: only where there are many.
-        from rulec.monitoring.lazy_bindings import doubtful_bindings
+    cast = Cast(trace.objects, vocabulary, len(trace.states), trace.present, trace.place)
+    if not cast.has_many(types_of(rule)):
+        return cast.bindings(rule)
+    # numpy, a tenth of a second: only where there are many.
+    from rulec.monitoring.lazy_bindings import doubtful_bindings, known_bits
+    from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 
-        return doubtful_bindings(rule, reader, len(trace.states))
-    check_choices(rule, vocabulary, trace.objects, trace.place)
-    return bindings(rule, vocabulary, trace.objects, trace.present, len(trace.states))
+    idle = uncertain_machine(rule, None).idle
+    return doubtful_bindings(rule, cast, known_bits(reader, rule), idle)
 
 
 def letter_reader_of(

@@ -20,7 +20,7 @@ from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.uncertain.uncertain_verdicts import uncertain_verdicts
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
-from rulec.monitoring.bindings import has_many
+from rulec.monitoring.bindings import Cast, types_of
 from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import (
@@ -218,7 +218,8 @@ def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
     for rule in rules.rules:
         check_step(rule, exact_step(trace.step_s))
     check_objects(trace.objects, rules.vocabulary)
-    if any(has_many(rule, rules.vocabulary, trace.objects) for rule in rules.rules):
+    cast = Cast(trace.objects, rules.vocabulary, len(trace.states), trace.present)
+    if any(cast.has_many(types_of(rule)) for rule in rules.rules):
         raise UnencodableError
     return rules
 

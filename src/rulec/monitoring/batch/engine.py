@@ -15,7 +15,7 @@ from rulec.monitoring.batch.verdict_columns import (
     VerdictColumns,
     verdict_columns,
 )
-from rulec.monitoring.bindings import bindings
+from rulec.monitoring.bindings import Cast
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.trace.trace_columns import TraceCells, TraceColumns
 
@@ -48,7 +48,8 @@ def rule_bindings(
     traces: TraceColumns | TraceCells, rulebook: CompiledRulebook
 ) -> list[RuleBinding]:
     """All bindings of rules to objects, in the order in which verdicts list violations."""
-    present, n_steps = traces.present, traces.layout.n_steps
+    present = traces.present
+    cast = Cast(traces.objects, rulebook.vocabulary, traces.layout.n_steps, present)
     return [
         # All traces have the steps that ``present`` speaks of.
         RuleBinding(
@@ -58,7 +59,7 @@ def rule_bindings(
             None if present.keys().isdisjoint(binding.objects.values()) else binding.last,
         )
         for rule in rulebook.rules
-        for binding in bindings(rule, rulebook.vocabulary, traces.objects, present, n_steps)
+        for binding in cast.bindings(rule)
     ]
 
 

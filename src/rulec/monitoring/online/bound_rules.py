@@ -1,17 +1,22 @@
-"""Rules bound to the objects that are present."""
+"""Rules bound to the objects that are present.
+
+Rules that have very many choices of these are bound to those alone for which something has
+happened (see ``waking``): for all others each is where it starts.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics import SourceLocation
+from rulec.diagnostics import SourceLocation, named
 from rulec.logic.free_names import names_in
 from rulec.monitoring.axiom_violations import check_counting_axioms
+from rulec.monitoring.bindings import Cast, in_usual_order
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
@@ -19,6 +24,7 @@ from rulec.monitoring.online.group_letters import GroupLetters
 from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups
 from rulec.monitoring.state_validation import check_state, has_partial_values
+from rulec.resource_limits import CHOICES
 from rulec.trace import State
 from rulec.vocabulary import Quantity
 from rulec.vocabulary.vocabulary_model import choices
@@ -28,6 +34,11 @@ if TYPE_CHECKING:
     from rulec.monitoring.online.partial_states import PartialStateReader
     from rulec.monitoring.online.uncertain_steps import Edge
     from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters
+
+Awake: TypeAlias = Mapping[tuple[str, ...], Collection[Items]]
+"""Choices of objects by the types of variables."""
+
+NONE_AWAKE: Awake = {}
 
 Letters: TypeAlias = list[int]
 """For each binding of each group, one after the other, the letter that it reads."""
@@ -62,10 +73,17 @@ class BoundRule:
 
 
 class BoundRules:
-    """Rules bound to the present objects, whose types the vocabulary knows."""
+    """Rules bound to the present objects, whose types the vocabulary knows.
+
+    Those of ``lazy`` groups are bound to the choices of objects that are ``awake``, by types.
+    """
 
     def __init__(
-        self, rulebook: CompiledRulebook, groups: RuleGroups, objects: Mapping[str, str]
+        self,
+        rulebook: CompiledRulebook,
+        groups: RuleGroups,
+        objects: Mapping[str, str],
+        awake: Awake = NONE_AWAKE,
     ) -> None:
         self.objects = dict(objects)
         self.groups = groups
@@ -81,11 +99,19 @@ class BoundRules:
         self._partial: dict[KnownState, Letters] = {}
         self._letters: BoundLetters = {}
         self._readers: dict[tuple[str, ...], GroupLetters | None] = {}
+        self.lazy: list[RuleGroup] = []
+        self._awake: dict[tuple[str, ...], frozenset[Items]] = {}
+        cast = Cast(self.objects, rulebook.vocabulary, 1, {})
         self._bindings: list[tuple[RuleGroup, tuple[Items, ...]]] = []
         by_name: dict[str, BoundRule] = {}
         end = 0
         for group in groups.groups:
-            bindings = tuple(choices(group.types, self.objects, rulebook.vocabulary))
+            if cast.has_many(group.types):
+                self.lazy.append(group)
+                bindings = _chosen(group, cast, awake)
+                self._awake[group.types] = frozenset(bindings)
+            else:
+                bindings = tuple(choices(group.types, self.objects, rulebook.vocabulary))
             begin, end = end, end + len(bindings)
             for number, prepared in enumerate(group.rules):
                 places = slice(begin, end)
@@ -94,6 +120,35 @@ class BoundRules:
                 self._bindings.append((group, bindings))
         self.rules = tuple([by_name[prepared.name] for prepared in groups.rules])
         self.hard = tuple([rule.name for rule in rulebook.rules if rule.strength == "hard"])
+
+    def has(self, waking: Awake) -> bool:
+        """Whether these choices of objects are all bound."""
+        return all(self._awake[types].issuperset(own) for types, own in waking.items())
+
+    def waking(self, state: State, number: int, place: SourceLocation | None) -> Awake:
+        """The choices of objects of lazy groups to whose rules a state may do something.
+
+        Raises RulecError as ``read`` does, R0718 if they are too many.
+        """
+        # numpy, a tenth of a second, is loaded only where there are many choices.
+        from rulec.monitoring.lazy_bindings import doubtful_bindings, known_bits
+
+        name, rulebook = f"state {number}", self._rulebook
+        check_state(state, self.objects, rulebook.vocabulary, name, place)
+        partial = None
+        if self.groups.is_partial or has_partial_values(state):
+            partial = self._partial_state(state, (name, place))
+        reader = LetterReader((state,), rulebook, name.format, place=place, objects=self.objects)
+        cast = Cast(self.objects, rulebook.vocabulary, 1, {}, place)
+        found: dict[tuple[str, ...], dict[Items, None]] = {}
+        for group in self.lazy:
+            own = found.setdefault(group.types, {})
+            for prepared in group.rules:
+                rule = prepared.rule
+                bits = partial.bits_of(prepared) if partial else known_bits(reader, rule)
+                bound = doubtful_bindings(rule, cast, bits, prepared.idle)
+                own.update((tuple(binding.objects.values()), None) for binding in bound)
+        return found
 
     def read(
         self, state: State, number: int, place: SourceLocation | None
@@ -184,3 +239,9 @@ class BoundRules:
                 inexact = {number for number, (_, is_exact) in enumerate(classes) if not is_exact}
                 letters.append(group.letter(tuple([own for own, _ in classes]), inexact))
         return letters, is_partial
+
+
+def _chosen(group: RuleGroup, cast: Cast, awake: Awake) -> tuple[Items, ...]:
+    found = awake.get(group.types, ())
+    CHOICES.within(len(found), None, f"rule {named([own.name for own in group.rules])}")
+    return tuple(in_usual_order(found, cast))

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import msgspec
 
-from rulec.monitoring.online.bound_rules import BoundRules, Letters
+from rulec.monitoring.online.bound_rules import Awake, BoundRules, Letters
+from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import (
     FourValued,
     RunningVerdict,
@@ -206,6 +207,21 @@ def carry_over(
                     ended.append(change)
         entered[prepared.name] = [known.get(items, prepared.start) for items in after.bindings]
     return entered, ended
+
+
+def awake(current: MonitorState, objects: Mapping[str, str]) -> Awake:
+    """The choices of objects, if all are still there, for which a rule is not where it starts."""
+    bound_rules = current.bound_rules
+    stayed = {name for name, kind in bound_rules.objects.items() if objects.get(name) == kind}
+    found: dict[tuple[str, ...], set[Items]] = {}
+    for own in bound_rules.rules:
+        if len(own.group.types) > 2:
+            found.setdefault(own.group.types, set()).update(
+                items
+                for items, edge in zip(own.bindings, own.edges(current.nodes), strict=True)
+                if stayed.issuperset(items) and not own.prepared.is_at_start(edge)
+            )
+    return found
 
 
 def _at_the_end(verdict: RunningVerdict) -> RunningVerdict:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
 from rulec.monitoring.bindings import Binding
+from rulec.monitoring.lazy_bindings import ReadBits
 from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.prepared_rule import PreparedRule
@@ -37,6 +38,10 @@ class PartialStateReader:
         self._reader = PossibleLetters(
             trace, rulebook, rulebook.vocabulary, lambda _: name, bound=bound
         )
+
+    def bits_of(self, prepared: PreparedRule) -> ReadBits:
+        """A reader of the digits, as bits, of a rule's reads one by one."""
+        return self._reader.bits_of(prepared.rule)
 
     def letter_class(self, prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:
         """The classes that a rule may read of objects, and whether no more are said than are.

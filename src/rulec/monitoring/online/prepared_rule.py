@@ -21,6 +21,7 @@ from rulec.monitoring.online.four_valued import (
     FourValued,
     LetterClass,
     MonitorEdge,
+    RunningVerdict,
     linked_edges,
 )
 from rulec.monitoring.online.letter_walk import LetterWalk, WalkedRead
@@ -37,6 +38,7 @@ from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
     from rulec.monitoring.online.uncertain_steps import Edge, UncertainSteps
+    from rulec.monitoring.uncertainty.idle_letters import IdleLetters
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +69,24 @@ class PreparedRule:
         from rulec.monitoring.online.uncertain_steps import UncertainSteps
 
         return UncertainSteps(of_running_words(self.rule.machine), self.edges)
+
+    @cached_property
+    def idle(self) -> IdleLetters:
+        """The letters that leave the monitor where it starts, and its verdict as it was."""
+        # numpy, as above
+        from rulec.monitoring.uncertainty.idle_letters import IdleLetters
+
+        steps = self.uncertain
+
+        def are_idle(classes: int) -> bool:
+            letters = steps.letter_class(classes)
+            return letters is not None and self.is_at_start(steps.after(self.start, letters))
+
+        return IdleLetters(steps.classes.diagram, are_idle)
+
+    def is_at_start(self, edge: Edge) -> bool:
+        """Whether whatever comes behind an edge is as if it were the first."""
+        return _ends(edge) == _ends(self.start)
 
     @cached_property
     def _strides(self) -> tuple[int, ...]:
@@ -183,6 +203,11 @@ class PreparedRule:
             frozenset([*own.values, MISSING, UNKNOWN]) if isinstance(own, Enumeration) else None
             for own in declared
         ]
+
+
+def _ends(edge: Edge) -> tuple[object, RunningVerdict]:
+    states = (edge.state,) if isinstance(edge, MonitorEdge) else edge.states
+    return states, edge.verdict
 
 
 class _Masks(dict[Any, int]):

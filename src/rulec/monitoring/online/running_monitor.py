@@ -17,6 +17,7 @@ from rulec.monitoring.online.monitor_state import (
     MonitorState,
     SoFar,
     VerdictChange,
+    awake,
     carry_over,
     initial_state,
     take_step,
@@ -185,9 +186,17 @@ class Monitor:
         is_full = bound_rules.groups.cache_size.n > MOST_CACHED
         if is_full or not same_objects:
             groups = bound_rules.groups.without_cache() if is_full else bound_rules.groups
-            bound_rules, cache = BoundRules(self._judged, groups, objects), TransitionCache()
+            bound_rules = BoundRules(self._judged, groups, objects, awake(current, objects))
+            cache = TransitionCache()
         if type(state) is not dict and not isinstance(state, Mapping):
             raise _no_object(f"state {number}", "names and values", place)
+        if bound_rules.lazy:
+            waking = bound_rules.waking(state, number, place)
+            if not bound_rules.has(waking):
+                before, groups = awake(current, objects), bound_rules.groups
+                every = {types: {*own, *before.get(types, ())} for types, own in waking.items()}
+                bound_rules = BoundRules(self._judged, groups, objects, every)
+                cache = TransitionCache()
         letters, known = bound_rules.read(state, number, place)
         after, changes = take_step(current, bound_rules, letters)
         if current.inexact or bound_rules.groups.cache_size.is_inexact:
@@ -216,7 +225,8 @@ class Monitor:
         current = self._now[0]
         if self._cut:
             raise ValueError("it is unknown what was before")
-        bound_rules = BoundRules(self._judged, current.bound_rules.groups, objects)
+        begun = awake(current, objects)
+        bound_rules = BoundRules(self._judged, current.bound_rules.groups, objects, begun)
         edges, ended = carry_over(current.bound_rules, current.nodes, bound_rules)
         states, settled = {}, set()
         possible: dict[RuleFor, frozenset[int]] = {}

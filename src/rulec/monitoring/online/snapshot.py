@@ -15,8 +15,10 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.logic.codec import number_from_data
+from rulec.monitoring.bindings import types_of
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.bound_rules import BoundRules
+from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import FourValued, MonitorEdge, VerdictRange
 from rulec.monitoring.online.monitor_state import (
     MonitorState,
@@ -203,7 +205,8 @@ def restored(
     """
     try:
         check_objects(saved.objects, rulebook.vocabulary)
-        bound_rules = BoundRules(rulebook, groups, saved.objects)
+        awake = _saved_choices(saved, rulebook)
+        bound_rules = BoundRules(rulebook, groups, saved.objects, awake)
         if saved.states == 0 and not saved.objects and not saved.violations:
             return -1, initial_state(bound_rules), []
         edges = _edges(saved, bound_rules)
@@ -219,6 +222,23 @@ def restored(
     if not known >= set(saved.inexact):
         raise _refused("this saved monitor is damaged", place)
     return saved.states - 1, with_inexact(current, frozenset(saved.inexact)), violations
+
+
+def _saved_choices(
+    saved: SavedMonitor, rulebook: CompiledRulebook
+) -> dict[tuple[str, ...], set[Items]]:
+    """The choices of objects that a saved monitor tells of. Raises ValueError for what is none."""
+    types = {rule.name: types_of(rule) for rule in rulebook.rules}
+    found: dict[tuple[str, ...], set[Items]] = {}
+    for rule in saved.rules:
+        for binding in rule.bindings:
+            own = types[rule.rule]
+            kinds = [saved.objects[item] for item in binding.objects]
+            fit = map(rulebook.vocabulary.is_subtype, kinds, own)
+            if not len(own) == len(kinds) == len(set(binding.objects)) or not all(fit):
+                raise ValueError
+            found.setdefault(own, set()).add(binding.objects)
+    return found
 
 
 def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[Edge]]:

@@ -31,6 +31,7 @@ from rulec.monitoring.uncertainty.dependence import (
     PossibleAlternative,
     RunPairs,
 )
+from rulec.monitoring.uncertainty.idle_letters import IdleLetters, idle_letters
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, names_of_read
@@ -74,6 +75,11 @@ class UncertainMachine:
         self._runs = RunPairs(machine, self.classes)
         self._reasons: dict[object, OpenReasons] = {}
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
+
+    @cached_property
+    def idle(self) -> IdleLetters:
+        """The letters that do nothing to it, found when they are first asked for."""
+        return idle_letters(self.monitor, self.classes.diagram)
 
     def impossible_at(self, word: PossibleWord) -> int | None:
         """The index of a state that has no possible letter."""

@@ -13,7 +13,8 @@ from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED
-from rulec.monitoring.bindings import Binding, binding_of, bindings, check_choices
+from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
+from rulec.monitoring.lazy_bindings import doubtful_bindings
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.state_letters.possible_letters import (
     PossibleLetters,
@@ -97,9 +98,12 @@ class UncertainRun:
     def _answers(
         self, rule: CompiledRule, machine: UncertainMachine
     ) -> Iterator[Violation | OpenVerdict]:
-        trace, declared = self.trace, self.vocabulary
-        check_choices(rule, declared, trace.objects, trace.place)
-        for binding in bindings(rule, declared, trace.objects, trace.present, len(trace.states)):
+        trace, bound = self.trace, None
+        cast = Cast(trace.objects, self.vocabulary, len(trace.states), trace.present, trace.place)
+        if cast.has_many(types_of(rule)):
+            read, begun = self._letters.bits_of(rule), self.past.begun(rule.name)
+            bound = doubtful_bindings(rule, cast, read, machine.idle, begun)
+        for binding in bound or cast.bindings(rule):
             answer = self._answer(rule, machine, binding)
             if answer is not None:
                 yield answer

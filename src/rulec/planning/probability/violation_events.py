@@ -14,7 +14,7 @@ from rulec.automata.outcome_machine import KEPT
 from rulec.logic.formula import Count, Formula
 from rulec.logic.free_names import names_in, variables_of
 from rulec.logic.kleene import holds
-from rulec.monitoring.bindings import Binding, bindings
+from rulec.monitoring.bindings import Binding, Cast
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.suppositions import spelled_out
@@ -161,8 +161,9 @@ class ViolationEvents:
 
     def _bindings(self, rule: CompiledRule) -> Iterator[Binding]:
         """Bindings whose objects' predictions can come true together."""
-        vocabulary, objects = self._book.vocabulary, self._words.objects
-        for binding in bindings(rule, vocabulary, objects, self._words.present, len(self._states)):
+        words = self._words
+        cast = Cast(words.objects, self._book.vocabulary, len(self._states), words.present)
+        for binding in cast.bindings(rule):
             who = [self._path.predicted[name] for name in binding.objects.values()]
             chosen = {(predicted.of, predicted.number) for predicted in who}
             if len({of for of, _ in chosen}) == len(chosen):

@@ -9,12 +9,14 @@ from fractions import Fraction
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.monitoring.axiom_violations import check_counting_axioms
-from rulec.monitoring.bindings import Binding, bindings
+from rulec.monitoring.bindings import Binding
+from rulec.monitoring.lazy_bindings import known_bits
 from rulec.monitoring.letter_reader import LetterReader, present_in
 from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
 from rulec.monitoring.verify import run
+from rulec.planning.product.graph_bindings import graph_bindings
 from rulec.planning.product.graph_instance import GraphInstance
 from rulec.planning.product.possible_instances import PossibleNodes
 from rulec.rulebook.rulebook_model import Strength
@@ -72,7 +74,9 @@ def instances(
             result += possible.instances(rule, past)
             continue
         alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
-        for binding in bindings(rule, vocabulary, graph.objects, graph.present, len(graph.states)):
+        for binding in graph_bindings(
+            rule, graph, vocabulary, [known_bits(column, rule) for column in columns], past
+        ):
             letters = tuple(
                 columns[layer].word(rule, binding.objects, 0, len(graph.states[layer]) - 1)
                 for layer in range(binding.first, binding.last + 1)

@@ -14,7 +14,7 @@ from typing import TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
 from rulec.logic.free_names import names_in
-from rulec.monitoring.bindings import Binding, bindings
+from rulec.monitoring.bindings import Binding
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.state_validation import partial_names
 from rulec.monitoring.uncertainty.state_letters.possible_letters import (
@@ -28,6 +28,7 @@ from rulec.monitoring.uncertainty.suppositions import (
 )
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
 from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged
+from rulec.planning.product.graph_bindings import graph_bindings
 from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine
 from rulec.trace import Trace, TraceGraph
 
@@ -110,9 +111,9 @@ class PossibleNodes:
         if self.untold(rule, past):
             return []
         graph, machine = self._graph, uncertain_machine(rule, None)
-        n_layers = len(graph.states)
+        read = [letters.bits_of(rule) for letters in self._letters]
         alike: dict[_Alike, list[Binding]] = {}
-        for binding in bindings(rule, self._vocabulary, graph.objects, graph.present, n_layers):
+        for binding in graph_bindings(rule, graph, self._vocabulary, read, past):
             about = (rule.name, tuple(binding.objects.values()))
             if binding.first == 0 and about in past.settled:
                 continue

@@ -1,8 +1,8 @@
 """The choices of objects of all traces for which a rule may be anything but kept.
 
 Most choices need no machine: in every state a few reads already show that the letter does nothing
-(see ``IdleLetters``), whatever the other reads are. So pairs of objects are made only where both
-of them have something to say in one state.
+(it is idle, see ``idle_letters``), whatever the other reads are. So pairs of objects are made only
+where both of them have something to say in one state.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
 
 def _are_idle(rule: StackedRule, numbers: Sequence[Numbers], n_spots: int) -> NDArray[np.bool_]:
     letters = rule.letters.numbers(numbers)
-    flags = rule.idle.of(rule.letters)
+    flags = rule.idle_flags()
     return flags.take(np.broadcast_to(np.asarray(letters), (n_spots,)))
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
-from rulec.automata.outcome_machine import KEPT, VIOLATED
+from rulec.automata.outcome_machine import VIOLATED
 from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import holds
@@ -93,7 +93,7 @@ class StackedRule:
             )
         )
         self.is_simple = _is_simple(self)
-        self.idle = IdleLetters(machine)
+        self._idle_flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
         self.letters = self._no_letters()
         self._answers: dict[bytes, Answer] = {}
         self._bytes = 0
@@ -105,7 +105,15 @@ class StackedRule:
         """Forget the sets that have been met, if they are many; their numbers are no more."""
         if len(self.letters.sets) > MOST_SETS:
             self.letters, self._answers = self._no_letters(), {}
-            self.idle.flags = np.zeros(0, dtype=bool)
+            self._idle_flags = np.zeros(0, dtype=bool)
+
+    def idle_flags(self) -> NDArray[np.bool_]:
+        """Whether each set of letters that has been met is idle."""
+        sets = self.letters.sets
+        if len(self._idle_flags) < len(sets):
+            more = [self.machine.idle.of_classes(x) for x in sets[len(self._idle_flags) :]]
+            self._idle_flags = np.concatenate([self._idle_flags, np.array(more, dtype=bool)])
+        return self._idle_flags
 
     def answer(self, word: NDArray[np.intp]) -> Answer:
         """What a word of numbers of letter sets comes to."""
@@ -137,39 +145,6 @@ class StackedRule:
                 if here == before:
                     break  # the same again, however often
         return Answer(step.best, step.worst)
-
-
-class IdleLetters:
-    """The letters that lead a machine to where they keep it, with every word of them kept.
-
-    So what a word of nothing else comes to needs no run, nor does any part of it.
-    """
-
-    def __init__(self, machine: UncertainMachine) -> None:
-        self._monitor = monitor = machine.monitor
-        self.flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
-        letters = np.array(machine.machine.letters)
-        weights = np.bincount(letters[letters != IMPOSSIBLE], minlength=machine.machine.n_classes)
-        singles = range(len(weights))
-        homes = dict.fromkeys([monitor.start])
-        homes |= dict.fromkeys(monitor.step(monitor.start, 1 << n).states for n in singles)
-        worth = {
-            home: sum(int(weights[n]) for n in singles if self._stays(home, 1 << n))
-            for home in homes
-        }
-        self._home = max(worth, key=worth.__getitem__)
-
-    def _stays(self, home: int, classes: int) -> bool:
-        steps = (self._monitor.step(here, classes) for here in (self._monitor.start, home))
-        return all(step.states == home and step.worst == KEPT for step in steps)
-
-    def of(self, letters: LetterSets) -> NDArray[np.bool_]:
-        """Whether each set of letters that has been met is idle."""
-        sets = letters.sets
-        if len(self.flags) < len(sets):
-            more = [bool(x) and self._stays(self._home, x) for x in sets[len(self.flags) :]]
-            self.flags = np.concatenate([self.flags, np.array(more, dtype=bool)])
-        return self.flags
 
 
 def _stacked(read: Read | NumberRead, vocabulary: Vocabulary) -> StackedRead:

@@ -38,10 +38,14 @@ class LetterDiagram:
 
     def classes(self, cube: Sequence[int]) -> int:
         """The classes, as bits, of letters that have for each read any of its digits, as bits."""
+        return self.nodes(cube) >> 1
+
+    def nodes(self, cube: Sequence[int]) -> int:
+        """The same classes, one place higher: the first bit stands for what facts exclude."""
         here = self.start
         for read in range(self._n_reads - 1, -1, -1):
             here = self.step(read, here, cube[read])
-        return here >> 1
+        return here
 
     def step(self, read: int, here: int, digits: int) -> int:
         """The nodes behind some nodes and some digits of a read, all as bits."""

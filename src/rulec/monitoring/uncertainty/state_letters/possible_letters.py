@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axiom_violations import StatePlace, impossible_state
 from rulec.monitoring.bindings import Binding
@@ -22,6 +23,7 @@ from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClas
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     ReadDigits,
+    read_digits,
 )
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     MissingValueError,
@@ -158,6 +160,19 @@ class PossibleLetters:
             lambda: tuple([letters.letters(key) for key in keys]),
             lambda: tuple([self._unknown_names(read, about) for read in letters.reads]),
         )
+
+    def bits_of(
+        self, rule: CompiledRule
+    ) -> Callable[[Read | NumberRead, Mapping[str, str], tuple[int, int]], list[int]]:
+        """A reader of the digits, as bits, of a rule's reads one by one: read, objects, stretch."""
+
+        def read_bits(
+            read: Read | NumberRead, chosen: Mapping[str, str], stretch: tuple[int, int]
+        ) -> list[int]:
+            about = _About(rule, Binding(chosen, *stretch), NOTHING)
+            return self._digits(read_digits(read), about)
+
+        return read_bits
 
     def _letters_of(
         self, rule: CompiledRule, classes: LetterClasses, objects: Mapping[str, str]

@@ -1,0 +1,55 @@
+"""Letters that do nothing to a machine, known before all of what they consist of is read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from rulec.automata.mealy_monitor import IMPOSSIBLE
+from rulec.automata.outcome_machine import KEPT, SetMonitor
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
+
+
+class IdleLetters:
+    """The letters of a machine that are idle, given as the classes, as bits, that they may have.
+
+    What cannot be, because facts exclude it, is never idle, lest nobody notice it.
+    """
+
+    def __init__(self, diagram: LetterDiagram, are_idle: Callable[[int], bool]) -> None:
+        self._diagram, self._are_idle = diagram, are_idle
+        self._known: dict[int, bool] = {}
+
+    def of_classes(self, classes: int) -> bool:
+        """Whether letters of any of these classes, of one at least, are idle."""
+        known = self._known.get(classes)
+        if known is None:
+            known = self._known[classes] = bool(classes) and self._are_idle(classes)
+        return known
+
+    def of_cube(self, cube: Sequence[int]) -> bool:
+        """Whether letters are idle that have for each read any of its digits, as bits."""
+        nodes = self._diagram.nodes(cube)
+        return not nodes & 1 and self.of_classes(nodes >> 1)
+
+
+def idle_letters(monitor: SetMonitor, diagram: LetterDiagram) -> IdleLetters:
+    """The letters that lead a machine to where they keep it, with every word of them kept.
+
+    So what a word of nothing else comes to needs no run, nor does any part of it.
+    """
+    machine = monitor.machine
+
+    def stays(home: int, classes: int) -> bool:
+        steps = (monitor.step(here, classes) for here in (monitor.start, home))
+        return all(step.states == home and step.worst == KEPT for step in steps)
+
+    letters = np.array(machine.letters)
+    weights = np.bincount(letters[letters != IMPOSSIBLE], minlength=machine.n_classes)
+    singles = range(len(weights))
+    homes = dict.fromkeys([monitor.start])
+    homes |= dict.fromkeys(monitor.step(monitor.start, 1 << n).states for n in singles)
+    worth = {home: sum(int(weights[n]) for n in singles if stays(home, 1 << n)) for home in homes}
+    best = max(worth, key=worth.__getitem__)
+    return IdleLetters(diagram, lambda classes: stays(best, classes))
