@@ -1,20 +1,28 @@
 """Bindings made only where a rule may not be kept: the same verdicts, far fewer choices."""
 
 import json
+from dataclasses import replace
+from itertools import product
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.batch_verify import verify_chunk
+from rulec.monitoring.online.monitor_sources import replay_trace
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verify import verify
+from rulec.planning.product.graph_instances import instances, violations
+from rulec.planning.product.graph_product import explore
+from rulec.planning.product.node_transformers import node_transformers
 from rulec.resource_limits import in_force
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.rulebooks import compile_here
+from support.generators.random_graphs import layered
+from support.generators.seeds import seeds
 
 BOOK = """
 rulebook crowd
@@ -58,19 +66,6 @@ STATES = st.fixed_dictionaries(
 SPANS = st.tuples(st.integers(0, 2), st.integers(0, 2)).map(sorted).map(tuple)
 
 
-@given(
-    st.lists(STATES, min_size=3, max_size=3),
-    st.lists(st.sampled_from(["car", "bus"]), min_size=4, max_size=4),
-    st.dictionaries(st.sampled_from(NAMES), SPANS, max_size=2),
-)
-def test_verdicts_are_those_of_all_bindings(book, states, kinds, present):
-    trace = Trace("t", 1, dict(zip(NAMES, kinds, strict=True)), states, present)
-    usual = verify(trace, book)
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("rulec.monitoring.bindings.MANY", 0)
-        assert verify(trace, book) == usual
-
-
 def crowd(n_cars, besides, **more):
     objects = {f"o{number}": "car" for number in range(n_cars)}
     return Trace("t", 1, objects, [{"beside": dict.fromkeys(besides, True), **more}] * 3)
@@ -100,6 +95,18 @@ def test_violations_of_many_choices_are_found(six):
     trace = crowd(30, ["o1", "o2", "o3"], stopped={"o4": True, "o5": True, "o6": True})
     (answer,) = verify_chunk([trace], six, 1)
     assert len(answer.violations) == 6 * 6
+
+
+def test_a_monitor_makes_few_of_many_choices_and_keeps_them_when_it_is_saved(six):
+    still = crowd(30, ["o1", "o2", "o3"])
+    moving = crowd(30, ["o1", "o2", "o3"], stopped={"o4": True, "o5": True, "o6": True})
+    monitor = replay_trace(still, six)
+    assert monitor.so_far.verdict == "holds so far"
+    so_far = monitor.step(moving.states[0], moving.objects)
+    assert (so_far.verdict, len(so_far.changes)) == ("violated", 6 * 6)
+    again = Monitor.restore(six, json.loads(json.dumps(monitor.snapshot())))
+    assert again.step(moving.states[0], moving.objects).changes == ()
+    assert again.violations == monitor.violations
 
 
 def test_choices_that_matter_and_are_too_many_are_refused(six):
@@ -144,15 +151,15 @@ TOLD = st.sampled_from([None, ("beside", "stopped"), ("beside", "stopped", "behi
 
 
 @given(
-    st.lists(STATES | UNKNOWN_TOO, min_size=1, max_size=3),
+    st.lists(STATES, min_size=3, max_size=3) | st.lists(UNKNOWN_TOO, min_size=3, max_size=3),
     st.lists(st.sampled_from(["car", "bus"]), min_size=4, max_size=4),
+    st.dictionaries(st.sampled_from(NAMES), SPANS, max_size=2),
     TOLD,
     st.booleans(),
 )
-def test_verdicts_on_what_is_partly_known_are_those_of_all_bindings(book, states, kinds, told, cut):
-    objects = dict(zip(NAMES, kinds, strict=True))
-    ends = "cut" if cut else "complete"
-    trace = Trace("t", 1, objects, states, ends=ends, told=told)
+def test_verdicts_are_those_of_all_bindings(book, states, kinds, present, told, cut):
+    objects, ends = dict(zip(NAMES, kinds, strict=True)), "cut" if cut else "complete"
+    trace = Trace("t", 1, objects, states, present, ends=ends, told=told)
     assert lazily(lambda: verify(trace, book)) == eagerly(lambda: verify(trace, book))
 
 
@@ -189,3 +196,36 @@ def test_a_running_monitor_says_what_one_of_all_bindings_says(book, layers, told
         return steps_of(book, layers, told, cut, again_at)
 
     assert lazily(run) == eagerly(run)
+
+
+def paths_of(book, graph, before):
+    """How many paths keep the rules, for sure and perhaps, and what each violates for sure."""
+    monitor = Monitor(book, told=graph.told)
+    for state in before:
+        monitor.step(state, graph.objects)
+    bound = instances(graph, book, past=monitor.past(graph.objects))
+    accepted = [
+        explore(node_transformers(graph, bound, perhaps=perhaps)).accepted
+        for perhaps in (False, True)
+    ]
+    known = [own for own in bound if own.readings is None]
+    paths = product(*[range(len(layer)) for layer in graph.states])
+    return accepted, [violations(known, path) for path in paths]
+
+
+@settings(max_examples=settings().max_examples // 2)
+@given(
+    seeds,
+    st.lists(STATES | UNKNOWN_TOO, min_size=2, max_size=4),
+    st.lists(STATES, max_size=2),
+    TOLD,
+)
+def test_paths_are_counted_as_by_all_bindings(book, chance, pool, before, told):
+    objects = dict(zip(NAMES, ("car", "car", "bus", "bus"), strict=True))
+    graph = layered(chance, objects, lambda: chance.choice(pool), 3)
+    graph = replace(graph, told=told)
+
+    def found():
+        return paths_of(book, graph, before)
+
+    assert lazily(found) == eagerly(found)
