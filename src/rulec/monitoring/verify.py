@@ -71,7 +71,7 @@ def _bindings(rule: CompiledRule, trace: Trace, reader: LetterReader) -> Iterato
     if not cast.has_many(types_of(rule)):
         return cast.bindings(rule)
     # numpy, a tenth of a second: only where there are many.
-    from rulec.monitoring.lazy_bindings import doubtful_bindings, known_bits
+    from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings, known_bits
     from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 
     idle = uncertain_machine(rule, None).idle

@@ -131,7 +131,7 @@ class BoundRules:
         Raises RulecError as ``read`` does, R0718 if they are too many.
         """
         # numpy, a tenth of a second, is loaded only where there are many choices.
-        from rulec.monitoring.lazy_bindings import doubtful_bindings, known_bits
+        from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings, known_bits
 
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
 from rulec.monitoring.bindings import Binding
-from rulec.monitoring.lazy_bindings import ReadBits
 from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.prepared_rule import PreparedRule
+from rulec.monitoring.uncertainty.lazy_bindings import ReadBits
 from rulec.monitoring.uncertainty.state_letters.possible_letters import (
     BoundLetters,
     PossibleLetters,

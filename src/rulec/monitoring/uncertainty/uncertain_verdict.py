@@ -14,8 +14,8 @@ from functools import partial
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
-from rulec.monitoring.lazy_bindings import doubtful_bindings
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
+from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.possible_letters import (
     PossibleLetters,
     PossibleWord,

@@ -9,7 +9,7 @@ from itertools import accumulate
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
-from rulec.monitoring.lazy_bindings import ReadBits, doubtful_bindings
+from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
 from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 from rulec.monitoring.verdict import CarriedState
 from rulec.trace import TraceGraph

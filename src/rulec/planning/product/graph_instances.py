@@ -10,9 +10,9 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding
-from rulec.monitoring.lazy_bindings import known_bits
 from rulec.monitoring.letter_reader import LetterReader, present_in
 from rulec.monitoring.state_validation import StateValidator, check_objects
+from rulec.monitoring.uncertainty.lazy_bindings import known_bits
 from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
 from rulec.monitoring.verify import run
