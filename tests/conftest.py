@@ -5,6 +5,8 @@ import os
 import pytest
 from hypothesis import HealthCheck, settings
 
+from rulec.automata import compiler, prefix_machines
+from support.remembered_machines import ASKED, remembering
 from support.snapshots import Snapshots
 
 # The quick profile tries the same examples each time, so that a red run is about the change; the
@@ -43,6 +45,32 @@ def _own_cache(tmp_path_factory):
         del os.environ["RULEC_CACHE_DIR"]
     else:
         os.environ["RULEC_CACHE_DIR"] = before
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _remembered_machines(tmp_path_factory):
+    """What has been compiled is not compiled again by another test, but in the long profile."""
+    if os.environ.get("RULEC_TEST_PROFILE") == "long":
+        yield
+        return
+    folder = tmp_path_factory.getbasetemp()
+    # Processes side by side have folders of their own, side by side.
+    folder = (folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder) / "machines"
+    folder.mkdir(exist_ok=True)
+    answers = remembering(folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compiler, "answers_to", answers)
+        patch.setattr(prefix_machines, "answers_to", answers)
+        yield
+
+
+@pytest.fixture(scope="module")
+def compiled_anew():
+    """For tests of the compiler itself: nothing is remembered."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compiler, "answers_to", ASKED)
+        patch.setattr(prefix_machines, "answers_to", ASKED)
+        yield
 
 
 def pytest_addoption(parser):

@@ -29,6 +29,8 @@ from rulec.vocabulary import Enumeration, Signal, Vocabulary
 from support.builders.rulebooks import P, Q, always, book, eventually, far, implies, near, rule
 from support.generators.random_formulas import formulas
 
+pytestmark = pytest.mark.usefixtures("compiled_anew")
+
 
 def signals(n):
     return Vocabulary("signals", {}, {f"s{i}": Signal(f"s{i}", (), False) for i in range(n)})
@@ -70,7 +72,10 @@ def test_exclusive_values_make_letters_and_contradictions():
     assert compiled.machine.rejecting_sink == 0
 
 
-@pytest.mark.parametrize("position", [0, 1, 2])
+@pytest.mark.parametrize(
+    "position",
+    [1, *(pytest.param(at_an_end, marks=pytest.mark.long) for at_an_end in (0, 2))],
+)
 def test_a_rule_that_explodes_is_an_error_and_the_others_compile(position):
     vocabulary = signals(16)
     rules = [Rule(name, "hard", (), always(Atom("s0"))) for name in "AB"]

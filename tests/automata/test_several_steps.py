@@ -22,6 +22,8 @@ soft rule before { require always (q implies once[<= 1 s] p) }
 """
 STEPS = (Fraction(1, 2), Fraction(1, 3))
 
+pytestmark = pytest.mark.usefixtures("compiled_anew")
+
 
 @pytest.fixture(scope="module")
 def soon(tmp_path_factory):

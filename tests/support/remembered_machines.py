@@ -1,0 +1,49 @@
+"""Machines that Spot has built, kept for the other tests of a run, which often ask for the same."""
+
+import os
+import pickle
+from collections.abc import Callable, Sequence
+from hashlib import sha256
+from pathlib import Path
+
+from rulec.automata import compiler
+from rulec.automata.spot_worker import Done, Failed, Job
+
+Answers = tuple[list[Done | Failed | None], str]
+
+_SCRIPT, _WORKER, ASKED = compiler._WORKER, compiler._worker, compiler.answers_to
+
+
+def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
+    """``compiler.answers_to``, but for what this process or one beside it has asked before.
+
+    They keep machines in ``folder``. Whatever fails is asked anew, and so is everything while a
+    test has put another worker in the place of Spot's, or is about how it is confined.
+    """
+
+    def kept(job: Job) -> Path:
+        return folder / sha256(pickle.dumps(job)).hexdigest()
+
+    def answers_to(jobs: Sequence[Job]) -> Answers:
+        is_usual = compiler._WORKER is _SCRIPT and compiler._worker is _WORKER
+        if not is_usual or compiler._REQUIRE_CONFINED in os.environ or not jobs:
+            return ASKED(jobs)
+        known = [file.read_bytes() if file.exists() else b"" for file in map(kept, jobs)]
+        unknown = [job for job, found in zip(jobs, known, strict=True) if not found]
+        asked, spot = ASKED(unknown) if unknown else ([], "")
+        for job, answer in zip(unknown, asked, strict=True):
+            if isinstance(answer, Done):
+                part = kept(job).with_suffix(f".{os.getpid()}")
+                part.write_bytes(pickle.dumps((answer, spot)))
+                part.replace(kept(job))
+        rest = iter(asked)
+        answers: list[Done | Failed | None] = []
+        for found in known:
+            if found:
+                answer, spot = pickle.loads(found)
+                answers.append(answer)
+            else:
+                answers.append(next(rest))
+        return answers, spot
+
+    return answers_to
