@@ -43,10 +43,12 @@ def found(one, kind):
     ("kind", "expected"),
     [
         ("uncited", [("own", "")]),
+        ("inherited", [("kept", "mainland § 9"), ("softer", "mainland § 2")]),
         (
             "untested",
             [
                 ("softer", "no example that it accepts or rejects"),
+                ("agreed", "no example that it rejects"),
                 ("own", "no example that it rejects"),
             ],
         ),
@@ -75,11 +77,14 @@ def test_every_kind_is_tested():
 def test_what_is_there(path):
     one = audited(path, "2024-06-01")
     assert (one.rulebook, one.law, one.at) == ("village", "", "2024-06-01")
-    # kept, changed, softer, own; two examples each of kept and changed, and one of own.
-    assert one.counts == AuditCounts(4, 3, 1, 3, 2, 1, 5, 3, 4, 3)
+    # kept, changed, softer, agreed, own; two examples each of kept and changed, one of agreed and
+    # of own. Verified is what island says of agreed, not what mainland says of kept; changed has an
+    # article of island's, agreed is confirmed, own is its own.
+    assert one.counts == AuditCounts(5, 4, 1, 4, 2, 1, 6, 4, 4, 3, confirmed=3)
     # The nearest law first, in each the smallest number.
     assert one.articles == (
         CitedArticle("island", "§ 10a", ("changed",)),
+        CitedArticle("island", "§ 11", ("agreed",)),
         CitedArticle("mainland", "§ 2", ("softer",)),
         CitedArticle("mainland", "§ 9", ("kept",)),
     )
@@ -106,7 +111,10 @@ def test_a_rule_made_hard_again_is_not_softened(path):
 def test_articles_in_the_order_of_their_numbers():
     cites = ["Art. 11.6", "Art. 9", "Art. 11.10", "Art. 9", "", "9", "Annex"]
     rules = [Rule(f"r{at}", "hard", (), Constant(True), cite) for at, cite in enumerate(cites)]
-    steps = [RuleHistory(one.name, (LineageStep("b", "declared", None),)) for one in rules]
+    steps = [
+        RuleHistory(one.name, (LineageStep("b", "declared", None, gives_law=True),))
+        for one in rules
+    ]
     found = articles_of(rules, BookLineage((BookHeader("b"),), tuple(steps), ()))
     assert [(one.cite, one.rules) for one in found] == [
         ("Annex", ("r6",)),

@@ -64,6 +64,13 @@ def test_the_chain(village):
             ],
         ),
         (
+            "agreed",
+            [
+                ("mainland", "declared", (), ""),
+                ("island", "confirmed", ("cite", "source", "certainty", "examples"), ""),
+            ],
+        ),
+        (
             "taken_out",
             [
                 ("mainland", "declared", (), ""),
@@ -88,6 +95,7 @@ def test_the_rule_before_and_after(village):
     assert changed.rule.cite.value == "§ 10a"
     # The village has changed something else.
     assert changed.cited_by == "island"
+    assert village.inherited_from(changed) == ""
     assert changed.before("village").says.value == "Be slow."
     (gone,) = [one for one in village.rules if one.name == "taken_out"]
     assert gone.rule is None

@@ -47,6 +47,7 @@ clean
   rules                            1 (1 hard, 0 soft)
   with a provision cited           1 of 1
   with examples for both verdicts  1 of 1
+  own law, not merely inherited    1 of 1
   verified in the law itself       1 of 1
   examples                         2
   provisions of the law            1

@@ -43,7 +43,8 @@ def test_the_beginning(page):
         "| law | Island Act, as of 2024-01-01 |",
         "| shown as of | 2024-06-01 |",
         "| builds upon | `mainland` |",
-        "| rules | 2 hard, 1 soft |",
+        "| rules | 3 hard, 1 soft |",
+        "| own law | 2 rules; 2 inherited, not confirmed |",
     ):
         assert f"\n{row}\n" in page
 
@@ -81,15 +82,23 @@ def test_its_examples(page):
 
 def test_inherited_and_softened(page):
     kept = section(page, "### kept (§ 9)")
-    assert "\n- **Provision:** § 9 of: Mainland Act\n" in kept
-    assert "\n- **Origin:** inherited from mainland\n" in kept
-    assert "\n- **Certainty:** ✔ verified in the law itself\n" in kept
+    assert "\n- **Provision:** § 9 of: Mainland Act; inherited, not confirmed\n" in kept
+    assert "\n- **Origin:** inherited from mainland, not confirmed\n" in kept
+    assert "\n- **Certainty:** ✔ verified in the law itself; that is mainland's\n" in kept
     # As written and as meant it is the same.
     assert kept.count("```rulec") == 1
     softer = section(page, "### softer (§ 2)")
     assert "\n- **Kind of rule:** soft, it may yield; weight 2\n" in softer
-    assert "\n- **Origin:** softened, because only recommended\n" in softer
+    assert "\n- **Origin:** softened, not confirmed, because only recommended\n" in softer
     assert "#### Examples\n\nNone.\n" in softer
+
+
+def test_confirmed(page):
+    agreed = section(page, "### agreed (§ 11)")
+    assert "\n- **Provision:** § 11\n" in agreed
+    assert "\n- **Certainty:** ✔ verified in the law itself\n" in agreed
+    assert "\n- **Origin:** confirms mainland: cite, source, certainty, examples\n" in agreed
+    assert '-cite "§ 3"\n' in agreed
 
 
 def test_exceptions_are_said_one_by_one(folder, capsys):

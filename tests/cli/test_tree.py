@@ -38,12 +38,13 @@ mainland.rules
         village.rules
 
 rules
-├── kept  inherited from mainland
+├── kept  inherited from mainland, not confirmed
 ├── changed  overrides island: says
 │   ├── declared by mainland
 │   └── overridden by island: cite, source, require
-├── softer  softened by island, because only recommended
+├── softer  softened by island, not confirmed, because only recommended
 │   └── declared by mainland
+├── agreed  inherited from island, which confirms mainland: cite, source, certainty, examples
 ├── taken_out  dropped by island, because there are no sirens
 │   └── declared by mainland
 ├── left_open  silent, as island is, because nobody knows
@@ -73,7 +74,7 @@ definitions
 def test_rules_by_pattern(folder, capsys):
     status, out, _ = run(capsys, "village", "--rule", "*ed")
     assert status == 0
-    assert re.findall(r"^[├└]── (\w+)  ", out, re.MULTILINE)[1:] == ["changed", "expired"]
+    assert re.findall(r"^[├└]── (\w+)  ", out, re.MULTILINE)[1:] == ["changed", "agreed", "expired"]
     assert "parameters" not in out
 
 
@@ -131,7 +132,10 @@ def test_json(folder, capsys):
                 "because": "there are no sirens",
             },
         ],
+        "inherited_from": "",
     }
+    assert rules["kept"]["inherited_from"] == "mainland"
+    assert rules["agreed"]["inherited_from"] == ""
     assert data["provisions"][0]["settings"][1] == {
         "book": "village",
         "text": "on",

@@ -6,8 +6,10 @@ from fractions import Fraction
 
 import pytest
 
+from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.verify import verify
+from rulec.report.verdict_findings.found_in_traces import trace_findings
 from rulec.report.verdicts import verdict_json, verdict_report
 from rulec.trace import Trace
 from support.builders.rulebooks import P, book, compile_here, rule
@@ -32,6 +34,10 @@ def violated(rules):
         ({"book": "test"}, "hard rule A [Art. A]: cannot be kept"),
         ({"book": "vienna"}, "hard rule A [vienna, Art. A]: cannot be kept"),
         ({"book": "vienna", "cite": ""}, "hard rule A [vienna]: cannot be kept"),
+        (
+            {"book": "de", "inherited_from": "vienna"},
+            "hard rule A [inherited, not confirmed: vienna Art. A]: cannot be kept",
+        ),
         ({"level": "legal"}, "hard rule A in legal [Art. A]: cannot be kept"),
         (
             {"strength": "soft", "level": "courtesy", "weight": Fraction(5, 2)},
@@ -70,3 +76,16 @@ def test_an_explanation_as_data_names_the_book():
     (violation,) = json.loads(verdict_json.as_json(verdict, rules, [why]))["violations"]
     assert violation["explanation"]["book"] == "vienna"
     assert violation["explanation"]["cite"] == "Art. A"
+
+
+@pytest.mark.parametrize(("base", "expected"), [("vienna", "vienna"), ("", None)])
+def test_whose_law_a_rule_is_stands_beside_it_unless_it_is_the_rulebooks_own(base, expected):
+    rules = compiled(inherited_from=base)
+    trace, verdict = violated(rules)
+    (violation,) = json.loads(verdict_json.as_json(verdict, rules))["violations"]
+    assert violation.get("inherited_from") == expected
+    (finding,) = trace_findings("t.csv", trace, verdict, rules, [])
+    assert (finding.provision, finding.inherited_from) == ("Art. A", base)
+    assert ("inherited, not confirmed: vienna Art. A" in finding.says) is bool(base)
+    (kept,) = from_json(to_json(rules).encode(), "t.json").rules
+    assert kept.inherited_from == base

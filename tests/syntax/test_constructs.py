@@ -5,7 +5,13 @@ import pytest
 from rulec.diagnostics import Source
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.syntax import parse, tree
-from support.generators.language_constructs import CLAUSES, HEADER, HEADS, ITEMS
+from support.generators.language_constructs import (
+    CLAUSES,
+    CONFIRMATIONS,
+    HEADER,
+    HEADS,
+    ITEMS,
+)
 
 RULE = "hard rule other {\n  require p\n}"
 
@@ -22,6 +28,10 @@ def as_head(text):
     return f"rulebook a\nsignal p\n{text}\n  require p\n  accept {{ p }}\n}}\n{RULE}\n"
 
 
+def as_confirmation(text):
+    return f'rulebook a\nsignal p\n{text}\n  cite "s. 1"\n  accept {{ p }}\n}}\n{RULE}\n'
+
+
 def as_clause(text):
     required = "" if text.startswith("require") else "  require p\n"
     rule = f'hard rule single {{\n  says "one"\n  {text}\n{required}  reject {{ p }}\n}}'
@@ -32,6 +42,7 @@ CASES = [
     *((in_header, construct) for construct in HEADER),
     *((among_items, construct) for construct in ITEMS),
     *((as_head, construct) for construct in HEADS),
+    *((as_confirmation, construct) for construct in CONFIRMATIONS),
     *((as_clause, construct) for construct in CLAUSES),
 ]
 

@@ -18,7 +18,7 @@ from rulec.monitoring.verdict import NotJudged, OutcomeName, Verdict
 from rulec.report.verdict_findings.found_in_drives import DriveFindings
 from rulec.report.verdict_findings.found_in_traces import trace_findings
 from rulec.report.verdict_findings.verdict_finding import COLUMNS as OF_FINDINGS
-from rulec.report.verdict_findings.verdict_finding import VerdictFinding
+from rulec.report.verdict_findings.verdict_finding import VerdictFinding, named_rule
 from rulec.trace import Trace
 from rulec.trace.trace_arrays import TraceArrays
 
@@ -39,10 +39,7 @@ class DriveRows:
     _of_rules: Mapping[str, Row] = field(init=False)
 
     def __post_init__(self) -> None:
-        of_rules = {
-            rule.name: {"rule": rule.name, "provision": rule.cite, "strength": rule.strength}
-            for rule in self.rules.rules
-        }
+        of_rules = {rule.name: named_rule(rule) for rule in self.rules.rules}
         object.__setattr__(self, "_of_rules", of_rules)
         object.__setattr__(self, "shared", self.by.columns())
 

@@ -12,7 +12,7 @@ from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.names.symbol_table import symbol_table
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.overlay.priorities import pre_order
-from rulec.rulebook.overlay.rulebook_overlay import Overlay, in_force, overlay
+from rulec.rulebook.overlay.rulebook_overlay import Overlay, in_force, overlay, own_law
 from rulec.rulebook.rulebook_model import Rule, Rulebook, SourceFile, Traffic
 from rulec.rulebook.rules.axioms import axioms_of, contradicted
 from rulec.rulebook.rules.rule_elaboration import translate_rule
@@ -55,8 +55,12 @@ def resolve(
     axioms, wrong_facts = axioms_of(files, symbols, constants)
     mistakes += wrong_facts
     rules: list[Rule | None] = []
+    own = own_law(books)
     for entry in laid.rules.values():
-        rule, diagnostics = translate_rule(entry, symbols, constants, known_levels)
+        confirmed = any(entry.law is book for book in own)
+        rule, diagnostics = translate_rule(
+            entry, symbols, constants, known_levels, confirmed=confirmed
+        )
         mistakes += diagnostics
         if in_force(entry.item.in_force, at):
             rules.append(rule)

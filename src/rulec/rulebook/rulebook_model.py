@@ -70,7 +70,8 @@ class Rule:
     place in the rulebook's priorities, empty if it has none. ``book`` is the rulebook that it is
     written in. The states of its examples are ``step_s`` seconds apart. ``required`` is the formula
     without its exemptions and the condition (``when``) under which it is in force; None where there
-    are none.
+    are none. ``inherited_from`` is the rulebook whose law it is, which last gave it a provision, if
+    the rulebook at hand has not confirmed that it is its own law, too; else empty.
     """
 
     __repr__ = short_repr
@@ -94,6 +95,12 @@ class Rule:
     required: Formula | None = None
     exemptions: tuple[Exemption, ...] = ()
     condition: Formula | None = None
+    inherited_from: str = ""
+
+
+def cited_law(cite: str, inherited_from: str) -> str:
+    """A rule's provision; whose it is where the rulebook has not confirmed the rule."""
+    return f"inherited, not confirmed: {inherited_from} {cite}".rstrip() if inherited_from else cite
 
 
 @dataclass(frozen=True, slots=True)

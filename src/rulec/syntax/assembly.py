@@ -18,6 +18,9 @@ ClausePart = tuple[str, Clause | None, Span]
 _PLAIN = ("require", "cite", "says", "when", "source")
 """Clauses that are the rule's field of that name."""
 
+_CONFIRMING = ("cite", "says", "source", "certainty")
+"""Clauses that a confirmation may have."""
+
 Part = tree.HeaderLine | tree.Item
 """What stands at the top level of a file."""
 
@@ -44,6 +47,12 @@ def assemble_rule(
     if "require" not in first_given and complete and not head.override:
         mistakes.append(_no_require(head, head_span))
         complete = False
+    if head.confirm:
+        more = [part for word, part in first_given.items() if word not in _CONFIRMING]
+        mistakes += [structure.changed_by_confirming(head.name.text, *part[::2]) for part in more]
+        if "cite" not in first_given and complete and not more:
+            mistakes.append(structure.no_cite(head.name.text, head_span))
+        complete = complete and not more and "cite" in first_given
     given: dict[str, Any] = {word: content for word, content, _ in first_given.values()}
     plain: dict[str, Any] = {word: given.get(word) for word in _PLAIN}
     rule = replace(

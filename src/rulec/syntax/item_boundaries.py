@@ -63,8 +63,8 @@ class Landmarks:
         return token.kind == "symbol" and token.text in _OPEN_SYMBOLS
 
     def begins_rule(self, index: int) -> bool:
-        """``hard``, ``soft``, ``override``, ``rule``, or a misspelt word before ``rule``."""
-        if self.is_word(index, *keywords.RULE_WORDS, "override", "rule"):
+        """``hard``, ``soft``, ``override``, ``confirm``, ``rule``, or one misspelt before that."""
+        if self.is_word(index, *keywords.RULE_WORDS, *keywords.CHANGE_WORDS, "rule"):
             return True
         return self.is_name(index) and self.is_word(index + 1, "rule")
 
@@ -92,7 +92,7 @@ class Landmarks:
         if token.text == "rule":
             return not token.first or self._heads_a_rule(index - 1)
         if token.text in keywords.RULE_WORDS:
-            return self.is_word(index - 1, "override")
+            return self.is_word(index - 1, *keywords.CHANGE_WORDS)
         if token.text == "extends":
             # `type car extends vehicle` is a mistake about the type.
             return not token.first and self.is_word(index - 2, "type")
@@ -134,7 +134,7 @@ class Landmarks:
         if token.kind != "word":
             return False
         if self.is_word(index + 1, "rule") and (self._heads_a_rule(index) or token.first):
-            return not self.is_word(index - 1, "override", *keywords.RULE_WORDS)
+            return not self.is_word(index - 1, *keywords.CHANGE_WORDS, *keywords.RULE_WORDS)
         if not token.first or self._heads_a_rule(index - 1):
             return False
         if token.text in keywords.ITEM_WORDS:
@@ -142,7 +142,8 @@ class Landmarks:
         return self._begins_enumeration(index)
 
     def _heads_a_rule(self, index: int) -> bool:
-        return self.is_word(index, *keywords.RULE_WORDS, "override", "drop", "soften")
+        words = (*keywords.RULE_WORDS, *keywords.CHANGE_WORDS, "drop", "soften")
+        return self.is_word(index, *words)
 
     def begins_misspelt(self, index: int) -> bool:
         """Tell whether a misspelt keyword begins a line here."""

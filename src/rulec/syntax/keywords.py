@@ -16,8 +16,10 @@ PROVISION_WORDS: Final = (
     *("drop", "soften", "silent"),
 )
 RULE_WORDS: Final = ("hard", "soft")
+CHANGE_WORDS: Final = ("override", "confirm")
+"""The first words of rules that are laid over inherited ones."""
 ITEM_WORDS: Final = frozenset(
-    (*HEADER_WORDS, *DECLARATION_WORDS, *PROVISION_WORDS, *RULE_WORDS, "rule", "override")
+    (*HEADER_WORDS, *DECLARATION_WORDS, *PROVISION_WORDS, *RULE_WORDS, "rule", *CHANGE_WORDS)
 )
 CLAUSE_WORDS: Final = frozenset(
     (*("cite", "says", "source", "certainty"), *("require", "unless", "when", "accept", "reject"))

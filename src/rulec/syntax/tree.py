@@ -203,6 +203,7 @@ class Unless(_SyntaxNode):
 class RuleItem(_SyntaxNode):
     """Rule, or an ``override`` with only the changed clauses.
 
+    ``confirm``: it is an override that says no more than whose law the rule is.
     ``complete`` is false when a clause of it could not be read and is missing here.
     """
 
@@ -222,6 +223,7 @@ class RuleItem(_SyntaxNode):
     source: Text | None = None
     certainty: Literal["", "verified", "secondary", "unverified"] = ""
     in_force: InForce | None = None
+    confirm: bool = False
 
 
 @dataclass(frozen=True, slots=True)

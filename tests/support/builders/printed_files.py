@@ -142,7 +142,8 @@ def print_place(level, weight):
 
 def print_rule_head(rule):
     """A rule's head, without the brace."""
-    words = [*(["override"] if rule.override else []), *([rule.strength] if rule.strength else [])]
+    upon = ["confirm" if rule.confirm else "override"] if rule.override else []
+    words = [*upon, *([rule.strength] if rule.strength else [])]
     variables = f" {print_parameters(rule.variables)}" if rule.variables else ""
     place = print_place(rule.level, rule.weight)
     return f"{' '.join([*words, 'rule'])} {rule.name.text}{variables}{place}"

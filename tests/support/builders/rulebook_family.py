@@ -35,6 +35,7 @@ hard rule changed {
 }
 
 hard rule softer { cite "§ 2" require never (horn and siren) certainty unverified }
+hard rule agreed { cite "§ 3" says "Do not sound it twice." require never horn }
 hard rule taken_out { require never siren }
 hard rule left_open { require always siren }
 """
@@ -54,6 +55,7 @@ override rule changed {
   require always[<= 3 s] slow
 }
 
+confirm rule agreed { cite "§ 11" source "the Act" certainty verified accept { not horn } }
 soften rule softer weight 2 because "only recommended"
 drop rule taken_out because "there are no sirens"
 silent on left_open because "nobody knows"

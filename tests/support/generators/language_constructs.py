@@ -295,6 +295,20 @@ HEADS = [
     Construct(("hard rule in_a_level_called_force in force {",)),
 ]
 
+CONFIRMATIONS = [
+    Construct(
+        ("confirm rule keep_away {", "confirm\n  rule\n  keep_away {"),
+        (
+            "confirm keep_away {",
+            "confirm hard rule keep_away {",
+            "confirm rule keep_away (v: vehicle) {",
+            "confirm rule keep_away in safety {",
+            "confrim rule keep_away {",
+            "confirm rule {",
+        ),
+    ),
+]
+
 CLAUSES = [
     Construct(
         ('source "StVO"', 'source\n    "StVO"'),

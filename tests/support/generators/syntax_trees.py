@@ -122,6 +122,18 @@ scopes = st.sampled_from(["initially", "at start", "throughout", "at some point"
 def _rules(draw):
     """A rule; only one that overrides may lack its strength and its formula."""
     override = draw(st.booleans())
+    if override and draw(st.booleans()):
+        return tree.RuleItem(
+            None,
+            draw(names),
+            cite=draw(texts),
+            says=draw(st.none() | texts),
+            examples=draw(_lists(examples)),
+            override=True,
+            source=draw(st.none() | texts),
+            certainty=draw(st.sampled_from(["", "verified", "secondary"])),
+            confirm=True,
+        )
     nothing = st.none() if override else st.nothing()
     return tree.RuleItem(
         draw(nothing | st.sampled_from(["hard", "soft"])),

@@ -6,6 +6,7 @@ from typing import Final
 
 KINDS: Final = {
     "uncited": "no provision of the law is cited",
+    "inherited": "the law of a book that this one extends, not confirmed as its own",
     "untested": "it lacks an example that it accepts, or one that it rejects",
     "failing": "an example comes out otherwise than it says",
     "unverified": "written from memory",

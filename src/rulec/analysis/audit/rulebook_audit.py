@@ -42,7 +42,10 @@ class CitedArticle:
 
 @dataclass(frozen=True, slots=True)
 class AuditCounts:
-    """Numbers of everything; rules are those in force."""
+    """Numbers of everything; rules are those in force.
+
+    ``confirmed`` are those that are the rulebook's own law; ``verified`` are of them.
+    """
 
     rules: int = 0
     hard: int = 0
@@ -54,6 +57,7 @@ class AuditCounts:
     articles: int = 0
     words: int = 0
     words_used: int = 0
+    confirmed: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,17 +186,19 @@ def _natural(text: str) -> list[tuple[bool, int, str]]:
 def _counts(rulebook: Rulebook, articles: Sequence[CitedArticle], n_used: int) -> AuditCounts:
     rules = rulebook.rules
     n_hard = sum(rule.strength == "hard" for rule in rules)
+    own = [rule for rule in rules if not rule.inherited_from]
     return AuditCounts(
         rules=len(rules),
         hard=n_hard,
         soft=len(rules) - n_hard,
         cited=sum(bool(rule.cite) for rule in rules),
         tested=sum(not _lacks(rule) for rule in rules),
-        verified=sum(rule.certainty == "verified" for rule in rules),
+        verified=sum(rule.certainty == "verified" for rule in own),
         examples=sum(len(rule.examples) for rule in rules),
         articles=len(articles),
         words=len(rulebook.vocabulary.declarations),
         words_used=n_used,
+        confirmed=len(own),
     )
 
 
@@ -208,6 +214,9 @@ def _lacks(rule: Rule) -> str:
 def _of_rule(rule: Rule) -> Iterator[AuditFinding]:
     if not rule.cite:
         yield AuditFinding("uncited", rule.name, rule.says)
+    if rule.inherited_from:
+        note = " ".join(filter(None, (rule.inherited_from, rule.cite)))
+        yield AuditFinding("inherited", rule.name, note)
     if _lacks(rule):
         yield AuditFinding("untested", rule.name, _lacks(rule))
     if rule.certainty != "verified":

@@ -86,12 +86,15 @@ def _step(
         case tree.SilentItem(because=because):
             return rule_lineage.LineageStep(book, "silent", None, (), because.value)
         case tree.RuleItem(override=False):
-            return rule_lineage.LineageStep(book, "declared", item)
+            return rule_lineage.LineageStep(book, "declared", item, gives_law=True)
     before = earlier[-1].rule
     assert before is not None, "nobody changes a rule that is gone"
     if isinstance(item, tree.RuleItem):
         after = merged(before, item)
-        return rule_lineage.LineageStep(book, "overridden", after, _changed_clauses(before, after))
+        deed: rule_lineage.LineageAction = "confirmed" if item.confirm else "overridden"
+        changed = _changed_clauses(before, after)
+        gives_law = item.cite is not None
+        return rule_lineage.LineageStep(book, deed, after, changed, gives_law=gives_law)
     after = replace(
         before,
         strength="soft",

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from rulec.syntax import tree
 from rulec.value_display import Rows, short_repr
 
-LineageAction = Literal["declared", "overridden", "softened", "dropped", "silent"]
+LineageAction = Literal["declared", "overridden", "confirmed", "softened", "dropped", "silent"]
 
 ConstantKind = Literal["option", "parameter", "definition"]
 
@@ -31,7 +31,8 @@ class LineageStep:
     """A change that one book made to a rule.
 
     ``clauses`` are the kinds of clauses that an override or a softening has changed. ``rule`` is
-    what the rule was from then on, None where it is gone.
+    what the rule was from then on, None where it is gone. It ``gives_law`` to the rule if that is
+    the book's own law from then on, by a provision that it cites.
     """
 
     book: str
@@ -39,6 +40,7 @@ class LineageStep:
     rule: tree.RuleItem | None
     clauses: tuple[str, ...] = ()
     because: str = ""
+    gives_law: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +64,8 @@ class RuleHistory:
 
     @property
     def cited_by(self) -> str:
-        """The book that last declared the rule or changed its ``cite``."""
-        saying = [step for step in self.steps if step.deed == "declared" or "cite" in step.clauses]
+        """The book whose law it is: that last declared or confirmed it, or gave its ``cite``."""
+        saying = [step for step in self.steps if step.gives_law]
         return saying[-1].book if saying else ""
 
     def before(self, book: str) -> tree.RuleItem | None:
@@ -116,6 +118,17 @@ class BookLineage(Rows):
     def book(self) -> str:
         """The name of the rulebook at the end of the chain."""
         return self.books[-1].name
+
+    @property
+    def own_law(self) -> frozenset[str]:
+        """The books whose law is the last one's own: from the last that names a law on."""
+        named = [number for number, header in enumerate(self.books) if header.law]
+        return frozenset(header.name for header in self.books[named[-1] if named else -1 :])
+
+    def inherited_from(self, history: RuleHistory) -> str:
+        """The book whose law a rule is, if the last one has not confirmed it; else empty."""
+        own = history.rule is None or history.cited_by in self.own_law
+        return "" if own else history.cited_by
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a rule."""

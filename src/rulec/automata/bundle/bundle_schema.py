@@ -151,6 +151,7 @@ class BundleRule(_Strict, omit_defaults=True):
     hoa: str
     cut: CutMachineEntry | msgspec.UnsetType | None = msgspec.UNSET
     trigger: Any = None
+    inherited_from: str = ""
 
 
 class AxiomEntry(_Strict):

@@ -47,6 +47,7 @@ class CompiledRule:
     certainty: model.Certainty = ""
     book: str = ""
     trigger: Formula | None = None
+    inherited_from: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +172,10 @@ _ALIKE = {
         "at",
         "traffic",
     ),
-    model.Rule: ("name", "strength", "cite", "says", "level", "source", "certainty", "book"),
+    model.Rule: (
+        *("name", "strength", "cite", "says", "level", "source", "certainty", "book"),
+        "inherited_from",
+    ),
 }
 """Fields that both have alike, and their compiled forms, and the entries of these in the file."""
 

@@ -17,6 +17,7 @@ from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.text.terminal_text import shown_count, table_lines, visible
 from rulec.report.verdicts.verdict_report import open_in_words
+from rulec.rulebook.rulebook_model import cited_law
 
 # So many are shown in text; JSON has them all.
 MOST_BINDINGS = 3
@@ -105,7 +106,8 @@ def _violation_line(maneuvers: Maneuvers, violation: Violation) -> str:
 
 def _rule_title(maneuvers: Maneuvers, found: Violation | OpenVerdict) -> str:
     rule = next(rule for rule in maneuvers.rules.rules if rule.name == found.rule)
-    cite = f" [{rule.cite}]" if rule.cite else ""
+    law = cited_law(rule.cite, rule.inherited_from)
+    cite = f" [{law}]" if law else ""
     bound = f" for {bound_objects(found.binding)}" if found.binding else ""
     return f"{rule.strength} rule {rule.name}{cite}{bound}"
 

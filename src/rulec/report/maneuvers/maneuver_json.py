@@ -19,7 +19,12 @@ from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.maneuvers import maneuver_report
 from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
-from rulec.report.verdicts.verdict_json import NotJudgedRule, OpenData, open_data
+from rulec.report.verdicts.verdict_json import (
+    NotJudgedRule,
+    OpenData,
+    not_judged_data,
+    open_data,
+)
 from rulec.rulebook.rulebook_model import Strength
 from rulec.scenario import Account
 from rulec.scenario.scenario_model import Surface
@@ -55,7 +60,10 @@ class LevelPenalty(JsonPart, frozen=True, kw_only=True):
 
 
 class ManeuverViolation(JsonPart, frozen=True, kw_only=True):
-    """A violated rule; ``lost_s`` is null if final only at the end."""
+    """A violated rule; ``lost_s`` is null if final only at the end.
+
+    ``inherited_from`` names the rulebook whose law it is where this one has not confirmed it.
+    """
 
     rule: str
     cite: str
@@ -64,6 +72,7 @@ class ManeuverViolation(JsonPart, frozen=True, kw_only=True):
     strength: Strength
     level: str | None
     weight: Number
+    inherited_from: str | UnsetType = UNSET
 
 
 class CellData(JsonPart, frozen=True, kw_only=True):
@@ -234,7 +243,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             open=maneuvers.open,
             exact=maneuvers.exact,
             unknown=maneuvers.unknown,
-            not_judged=[filled(NotJudgedRule, rule) for rule in maneuvers.not_judged],
+            not_judged=not_judged_data(maneuvers.not_judged, maneuvers.rules),
             by_default=maneuvers.by_default,
             seconds=round(seconds, 6),
             scene=UNSET if scenario.account is None else _scene(maneuvers, scenario.account),
@@ -246,7 +255,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
                 lambda maneuver: _maneuver(
                     graph,
                     maneuver,
-                    open=_open(answers.verdicts.get(maneuver.nodes)),
+                    open=_open(answers.verdicts.get(maneuver.nodes), maneuvers),
                     chances=_chances(answers, maneuver),
                 ),
             ),
@@ -289,7 +298,7 @@ def _ranked(maneuvers: Maneuvers, answers: ManeuverAnswers, ranked: RankedManeuv
         at_least=_penalty(ranked.at_least) if in_doubt else UNSET,
         members=ranked.members,
         violations=_violations(maneuvers, ranked.violations),
-        open=open_data(ranked.open) if in_doubt else UNSET,
+        open=open_data(ranked.open, maneuvers.rules) if in_doubt else UNSET,
         chances=_chances(answers, ranked.maneuver),
     )
 
@@ -301,8 +310,8 @@ def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> list[LevelPenalty]:
     ]
 
 
-def _open(verdict: Verdict | None) -> list[OpenData] | UnsetType:
-    return UNSET if verdict is None else open_data(verdict.open)
+def _open(verdict: Verdict | None, maneuvers: Maneuvers) -> list[OpenData] | UnsetType:
+    return UNSET if verdict is None else open_data(verdict.open, maneuvers.rules)
 
 
 def _maneuver(graph: NavigationGraph, maneuver: Maneuver, **details: Any) -> ManeuverData:
@@ -321,6 +330,7 @@ def _violations(maneuvers: Maneuvers, violations: Iterable[Violation]) -> list[M
             ManeuverViolation,
             violation,
             cite=rules[violation.rule].cite,
+            inherited_from=rules[violation.rule].inherited_from or UNSET,
             lost_s=None
             if violation.step is None
             else maneuvers.graph.layers[violation.step].start_s,

@@ -74,6 +74,10 @@ def _top(rulebook: Rulebook) -> Iterator[Block]:
         ["a trace is", _ENDS[rulebook.semantics]],
         ["rules", f"{n_hard:,} hard, {len(rulebook.rules) - n_hard:,} soft"],
     ]
+    if rulebook.extends:
+        inherited = sum(bool(rule.inherited_from) for rule in rulebook.rules)
+        own = f"{len(rulebook.rules) - inherited:,} rules; {inherited:,} inherited, not confirmed"
+        rows.append(["own law", own])
     yield table(["about", "this rulebook"], rows)
 
 

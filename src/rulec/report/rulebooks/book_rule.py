@@ -51,7 +51,7 @@ def rule_section(rule: Rule, inherited: BookLineage, vocabulary: Vocabulary) -> 
     yield Heading(3, rule_heading(rule))
     if rule.says:
         yield f"> {escaped(rule.says)}"
-    facts = _facts(rule, history, book, elsewhere)
+    facts = _facts(rule, history, inherited, elsewhere)
     yield "\n".join(f"- **{name}:** {text}" for name, text in facts)
     yield Heading(4, "In plain English")
     for phrase in (phrase_of(rule, vocabulary), *restrictions_of(rule)):
@@ -66,15 +66,21 @@ def rule_section(rule: Rule, inherited: BookLineage, vocabulary: Vocabulary) -> 
     for number, example in enumerate(rule.examples, 1):
         yield from _example(example, number, vocabulary)
     base = history.before(book)
-    if history.last.deed == "overridden" and history.last.book == book and base is not None:
+    if (
+        history.last.deed in ("overridden", "confirmed")
+        and history.last.book == book
+        and base is not None
+    ):
         yield Heading(4, f"What differs from {history.steps[-2].book}")
         yield from _difference(base, history)
 
 
 def _facts(
-    rule: Rule, history: RuleHistory, book: str, elsewhere: str
+    rule: Rule, history: RuleHistory, inherited: BookLineage, elsewhere: str
 ) -> Iterator[tuple[str, str]]:
-    yield "Provision", escaped(f"{rule.cite}{elsewhere}") if rule.cite else "none is cited"
+    open_law = "; inherited, not confirmed" if rule.inherited_from else ""
+    cited = f"{rule.cite}{elsewhere}" if rule.cite else "none is cited"
+    yield "Provision", escaped(f"{cited}{open_law}")
     hard = rule.strength == "hard"
     weight = f"; weight {number_text(rule.weight)}" if not hard or rule.weight != 1 else ""
     kind = "hard, it must never be violated" if hard else "soft, it may yield"
@@ -83,13 +89,14 @@ def _facts(
         yield "Level", code(rule.level)
     objects = [f"every {spoken(item.type)} {code(item.name)}" for item in rule.variables]
     yield "Speaks of", listed(objects) if objects else "the road user in question and the world"
-    yield "Certainty", CERTAINTY[rule.certainty]
+    of_whose = f"; that is {rule.inherited_from}'s" if rule.inherited_from else ""
+    yield "Certainty", escaped(f"{CERTAINTY[rule.certainty]}{of_whose}")
     if rule.source:
         yield "Read in", linked(rule.source)
     if rule.in_force_from or rule.in_force_until:
         dates = print_in_force(tree.InForce(rule.in_force_from, rule.in_force_until))
         yield "In force", dates.removeprefix("in force ")
-    yield "Origin", escaped(provenance(history, book))
+    yield "Origin", escaped(provenance(history, inherited))
 
 
 def _sentence(phrase: Phrase) -> str:

@@ -20,6 +20,7 @@ from rulec.syntax.tree_printer import print_in_force
 _DEEDS = {
     "declared": "declared by",
     "overridden": "overridden by",
+    "confirmed": "confirmed by",
     "softened": "softened by",
     "dropped": "dropped by",
     "silent": "passed over in silence by",
@@ -36,11 +37,15 @@ class LineageStepData(JsonPart, frozen=True, kw_only=True):
 
 
 class RuleLineageData(JsonPart, frozen=True, kw_only=True):
-    """A rule's history from its declaration, perhaps to its removal."""
+    """A rule's history from its declaration, perhaps to its removal.
+
+    ``inherited_from`` names the rulebook whose law it is where the last one has not confirmed it.
+    """
 
     name: str
     gone: bool
     steps: Sequence[LineageStepData]
+    inherited_from: str
 
 
 class LineageDocument(JsonDocument, frozen=True, kw_only=True):
@@ -76,7 +81,7 @@ def as_text(inherited: rule_lineage.BookLineage, width: int, *, color: bool) -> 
     if inherited.rules:
         rules = Tree(Text("rules", "bold"))
         for rule in inherited.rules:
-            _rule(rule, inherited.book, rules)
+            _rule(rule, inherited, rules)
         trees.append(rules)
     for kind in ("option", "parameter", "definition"):
         provisions = Tree(Text(f"{kind}s", "bold"))
@@ -124,17 +129,20 @@ def _book(book: rule_lineage.BookHeader, *, missing: bool = False) -> Text:
     return label
 
 
-def _rule(rule_history: rule_lineage.RuleHistory, book: str, rules: Tree) -> None:
+def _rule(
+    rule_history: rule_lineage.RuleHistory, inherited: rule_lineage.BookLineage, rules: Tree
+) -> None:
     gone = rule_history.rule is None
     label = Text(visible(rule_history.name), "dim" if gone else "")
     label.append(
-        f"  {visible(provenance(rule_history, book))}",
-        "dim" if rule_history.last.book != book else "",
+        f"  {visible(provenance(rule_history, inherited))}",
+        "dim" if rule_history.last.book != inherited.book else "",
     )
     if rule_history.rule is not None and rule_history.rule.in_force is not None:
         label.append(f"  {print_in_force(rule_history.rule.in_force)}", "dim")
     here = rules.add(label)
-    is_one_override = len(rule_history.steps) == 2 and rule_history.last.deed == "overridden"
+    upon_one = ("overridden", "confirmed")
+    is_one_override = len(rule_history.steps) == 2 and rule_history.last.deed in upon_one
     for step in () if is_one_override else rule_history.steps[:-1]:
         here.add(Text(f"{_DEEDS[step.deed]} {visible(step.book)}{_detail(step)}", "dim"))
 
@@ -167,7 +175,8 @@ def as_json(inherited: rule_lineage.BookLineage) -> str:
     for history in inherited.rules:
         steps = [filled(LineageStepData, step) for step in history.steps]
         gone = history.rule is None
-        rules.append(filled(RuleLineageData, history, gone=gone, steps=steps))
+        law = inherited.inherited_from(history)
+        rules.append(filled(RuleLineageData, history, gone=gone, steps=steps, inherited_from=law))
     return as_indented(filled(LineageDocument, inherited, rulebook=inherited.book, rules=rules))
 
 

@@ -35,6 +35,7 @@ class RuleData(JsonPart, frozen=True, kw_only=True):
 
     If it is the only one, it has its automaton, for steps of ``step_s`` unless that is null, and
     a shortest trace that it rejects and one close to it that it accepts, null where there are none.
+    ``inherited_from`` names the rulebook whose law it is where this one has not confirmed it.
     """
 
     name: str
@@ -49,6 +50,7 @@ class RuleData(JsonPart, frozen=True, kw_only=True):
     in_force_from: str
     in_force_until: str
     book: str
+    inherited_from: str
     sentence: str
     restrictions: Sequence[str]
     formula: str

@@ -149,6 +149,8 @@ def _facts(rule: Rule, rulebook: str) -> Iterator[tuple[str, str]]:
     until = f"until {rule.in_force_until}" if rule.in_force_until else ""
     yield "in force", f"{since} {until}".strip()
     yield "rulebook", rule.book if rule.book != rulebook else ""
+    law = f"inherited, not confirmed: that of {rule.inherited_from}" if rule.inherited_from else ""
+    yield "law", law
 
 
 def in_english(phrase: Phrase, width: int) -> str:

@@ -16,6 +16,7 @@ from rulec.report.verdict_findings.verdict_finding import (
     FoundInRecording,
     VerdictFinding,
 )
+from rulec.rulebook.rulebook_model import cited_law
 
 _LEVELS = {"hard": "error", "soft": "warning"}
 
@@ -71,8 +72,8 @@ def _rule(rule: CompiledRule, rulebook: str) -> dict[str, Any]:
         "defaultConfiguration": {"level": _LEVELS[rule.strength]},
         "properties": {"rulebook": rule.book or rulebook, "strength": rule.strength},
     }
-    if rule.cite:
-        described["fullDescription"] = {"text": f"{text} ({rule.cite})"}
+    if law := cited_law(rule.cite, rule.inherited_from):
+        described["fullDescription"] = {"text": f"{text} ({law})"}
     return described
 
 

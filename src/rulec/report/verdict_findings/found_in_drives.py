@@ -15,7 +15,11 @@ from rulec.extraction.to_trace import Drive
 from rulec.extraction.violation_evidence import evidence_of
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Violation
-from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
+from rulec.report.verdict_findings.verdict_finding import (
+    FoundInRecording,
+    VerdictFinding,
+    named_rule,
+)
 
 
 @dataclass
@@ -100,7 +104,7 @@ class DriveFindings:
         return {**where, "rulebook": self.verdicts.rules.name, **fields}
 
     def _about(self, rule: CompiledRule) -> dict[str, Any]:
-        return self._own(rule=rule.name, provision=rule.cite, strength=rule.strength)
+        return self._own(**named_rule(rule))
 
     def _violated(
         self, violation: Violation, drive: Drive, explanation: Explanation | None

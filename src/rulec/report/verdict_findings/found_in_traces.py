@@ -8,7 +8,7 @@ from typing import Any
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.report.verdict_findings.verdict_finding import VerdictFinding
+from rulec.report.verdict_findings.verdict_finding import VerdictFinding, named_rule
 from rulec.trace import Trace
 
 
@@ -24,7 +24,7 @@ def trace_findings(
 
     def about(rule: CompiledRule) -> dict[str, Any]:
         own = {"file": file, "vehicle": answer.trace, "rulebook": rulebook.name}
-        return {**own, "rule": rule.name, "provision": rule.cite, "strength": rule.strength}
+        return {**own, **named_rule(rule)}
 
     for number, violation in enumerate(answer.violations):
         explanation = (

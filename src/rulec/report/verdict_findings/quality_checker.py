@@ -18,6 +18,7 @@ from rulec.report.verdict_findings.verdict_finding import (
     FoundInRecording,
     VerdictFinding,
 )
+from rulec.rulebook.rulebook_model import cited_law
 
 _LEVELS = {"hard": 1, "soft": 2}
 _INFORMATION = 3
@@ -75,11 +76,12 @@ class QualityCheckerWriter:
         issues = [one for one in findings if one.outcome != "not_judged"]
         left_out = next((one for one in findings if one.outcome == "not_judged"), None)
         skipped = left_out is not None and not left_out.vehicle and not issues
+        law = cited_law(rule.cite, rule.inherited_from)
         checker = element(
             bundle,
             "Checker",
             checkerId=rule.name,
-            description=f"{rule.says or rule.name} [{rule.cite}]" if rule.cite else rule.says,
+            description=f"{rule.says or rule.name} [{law}]" if law else rule.says,
             summary=left_out.says if skipped and left_out else failure or f"{len(issues)} issues",
             status="error" if failure else "skipped" if skipped else "completed",
         )

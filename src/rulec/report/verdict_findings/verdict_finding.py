@@ -8,6 +8,7 @@ from typing import Literal
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.report.json_document import JsonDocument, as_line, filled
+from rulec.rulebook.rulebook_model import cited_law
 from rulec.value_display import short_repr
 from rulec.version import __version__
 
@@ -24,6 +25,8 @@ class VerdictFinding:
     comparison that decides most narrowly, ``by`` how much, in ``unit``. What is open or not judged
     is so on ``open_on``, names that are not told, ``because`` of something. ``x`` and ``y`` (m)
     and ``lanelet`` are where the vehicle is then. Without a rule the file was not judged.
+    ``inherited_from`` is the rulebook whose law the rule is, if that of the finding has not
+    confirmed it; else empty.
     """
 
     __repr__ = short_repr
@@ -33,6 +36,7 @@ class VerdictFinding:
     rulebook: str = ""
     rule: str = ""
     provision: str = ""
+    inherited_from: str = ""
     strength: Literal["hard", "soft", ""] = ""
     outcome: Outcome
     vehicle: str = ""
@@ -53,7 +57,8 @@ class VerdictFinding:
         """The finding in a sentence."""
         if not self.rule:
             return self.because
-        title = f"{self.rule} [{self.provision}]" if self.provision else self.rule
+        law = cited_law(self.provision, self.inherited_from)
+        title = f"{self.rule} [{law}]" if law else self.rule
         about = f" towards {', '.join(self.other)}" if self.other else ""
         who = self.vehicle or "every vehicle"
         if self.outcome == "violated":
@@ -64,6 +69,16 @@ class VerdictFinding:
         if self.outcome == "open":
             return f"whether {who} violates {title}{about} is open{on}{why}"
         return f"{title} is not judged for {who}{on}{why}"
+
+
+def named_rule(rule: CompiledRule) -> dict[str, str]:
+    """The columns of a finding that say which rule it is about, and whose law that is."""
+    return {
+        "rule": rule.name,
+        "provision": rule.cite,
+        "inherited_from": rule.inherited_from,
+        "strength": rule.strength,
+    }
 
 
 def when(finding: VerdictFinding) -> str:
@@ -78,7 +93,8 @@ def when(finding: VerdictFinding) -> str:
 class FindingLine(JsonDocument, frozen=True, kw_only=True):
     """A finding: a rule that is ``violated``, ``open`` or ``not_judged``.
 
-    See docs/commands.md, Findings; null is what does not apply.
+    See docs/commands.md, Findings; null is what does not apply, an empty ``inherited_from`` means
+    that the rule is the rulebook's own law.
     """
 
     file: str
@@ -86,6 +102,7 @@ class FindingLine(JsonDocument, frozen=True, kw_only=True):
     rulebook: str
     rule: str
     provision: str
+    inherited_from: str
     strength: Literal["hard", "soft", ""]
     outcome: Outcome
     vehicle: str
@@ -103,7 +120,7 @@ class FindingLine(JsonDocument, frozen=True, kw_only=True):
 
 
 COLUMNS: Mapping[str, type] = {
-    **dict.fromkeys(("file", "recording", "rulebook", "rule", "provision"), str),
+    **dict.fromkeys(("file", "recording", "rulebook", "rule", "provision", "inherited_from"), str),
     **dict.fromkeys(("strength", "outcome", "vehicle"), str),
     "other": list,
     **dict.fromkeys(("from_s", "to_s", "by"), float),

@@ -61,7 +61,7 @@ def as_text(total: BatchTally, rules: CompiledRulebook, unread: Sequence[str]) -
     lines.append(f"rules       {_rules(total, rules)}")
     rows = [
         (
-            f"{rule.name} [{rule.cite}]" if rule.cite else rule.name,
+            verdict_report.short_title(rule),
             rule.strength,
             f"{total.drives[rule.name]:,}/{total.judged:,}",
             f"{total.recordings[rule.name]:,}/{total.judged_recordings:,}",

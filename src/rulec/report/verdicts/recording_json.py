@@ -99,7 +99,7 @@ def as_json(
             RecordedVerdict,
             answer,
             violations=violations,
-            **verdict_json.doubts(answer),
+            **verdict_json.doubts(answer, verdicts.rules),
             **recorded,
         )
     )

@@ -82,7 +82,7 @@ def _table(verdicts: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
         return
     defaults = verdicts.by_default(tally.words or frozenset())
     rules = [rule for rule in verdicts.rules.rules if rule.name in tally.first_s]
-    names = [f"{rule.name} [{rule.cite}]" if rule.cite else rule.name for rule in rules]
+    names = [verdict_report.short_title(rule) for rule in rules]
     titles = [shorten(name, LONGEST_RULE, placeholder=" …]") for name in names]
     rows = [("violated", "", " drives", "   first", "by")]
     for rule, title in zip(rules, titles, strict=True):

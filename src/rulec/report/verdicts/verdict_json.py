@@ -11,7 +11,7 @@ from msgspec import UNSET, UnsetType
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.explain.explanation import Explanation
-from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict
+from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleNotJudged, Verdict
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.verdicts.violation_table import repaired_states
 from rulec.vocabulary.partial_values import Interval, PartialValue, UnknownValue
@@ -132,7 +132,8 @@ class ViolationData(JsonPart, frozen=True, kw_only=True):
     """A violated rule and binding; ``step`` null if only the end decides.
 
     Of recorded traffic, ``time_s`` is the step's time, and ``by_default`` names what the rule reads
-    and nothing supplies.
+    and nothing supplies. ``inherited_from`` names the rulebook whose law the rule is where this one
+    has not confirmed it; without it the rule is this one's own law.
     """
 
     rule: str
@@ -141,6 +142,7 @@ class ViolationData(JsonPart, frozen=True, kw_only=True):
     strength: Literal["hard", "soft"]
     level: str | None
     weight: Number
+    inherited_from: str | UnsetType = UNSET
     explanation: ExplanationData | UnsetType = UNSET
     time_s: float | UnsetType | None = UNSET
     by_default: Sequence[str] | UnsetType = UNSET
@@ -168,6 +170,7 @@ class OpenData(JsonPart, frozen=True, kw_only=True):
     depends_on: Sequence[str]
     outcomes: Sequence[ConditionalData]
     exact: bool
+    inherited_from: str | UnsetType = UNSET
 
 
 class NotJudgedRule(JsonPart, frozen=True, kw_only=True):
@@ -177,6 +180,7 @@ class NotJudgedRule(JsonPart, frozen=True, kw_only=True):
     strength: Literal["hard", "soft"]
     untold: Sequence[str]
     why: str
+    inherited_from: str | UnsetType = UNSET
 
 
 class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
@@ -206,26 +210,46 @@ def as_json(
 ) -> str:
     """Write a verdict; ``explained`` are explanations of its first violations."""
     violations = violations_data(verdict, rulebook, explained)
-    return as_line(filled(TraceVerdict, verdict, violations=violations, **doubts(verdict)))
+    return as_line(
+        filled(TraceVerdict, verdict, violations=violations, **doubts(verdict, rulebook))
+    )
 
 
-def doubts(verdict: Verdict) -> dict[str, Any]:
+def doubts(verdict: Verdict, rulebook: CompiledRulebook) -> dict[str, Any]:
     """The fields on what is open, not judged, and presumed."""
     return {
-        "open": open_data(verdict.open),
-        "not_judged": [filled(NotJudgedRule, rule) for rule in verdict.not_judged],
+        "open": open_data(verdict.open, rulebook),
+        "not_judged": not_judged_data(verdict.not_judged, rulebook),
         "presumed": verdict.presumed,
     }
 
 
-def open_data(doubtful: Sequence[OpenVerdict]) -> list[OpenData]:
+def open_data(doubtful: Sequence[OpenVerdict], rulebook: CompiledRulebook) -> list[OpenData]:
     """What is open."""
     return [
         filled(
-            OpenData, rule, outcomes=[filled(ConditionalData, outcome) for outcome in rule.outcomes]
+            OpenData,
+            rule,
+            outcomes=[filled(ConditionalData, outcome) for outcome in rule.outcomes],
+            inherited_from=_inherited_from(rule.rule, rulebook),
         )
         for rule in doubtful
     ]
+
+
+def not_judged_data(
+    rules: Sequence[RuleNotJudged], rulebook: CompiledRulebook
+) -> list[NotJudgedRule]:
+    """The rules that cannot be judged."""
+    return [
+        filled(NotJudgedRule, rule, inherited_from=_inherited_from(rule.rule, rulebook))
+        for rule in rules
+    ]
+
+
+def _inherited_from(name: str, rulebook: CompiledRulebook) -> str | UnsetType:
+    inherited = (rule.inherited_from for rule in rulebook.rules if rule.name == name)
+    return next(inherited, "") or UNSET
 
 
 def not_judged_as_json(answer: NotJudged) -> str:
@@ -244,6 +268,7 @@ def violations_data(
             violation,
             level=rules[violation.rule].level or None,
             weight=rules[violation.rule].weight,
+            inherited_from=rules[violation.rule].inherited_from or UNSET,
             explanation=UNSET if explanation is None else explanation_data(explanation),
         )
         for violation, explanation in zip_longest(verdict.violations, explained)

@@ -11,6 +11,7 @@ from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.terminal_text import styled, visible
 from rulec.report.verdicts.outcome_cases import fewest_cases
+from rulec.rulebook.rulebook_model import cited_law
 
 if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
@@ -131,6 +132,12 @@ def in_a_line(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
     return f"{rule.strength} rule {_title(rule, rulebook)}{_about(violation.binding)}: {when}"
 
 
+def short_title(rule: CompiledRule) -> str:
+    """The rule's name and provision, with the book whose law it is if that is not confirmed."""
+    law = " ".join(filter(None, (rule.inherited_from, rule.cite)))
+    return f"{rule.name} [{law}]" if law else rule.name
+
+
 def _title(rule: CompiledRule, rulebook: str) -> str:
     """The rule's name with level and weight unless default, and its place."""
     title, place = rule.name, rule.cite
@@ -138,7 +145,9 @@ def _title(rule: CompiledRule, rulebook: str) -> str:
         title += f" in {rule.level}"
     if rule.strength == "soft" and rule.weight != 1:
         title += f" weight {number_in_words(rule.weight)}"
-    if rule.book and rule.book != rulebook:
+    if rule.inherited_from:
+        place = cited_law(rule.cite, rule.inherited_from)
+    elif rule.book and rule.book != rulebook:
         place = f"{rule.book}, {place}" if place else rule.book
     return f"{title} [{place}]" if place else title
 

@@ -22,7 +22,7 @@ RULE_TWICE = Code(
 
 NOT_INHERITED = Code(
     "R0212",
-    title="there is nothing to override, drop, soften, set or redefine",
+    title="there is nothing to override, confirm, drop, soften, set or redefine",
     why="These words change what a rulebook inherits from the one that it extends. If that has "
     "nothing of the name, the line would have no effect.",
     bad='rulebook example\nextends esterle2019\ndrop rule R4 because "not in this country"\n',

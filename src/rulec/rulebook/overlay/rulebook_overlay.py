@@ -22,12 +22,14 @@ class RuleEntry:
     """A rule after all overrides.
 
     ``book`` is the file that it, or its last override, stands in, ``examples_from`` the one that
-    its examples stand in. ``changed`` is the name in the last line that changed it.
+    its examples stand in, ``law`` the one whose law it is: that last declared it, confirmed it or
+    gave it another provision. ``changed`` is the name in the last line that changed it.
     """
 
     item: tree.RuleItem
     book: tree.File
     examples_from: tree.File
+    law: tree.File
     changed: tree.Name | None = None
 
 
@@ -86,7 +88,7 @@ class Overlay:
             case tree.RuleItem(name=name):
                 known = self.rules.get(name.text)
                 if known is None:
-                    self.rules[name.text] = RuleEntry(item, file, file)
+                    self.rules[name.text] = RuleEntry(item, file, file, file)
                 else:
                     message = say.rule_twice if known.book is file else say.inherited_rule
                     self.mistakes.append(message(item, known.item))
@@ -179,7 +181,7 @@ class Overlay:
         return True
 
     def _override(self, item: tree.RuleItem, file: tree.File) -> None:
-        if not self._is_inherited_rule(item.name, "override", file):
+        if not self._is_inherited_rule(item.name, "confirm" if item.confirm else "override", file):
             return
         base = self.rules[item.name.text]
         after = merged(base.item, item)
@@ -189,7 +191,8 @@ class Overlay:
             variables = (*after.variables, *lost)
             after = replace(after, variables=variables, examples=item.examples, complete=False)
         examples_from = file if item.examples else base.examples_from
-        self.rules[item.name.text] = RuleEntry(after, file, examples_from, item.name)
+        law = file if item.cite else base.law
+        self.rules[item.name.text] = RuleEntry(after, file, examples_from, law, item.name)
 
     def _soften(self, item: tree.SoftenItem) -> None:
         entry = self.rules[item.name.text]
@@ -238,6 +241,16 @@ def overlay(chain: Sequence[tree.File], spans: Mapping[str, Span], *, unsure: bo
         for item in file.items:
             laid.lay(item, file, level)
     return laid
+
+
+def own_law(chain: Sequence[tree.File]) -> Sequence[tree.File]:
+    """The rulebooks at a chain's end that are its own law: from the last that names a law on.
+
+    What changes a rulebook without naming another law, as a variant or a depot's book does, is of
+    the same law. Where none names a law, it is the last one alone.
+    """
+    named = [number for number, file in enumerate(chain) if file.law and file.law.text.value]
+    return chain[named[-1] if named else -1 :]
 
 
 def in_force(dates: tree.InForce | None, day: str) -> bool:

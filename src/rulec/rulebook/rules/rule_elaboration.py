@@ -30,10 +30,13 @@ def translate_rule(
     symbols: SymbolTable,
     constants: ConstantsAndMacros,
     levels: Sequence[str] | None,
+    *,
+    confirmed: bool = True,
 ) -> tuple[Rule | None, list[Diagnostic]]:
     """Elaborate a rule; return it or None, its mistakes and warnings.
 
     ``levels`` are those of the rulebook's priorities; None if they are not known for sure.
+    ``confirmed``: it is the rulebook's own law.
     """
     item = entry.item
     mistakes: list[Diagnostic] = []
@@ -62,7 +65,7 @@ def translate_rule(
     step = _step_of(entry.examples_from, scope)
     if parts is None or formula is None or weight is None or _errors(mistakes):
         return None, [_with_change(mistake, entry) for mistake in mistakes]
-    dates = item.in_force or tree.InForce()
+    dates, law = item.in_force or tree.InForce(), entry.law
     rule = Rule(
         name=item.name.text,
         strength=item.strength or "hard",
@@ -87,6 +90,7 @@ def translate_rule(
         required=parts.required if parts.exemptions or parts.condition else None,
         exemptions=parts.exemptions,
         condition=parts.condition,
+        inherited_from=law.name.text if law.name and not confirmed else "",
     )
     if rule.examples:
         try:

@@ -153,13 +153,15 @@ Clause = tree.Text | tree.Formula | tree.Unless | tree.InForce | str
 def rule_head(values: NodeValues, node: ParseNode) -> tree.RuleItem:
     """A rule without its clauses."""
     name, *level = values.names(node)
+    confirm = bool(node.leaves("CONFIRM"))
     return tree.RuleItem(
         strength="hard" if node.leaves("HARD") else "soft" if node.leaves("SOFT") else None,
         name=name,
         variables=parameters(values, node),
         level=level[0] if level else None,
         weight=weight(values, node),
-        override=bool(node.leaves("OVERRIDE")),
+        override=bool(node.leaves("OVERRIDE") or confirm),
+        confirm=confirm,
     )
 
 

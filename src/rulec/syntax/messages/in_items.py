@@ -110,6 +110,7 @@ def advise_on_dates(scene: ParseContext) -> str:
 
 _HEAD: Final = "a rule's head is written `hard rule NAME (v: vehicle) in LEVEL weight NUMBER`"
 _SCOPE: Final = "a scope is `initially`, `at start`, `throughout`, `at some point`, or `at end`"
+_CONFIRMATION: Final = 'a confirmation is written `confirm rule NAME { cite "…" }`'
 _REMOVING: Final = ("remove", "delete", "repeal", "abolish", "cancel", "skip", "disable")
 _RELATIONS: Final = ("<", "<=", "==", "!=", ">=", ">", ":", ":=")
 _EXAMPLE: Final = "an example is written `accept { … }` or `reject { … }`"
@@ -156,6 +157,8 @@ def advise_on_rule_head(scene: ParseContext) -> str:
         return "a rule begins with `hard rule` or `soft rule`"
     if scene.text_before == "rule" and scene.accepted == {"NAME"}:
         return "a rule has a name, which stands behind `rule`"
+    if scene.first == "confirm" and scene.at > 1:
+        return _CONFIRMATION
     if text == "override" and scene.accepted == {"RULE"}:
         return f"`override` comes first: `override {scene.first} rule`"
     if "RULE" in scene.accepted:

@@ -27,7 +27,8 @@ MISSING_PART = Code(
     "R0114",
     title="something that must be there is missing",
     why="A file says first what it is; a rulebook has a rule, or extends another; every rule has "
-    "one `require`, but for those that override another and leave it as it is.",
+    "one `require`, but for those that override or confirm another and leave it as it is; what "
+    "confirms one has a `cite`.",
     bad='rulebook example\nhard rule r { says "Drive with care." }\n',
     good="rulebook example\nsignal careful\n"
     'hard rule r { says "Drive with care." require always careful }\n',
@@ -61,6 +62,36 @@ NOT_A_RULEBOOK = Code(
     bad="Dear all,\nplease find the rules attached.\n",
     good="rulebook attached\nsignal p\nhard rule r { require p }\n",
 )
+
+CONFIRMED_AND_CHANGED = Code(
+    "R0120",
+    title="a confirmation changes the rule",
+    why="`confirm rule` says that an inherited rule is this rulebook's own law, too, and by which "
+    "provision. What the rule demands stays as it is inherited: it may have `cite`, `source`, "
+    "`certainty`, `says` and examples, no other clause.",
+    bad="rulebook example\nextends vienna\n"
+    'confirm rule near_side_passing {\n  cite "s. 1"\n  unless congested\n}\n',
+    good='rulebook example\nextends vienna\nconfirm rule near_side_passing {\n  cite "s. 1"\n}\n',
+)
+
+
+def changed_by_confirming(rule: str, word: str, place: Span) -> Diagnostic:
+    return CONFIRMED_AND_CHANGED.at(
+        place,
+        f"`{'in force' if word == 'in' else word}` changes rule `{rule}`, which is confirmed here",
+        expected="expected `cite`, `source`, `certainty`, `says` or an example",
+        help=f"write `override rule {rule}` to change it, or leave this out",
+    )
+
+
+def no_cite(rule: str, head: Span) -> Diagnostic:
+    """A confirmation without the provision that confirms the rule."""
+    return MISSING_PART.at(
+        head,
+        f"this does not say which provision confirms rule `{rule}`",
+        expected="expected a `cite` clause in it",
+        help='name the article of this rulebook\'s own law, such as `cite "Art. 5(1)"`',
+    )
 
 
 def given_twice(what: str, again: Span, first: Span) -> Diagnostic:
