@@ -62,9 +62,20 @@ def vocabulary_page(source: Source) -> str:
             *_word_table([word for word in words if word.about]),
             "\n## About ego and the world\n",
             *_word_table([word for word in words if not word.about]),
+            *_facts(file.items),
             "",
         ]
     )
+
+
+def _facts(items: Sequence[tree.Item]) -> Iterator[str]:
+    """A section of what always holds, if the file says anything of the kind."""
+    facts = [item for item in items if isinstance(item, tree.FactItem)]
+    if facts:
+        yield "\n## What always holds\n"
+        yield "A trace or an example that says otherwise, where a rule reads it, is an error.\n"
+    for item in facts:
+        yield f"- `{' '.join(item.span.text.split()).removeprefix('fact ')}`"
 
 
 def comment_above(item: tree.Item) -> str:

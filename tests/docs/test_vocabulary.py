@@ -4,10 +4,10 @@ import pytest
 
 from rulec.diagnostics import RulecError, Source
 from rulec.syntax import decode, parse
-from rulec.syntax.tree import ConstantItem, PresumedItem
+from rulec.syntax.tree import ConstantItem, FactItem, PresumedItem
 from tools.vocabulary_page import ROAD, comment_above, vocabulary_page
 
-MARKS = ConstantItem | PresumedItem
+MARKS = ConstantItem | PresumedItem | FactItem
 ITEMS = [
     item
     for item in parse(decode(ROAD.name, ROAD.read_bytes()))[0].items
@@ -40,6 +40,17 @@ def test_a_row_for_each_word():
         "| `speed` | in km/h | 2.5 | how fast. | scene |",
         "| `ground` | `ice`, `sand` | – | what is under ego. | map |",
     ]
+
+
+def test_facts_stand_at_the_end():
+    page = vocabulary_page(
+        Source(
+            "small.rules",
+            "vocabulary small {\n  # Map: a.\n  signal a, b default false\n"
+            "  fact a\n    implies b\n}\n",
+        )
+    )
+    assert page.endswith("is an error.\n\n- `a implies b`\n")
 
 
 def test_a_file_with_mistakes_has_no_page():

@@ -39,7 +39,7 @@ from rulec.extraction.signals.participant_signals import (
     gap_beside_safe_distance,
     participant_signals,
 )
-from rulec.extraction.signals.settling import settled
+from rulec.extraction.signals.settling import agreeing, settled
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
@@ -205,7 +205,7 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     """The drive of ``ego`` as a trace called ``name``."""
     names = _names_written(writer)
     signals = together([signals_of(context, names) for signals_of in _SIGNALS])
-    signals = settled(signals, LEAST_S, context.recording.step_s)
+    signals = agreeing(settled(signals, LEAST_S, context.recording.step_s))
     types = [body.object_types for body in context.tracks.participants]
     chosen = written(signals, types, writer.vocabulary, writer.names)
     chosen = with_assumed(chosen, writer.assumed, context.states)

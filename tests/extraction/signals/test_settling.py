@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.signals.settling import only_when, settled, without_blips
+from rulec.extraction.signals.settling import agreeing, only_when, settled, without_blips
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.traffic_thresholds import LEAST_S
 
@@ -137,3 +137,22 @@ def test_a_doubt_between_two_sure_codes_is_about_when(codes, doubtful, there, on
     rows = [np.array([list(text)]) for text in (codes, doubtful, there)]
     (found,) = only_when(rows[0], rows[1] == "?", rows[2] == "-", 2)
     assert "".join(".?"[flag] for flag in found.tolist()) == only
+
+
+def test_what_surely_is_brings_with_it_what_it_implies():
+    rows = np.array([[True, True, False], [False, False, False]])
+    signals = SignalColumns(
+        world={
+            "enters_junction": np.array([False, True, False]),
+            "junction_zone": np.array([False, False, True]),
+        },
+        about={"boarding": rows, "stopped": np.zeros((2, 3), dtype=bool)},
+        unknown={
+            "boarding": np.array([[False, True, False], [False, False, False]]),
+            "stopped": np.ones((2, 3), dtype=bool),
+        },
+    )
+    found = agreeing(signals)
+    assert found.world["junction_zone"].tolist() == [False, True, True]
+    assert found.about["stopped"].tolist() == [[True, False, False], [False, False, False]]
+    assert found.unknown["stopped"].tolist() == [[False, True, True], [True, True, True]]

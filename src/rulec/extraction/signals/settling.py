@@ -19,6 +19,14 @@ from rulec.extraction.tracks.tracks import Flags
 _HAIR = 1e-6
 _MOST_CHANGES = 2
 
+_IMPLIED: Mapping[str, Sequence[str]] = {
+    "stopped": ("parked", "boarding", "stopped_for_pedestrian"),
+    "junction_zone": ("enters_junction",),
+    "level_crossing_zone": ("enters_level_crossing",),
+    "warning_lights": ("hazard_lights",),
+}
+"""Signal -> those that it holds with, as the vocabulary's facts say."""
+
 
 def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float) -> SignalColumns:
     """The signals without values that are shorter than their word's least duration (s).
@@ -32,6 +40,23 @@ def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float)
         {**columns, **_changed(columns, least, unknown)}
         for columns in (signals.world, signals.about)
     )
+    return replace(signals, world=world, about=about, unknown=unknown)
+
+
+def agreeing(signals: SignalColumns) -> SignalColumns:
+    """The signals with each true, and known to be, where one that implies it surely is.
+
+    Each may have been settled by itself, or found by a measure of its own.
+    """
+    world, about, unknown = dict(signals.world), dict(signals.about), dict(signals.unknown)
+    for name, stronger in _IMPLIED.items():
+        for columns in (world, about):
+            for other in stronger if name in columns else ():
+                if other in columns:
+                    sure = columns[other] & ~unknown.get(other, np.False_)
+                    columns[name] = columns[name] | sure
+                    if name in unknown:
+                        unknown[name] = unknown[name] & ~sure
     return replace(signals, world=world, about=about, unknown=unknown)
 
 
