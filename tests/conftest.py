@@ -6,6 +6,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from rulec.automata import compiler, prefix_machines
+from rulec.environment_variables import variable_set
 from support.remembered_machines import ASKED, remembering
 from support.snapshots import Snapshots
 
@@ -38,13 +39,8 @@ def pytest_collection_modifyitems(items):
 @pytest.fixture(autouse=True, scope="session")
 def _own_cache(tmp_path_factory):
     """Tests neither use what the user's own checks have left, nor leave anything there."""
-    before = os.environ.get("RULEC_CACHE_DIR")
-    os.environ["RULEC_CACHE_DIR"] = str(tmp_path_factory.mktemp("cache"))
-    yield
-    if before is None:
-        del os.environ["RULEC_CACHE_DIR"]
-    else:
-        os.environ["RULEC_CACHE_DIR"] = before
+    with variable_set("RULEC_CACHE_DIR", str(tmp_path_factory.mktemp("cache"))):
+        yield
 
 
 @pytest.fixture(autouse=True, scope="session")

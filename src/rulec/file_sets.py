@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from rulec.files import as_before, is_replaced, put_folder_on_disk, put_on_disk, refusals
-from rulec.trees import is_ordinary, refuse_no_source
+from rulec.work_trees import is_ordinary, refuse_no_source
 
 MANIFEST = ".rulec-writing.json"
 _PART = re.compile(r"\.rulec-[0-9a-f]{16}-[0-9]+\.part")

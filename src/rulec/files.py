@@ -24,7 +24,7 @@ from rulec.file_messages import (
     reason_in_words,
     unwritable,
 )
-from rulec.trees import refuse_link_out
+from rulec.work_trees import refuse_link_out
 
 MAX_SOURCE_BYTES: Final = 5_000_000
 """A rulebook has thousands of characters; millions are a mistake."""

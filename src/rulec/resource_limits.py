@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
+from rulec.environment_variables import variable_set
 from rulec.limit_messages import NO_LIMIT, OVER_LIMIT
 
 if TYPE_CHECKING:
@@ -123,13 +124,6 @@ def in_force(texts: Iterable[str]) -> Iterator[None]:
 
     Raises RulecError R0719.
     """
-    before = os.environ.get(VARIABLE)
-    given = {**settings_in((before or "").split()), **settings_in(texts)}
-    os.environ[VARIABLE] = " ".join(f"{name}={value}" for name, value in given.items())
-    try:
+    given = {**settings_in(os.environ.get(VARIABLE, "").split()), **settings_in(texts)}
+    with variable_set(VARIABLE, " ".join(f"{name}={value}" for name, value in given.items())):
         yield
-    finally:
-        if before is None:
-            del os.environ[VARIABLE]
-        else:
-            os.environ[VARIABLE] = before

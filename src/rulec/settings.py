@@ -9,7 +9,7 @@ from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
 from rulec.file_messages import OUT_OF_TREE, WRONG_SETTINGS
 from rulec.files import decoded, opened
 from rulec.toml import parsed_toml
-from rulec.trees import leads_out, refuse_link_out, tree_of
+from rulec.work_trees import leads_out, refuse_link_out, tree_of
 
 FILE_NAME = "rulec.toml"
 _HOW = 'such as `search_path = ["rulebooks"]`'

@@ -607,31 +607,9 @@ def test_bounds_and_pictures_read_what_is_not_known_alike(tmp_path, capsys):
     assert "--told-only needs a rulebook" in capsys.readouterr().err
 
 
-ALIKE = """
-[road]
-s = [-20.0, 80.0]
-lanes = [-1.75, 1.75]
-[ego]
-s = 0.0
-d = 0.0
-[[obstacle]]
-id = "child"
-type = "pedestrian"
-length = 0.5
-width = 0.5
-s = 22.0
-d = -2.5
-walking_direction = 90
-[[obstacle.prediction]]
-weight = 0.8
-[[obstacle.prediction]]
-weight = 0.2
-"""
-
-
 def test_predictions_that_are_one_motion_are_one_world_and_said_to_be(tmp_path, capsys):
     scene = tmp_path / "kerb.toml"
-    scene.write_text(ALIKE)
+    scene.write_text(CHILD_AT_THE_KERB.replace("lateral_speed = 0.6\n", ""))
     asked = [str(scene), "-r", "esterle2019", "--horizon", "1", "--list", "1", "--worlds", "--json"]
     assert main(["maneuvers", *asked]) == 0
     data = json.loads(capsys.readouterr().out)

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from rulec.beginnings import is_foreign
 from rulec.cli.main import main
 from rulec.rulebook.files.source_walk import sources_below
+from rulec.source_detection import is_foreign
 
 BOOK = "rulebook a\nsignal p\nhard rule r { require p }\n"
 SECRET = "DEPLOY_KEY=hunter2"
@@ -154,6 +154,6 @@ def test_no_line_of_a_file_that_is_no_source_is_shown(secret, tree, capsys):
     assert "b.rules" in out
 
 
-def test_looking_at_beginnings_takes_few_steps():
+def test_telling_sources_from_other_files_takes_few_steps():
     assert is_foreign("#" * 60_000 + "\n" + " " * 60_000 + "?")
     assert not is_foreign("# \n" * 20_000)

@@ -13,8 +13,8 @@ from typing import Any
 from rulec.files import is_folder, opened
 from rulec.rates.rates_messages import no_findings
 from rulec.trace.formats.arrow.parquet import rows_of_columns
-from rulec.trees import refuse_link_out, tree_of
 from rulec.value_display import short_repr
+from rulec.work_trees import refuse_link_out, tree_of
 
 LARGEST = 1e12
 """No fleet drives so many metres or seconds in one drive; sums of larger numbers overflow."""

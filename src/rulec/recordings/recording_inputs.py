@@ -13,7 +13,7 @@ from rulec.file_messages import UNREADABLE_FILE
 from rulec.files import is_folder
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_format import RECORDING, Glance
-from rulec.trees import refuse_link_out, tree_of
+from rulec.work_trees import refuse_link_out, tree_of
 
 STANDARD_INPUT = "-"
 

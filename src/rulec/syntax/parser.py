@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from types import ModuleType
 from typing import TypeVar, cast
 
-from rulec.beginnings import is_foreign
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
+from rulec.source_detection import is_foreign
 from rulec.syntax import tree
 from rulec.syntax.assembly import Part, assemble_file, assemble_rule
 from rulec.syntax.building import formulas, items

@@ -8,11 +8,11 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from rulec.beginnings import beginning_of, is_foreign
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
 from rulec.diagnostics.diagnostic import unquoted
 from rulec.file_messages import FILE_TOO_LARGE
 from rulec.files import MAX_SOURCE_BYTES, decoded, without_null
+from rulec.source_detection import beginning_of, is_foreign
 
 MAX_TOKENS = 1_000_000
 """Far above what a file of the permitted size holds, far below what would exhaust memory."""

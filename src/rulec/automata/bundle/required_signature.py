@@ -19,6 +19,7 @@ from rulec.automata.bundle.minisign import (
     public_key,
 )
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.environment_variables import variable_set
 
 VARIABLE = "RULEC_REQUIRE_SIGNED"
 """The path of a public key, or the key itself; unset or empty if nothing has to be signed."""
@@ -33,15 +34,8 @@ def in_force(key: str) -> Iterator[None]:
     Raises RulecError R0413 if it is none.
     """
     _key(key)
-    before = os.environ.get(VARIABLE)
-    os.environ[VARIABLE] = key
-    try:
+    with variable_set(VARIABLE, key):
         yield
-    finally:
-        if before is None:
-            del os.environ[VARIABLE]
-        else:
-            os.environ[VARIABLE] = before
 
 
 def check_signed(path: Path, data: bytes) -> None:

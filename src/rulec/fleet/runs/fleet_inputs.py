@@ -16,7 +16,7 @@ from rulec.recordings.recording_files import is_recording
 from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
 from rulec.trace.formats.arrow.parquet_columns import parquet_names
 from rulec.trace.formats.table_reader import STEP, TRACE
-from rulec.trees import leads_out, tree_of
+from rulec.work_trees import leads_out, tree_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TypeVar
 
-from rulec.trees import is_ordinary, leads_out
+from rulec.work_trees import is_ordinary, leads_out
 
 MOST_BYTES = 100_000
 """Of a file of patterns; further ones are not obeyed."""

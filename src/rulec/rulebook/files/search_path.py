@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from rulec.beginnings import LEAD_BYTES, beginning_of, first_word_at
 from rulec.diagnostics import Label, RulecError, Span, did_you_mean, named
 from rulec.files import MAX_SOURCE_BYTES, opened
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.files.source_walk import SUFFIX, rules_files
-from rulec.trees import refuse_no_source
+from rulec.source_detection import LEAD_BYTES, beginning_of, first_word_at
+from rulec.work_trees import refuse_no_source
 
 BY_PATH = "a file is given by its path, such as `./mine.rules`"
 

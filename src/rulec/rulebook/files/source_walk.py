@@ -9,11 +9,11 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rulec.beginnings import LEAD_BYTES, beginning_of, is_foreign
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.file_messages import NOTHING_LEFT, UNREADABLE_FILE
 from rulec.rulebook.files.git_ignores import IgnoreFile, ignore_files, is_ignored, patterns_in
-from rulec.trees import is_ordinary, refuse_no_source, tree_of
+from rulec.source_detection import LEAD_BYTES, beginning_of, is_foreign
+from rulec.work_trees import is_ordinary, refuse_no_source, tree_of
 
 SUFFIX = ".rules"
 

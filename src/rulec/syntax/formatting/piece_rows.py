@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final, cast
 
-from rulec.beginnings import FILE_WORDS
 from rulec.diagnostics import Source
+from rulec.source_detection import FILE_WORDS
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.formatting.document import (
     WIDTH,

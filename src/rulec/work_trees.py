@@ -1,4 +1,4 @@
-"""The tree that a file stands in: links out of it, pipes and devices are refused.
+"""The work tree that a file stands in: links out of it, pipes and devices are refused.
 
 Whoever wrote the checkout chose what its files are. A link may lead to any file of this machine,
 and a pipe never ends.
