@@ -99,7 +99,13 @@ def test_table_v_by_counting(scenario, step, capsys):
     assert found["horizon_s"] == 4
 
 
-@pytest.mark.parametrize(("scenario", "step"), TABLE_V)
+@pytest.mark.parametrize(
+    ("scenario", "step"),
+    [
+        pytest.param(*asked, marks=[pytest.mark.long] if counts[2] > 5000 else [])
+        for asked, counts in TABLE_V.items()
+    ],
+)
 def test_table_v_by_enumerating(scenario, step, capsys, tmp_path):
     file = str(tmp_path / "traces.jsonl")
     assert main(["traces", scenario, "--step", step, "-o", file]) == 0

@@ -1,5 +1,6 @@
 """Exceptions and conditions, read as they are defined: by all ways to cut a word into phases."""
 
+import os
 import random
 from itertools import combinations, combinations_with_replacement, product
 
@@ -13,6 +14,7 @@ from rulec.logic.semantics import holds
 from rulec.rulebook.loader import parse_rulebook
 
 NAMES = "pqrs"  # of phases and what holds beside them; x and y are of exceptions
+ROUNDS = 9 if os.environ.get("RULEC_TEST_PROFILE") == "long" else 1
 SCOPES = ["initially", "at start", "throughout", "at some point", "at end"]
 
 # A state is the set of the names that are true in it; a condition is a set of states, and the text
@@ -183,7 +185,7 @@ def test_two_exceptions_of_a_sequence(scopes, n_phases, bound, kind):
     exceptions = list(zip((named("x"), named("y")), scopes, strict=True))
     formula = formula_of(f"never ({written(some)})", exceptions, kind)
     chance = random.Random(n_phases)
-    for _ in range(2):
+    for _ in range(ROUNDS):
         for word in sequences_with(chance, n_phases):
             expected = never_holds(some, exceptions, lasting(word, kind, 3 * n_phases))
             assert judged(formula, word, kind) == expected, word
