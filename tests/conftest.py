@@ -1,12 +1,14 @@
 """Settings shared by all tests."""
 
 import os
+from pathlib import Path
+from shutil import rmtree
+from tempfile import mkdtemp
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from rulec.automata import compiler, prefix_machines
-from rulec.environment_variables import variable_set
 from support.remembered_machines import ASKED, remembering
 from support.snapshots import Snapshots
 
@@ -36,28 +38,26 @@ def pytest_collection_modifyitems(items):
                 item.add_marker(pytest.mark.skip(reason="takes long: --long"))
 
 
-@pytest.fixture(autouse=True, scope="session")
-def _own_cache(tmp_path_factory):
-    """Tests neither use what the user's own checks have left, nor leave anything there."""
-    with variable_set("RULEC_CACHE_DIR", str(tmp_path_factory.mktemp("cache"))):
-        yield
+_KEPT = "RULEC_TESTS_KEEP"
+"""The folder of what the processes of a run keep, which their first one makes."""
 
 
-@pytest.fixture(autouse=True, scope="session")
-def _remembered_machines(tmp_path_factory):
-    """What has been compiled is not compiled again by another test, but in the long profile."""
-    if os.environ.get("RULEC_TEST_PROFILE") == "long":
-        yield
-        return
-    folder = tmp_path_factory.getbasetemp()
-    # Processes side by side have folders of their own, side by side.
-    folder = (folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder) / "machines"
-    folder.mkdir(exist_ok=True)
-    answers = remembering(folder)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiler, "answers_to", answers)
-        patch.setattr(prefix_machines, "answers_to", answers)
-        yield
+def pytest_configure(config):
+    """Keep caches for the run, before modules are collected, some of which compile rulebooks.
+
+    Tests neither use what the user's own checks have left, nor leave anything there. What one test
+    has compiled is not compiled again by another, but in the long profile.
+    """
+    if _KEPT not in os.environ:
+        os.environ[_KEPT] = mkdtemp(prefix="rulec-tests-")
+        config.add_cleanup(lambda: rmtree(os.environ.pop(_KEPT)))
+    kept = Path(os.environ[_KEPT])
+    own = kept / os.environ.get("PYTEST_XDIST_WORKER", "alone")
+    os.environ["RULEC_CACHE_DIR"] = str(own)
+    if os.environ.get("RULEC_TEST_PROFILE") != "long":
+        (kept / "machines").mkdir(exist_ok=True)
+        answers = remembering(kept / "machines")
+        compiler.answers_to = prefix_machines.answers_to = answers
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
-from rulec.environment_variables import variable_set
 from rulec.limit_messages import NO_LIMIT, OVER_LIMIT
 
 if TYPE_CHECKING:
@@ -127,3 +126,17 @@ def in_force(texts: Iterable[str]) -> Iterator[None]:
     given = {**settings_in(os.environ.get(VARIABLE, "").split()), **settings_in(texts)}
     with variable_set(VARIABLE, " ".join(f"{name}={value}" for name, value in given.items())):
         yield
+
+
+@contextmanager
+def variable_set(name: str, value: str) -> Iterator[None]:
+    """Set an environment variable in a block; afterwards it is what it was, or unset."""
+    before = os.environ.get(name)
+    os.environ[name] = value
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[name]
+        else:
+            os.environ[name] = before

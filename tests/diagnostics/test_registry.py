@@ -2,6 +2,7 @@
 
 import ast
 import re
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -10,15 +11,20 @@ import pytest
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
 from rulec.diagnostics.code import Code
 from rulec.report.findings.code_registry import all_codes, code_named, message_files
+from support.source_modules import PACKAGE, source_modules
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCES = {path: path.read_text() for path in (ROOT / "src").rglob("*.py")}
-TREES = {path: ast.parse(text) for path, text in SOURCES.items()}
-TESTS = "".join(
-    path.read_text()
-    for pattern in ("*.py", "*.expected")
-    for path in (ROOT / "tests").rglob(pattern)
-)
+CODES = all_codes()
+
+
+@cache
+def texts_of_tests():
+    """The text of all tests."""
+    return "".join(
+        path.read_text()
+        for pattern in ("*.py", "*.expected")
+        for path in (ROOT / "tests").rglob(pattern)
+    )
 
 
 def calls(tree, name):
@@ -29,45 +35,48 @@ def calls(tree, name):
     ]
 
 
-def definitions():
+@cache
+def defined():
     """Code -> the name that it is bound to, and the module that does so."""
     return {
-        node.value.args[0].value: (node.targets[0].id, path)
-        for path, tree in TREES.items()
-        for node in tree.body
+        node.value.args[0].value: (node.targets[0].id, PACKAGE / module.name)
+        for module in source_modules()
+        for node in module.tree.body
         if isinstance(node, ast.Assign) and calls(node, "Code")
     }
 
 
-DEFINED = definitions()
-CODES = all_codes()
-LOADED = {
-    node.id if isinstance(node, ast.Name) else node.attr
-    for tree in TREES.values()
-    for node in ast.walk(tree)
-    if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
-}
+@cache
+def loaded():
+    """Every name that is read somewhere."""
+    return {
+        node.id if isinstance(node, ast.Name) else node.attr
+        for module in source_modules()
+        for node in ast.walk(module.tree)
+        if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
+    }
 
 
 def test_each_code_stands_in_the_sources_once():
-    literals = [text for source in SOURCES.values() for text in re.findall(r'"(R\d{4})"', source)]
-    assert sorted(literals) == sorted(DEFINED)
-    assert sum(len(calls(tree, "Code")) for tree in TREES.values()) == len(DEFINED)
+    lines = [line for module in source_modules() for line in module.lines]
+    literals = [text for line in lines for text in re.findall(r'"(R\d{4})"', line)]
+    assert sorted(literals) == sorted(defined())
+    assert sum(len(calls(module.tree, "Code")) for module in source_modules()) == len(defined())
 
 
 def test_the_registry_has_what_is_defined():
-    assert list(CODES) == sorted(DEFINED)
-    assert {path for _, path in DEFINED.values()} <= set(message_files())
+    assert list(CODES) == sorted(defined())
+    assert {path for _, path in defined().values()} <= set(message_files())
 
 
 def test_every_name_is_given_once():
-    names = [name for name, _ in DEFINED.values()]
+    names = [name for name, _ in defined().values()]
     assert len(set(names)) == len(names)
 
 
 @pytest.mark.parametrize("text", CODES)
 def test_what_is_read_is_what_is_imported(text):
-    name, path = DEFINED[text]
+    name, path = defined()[text]
     module = path.relative_to(ROOT / "src").with_suffix("")
     assert getattr(import_module(".".join(module.parts)), name) == CODES[text]
 
@@ -84,16 +93,16 @@ def test_what_is_no_code_is_not_found():
 
 @pytest.mark.parametrize("text", CODES)
 def test_a_code_is_used_and_tested(text):
-    name, _ = DEFINED[text]
-    assert name in LOADED
-    assert text in TESTS
+    name, _ = defined()[text]
+    assert name in loaded()
+    assert text in texts_of_tests()
 
 
 def test_diagnostics_are_made_by_codes():
-    made = {path.relative_to(ROOT).as_posix() for path in TREES if calls(TREES[path], "Diagnostic")}
+    made = {module.name for module in source_modules() if calls(module.tree, "Diagnostic")}
     assert made == {
-        "src/rulec/diagnostics/code.py",
-        "src/rulec/rulebook/batch/check_cache.py",  # reads what one has made
+        "diagnostics/code.py",
+        "rulebook/batch/check_cache.py",  # reads what one has made
     }
 
 
