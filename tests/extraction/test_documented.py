@@ -8,6 +8,7 @@ from rulec.extraction.drives import Drives
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.following_signals import following_signals
+from rulec.extraction.signals.map.line_signals import line_signals
 from rulec.extraction.signals.map.map_signals import map_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
@@ -20,11 +21,11 @@ from support.builders.recordings import recording, straight, vehicle
 
 PAGE = (Path(__file__).parents[2] / "docs/recordings.md").read_text()
 
-SIGNALS = (ego_signals, participant_signals, following_signals, map_signals)
+SIGNALS = (ego_signals, participant_signals, following_signals, map_signals, line_signals)
 """The passes that measure numbers."""
 
 NOT_IN_THAT = {
-    *("light", "crosses_light_line", "indicator", "warning_lights"),
+    *("light", "crosses_light_line", "indicator", "warning_lights", "hazard_lights"),
     *("marked_lanes", "on_solid_line", "broken_on_own_side", "single_line"),
     *("one_way", "divided", "lane_kind", "tunnel", "tracks_at_kerb"),
     *("on_priority_road", "turn_on_red_sign", "no_turn_on_red_sign"),
@@ -88,7 +89,7 @@ def test_every_word_has_its_tolerance_its_duration_and_what_may_be_wrong():
 
 def test_numbers_that_are_intervals_are_those_that_the_page_says():
     cars = [vehicle(k, {s: (9.0 + 11 * k + 5 * s, 0) for s in range(4)}) for k in (7, 8)]
-    context = context_of(recording([straight(1, 0, 99)], cars))
+    context = context_of(recording([straight(1, 0, 99, signs=frozenset({"STOP"}))], cars))
     told = {name for signals_of in SIGNALS for name in signals_of(context).bounds}
     rows = rows_of_what_may_be_wrong()
     said = {word for own, cells in rows for word in own if cells[0] == "interval"}

@@ -9,6 +9,8 @@ from rulec.extraction.to_trace import Drive
 
 _EITHER = frozenset(
     (
+        *("acceleration", "distance_to_junction", "distance_to_stop_line", "hazard_lights"),
+        *("lane_number", "other_arrived_first", "time_to_collision", "time_to_stop_line"),
         *("CONGESTED", "about_to_overtake", "abreast_at_narrowing", "accelerating", "ahead_for"),
         *("arrived_together", "being_overtaken", "braking_hard", "broken_on_own_side"),
         *("built_up", "came_up_beside", "can_stop_at_once", "conflict_from_left"),
@@ -49,10 +51,10 @@ _SUMO_ONLY = frozenset(
 _SIGNED = frozenset(
     (
         *("crosses_stop_line", "give_way_sign", "limit", "on_priority_road", "stop_sign"),
-        "turn_on_red_sign",
+        *("distance_to_stop_line", "time_to_stop_line", "turn_on_red_sign"),
     )
 )
-_LAMPS = frozenset(("indicator", "warning_lights"))
+_LAMPS = frozenset(("hazard_lights", "indicator", "warning_lights"))
 _ROAD_KINDS = frozenset(("built_up", "lane_kind", "road_class"))
 _ARGOVERSE = _EITHER - _SIGNED - _LAMPS - _ROAD_KINDS
 """Its maps have lanes, marks and crossings; of its objects there are places, kinds and sizes."""
@@ -60,7 +62,7 @@ _ARGOVERSE = _EITHER - _SIGNED - _LAMPS - _ROAD_KINDS
 _NOT_BY_LANE_CENTRES = frozenset(
     (
         *("give_way_sign", "on_priority_road", "turn_on_red_sign", "lane_kind"),
-        *("indicator", "warning_lights"),
+        *_LAMPS,
     )
 )
 """Other signs than to stop, lamps, and kinds of lanes of a motorway."""
@@ -72,11 +74,11 @@ _ON_ANY_MAP = frozenset(
 )
 """Tables take nets of SUMO's, too, which have every sign and track."""
 
-_BY_LAMPS = frozenset({"indicator", "warning_lights"})
+_BY_LAMPS = _LAMPS
 _BY_SIGNS_AND_LINES = frozenset(
     (
         *("crosses_stop_line", "give_way_sign", "lane_kind", "on_priority_road", "stop_sign"),
-        "turn_on_red_sign",
+        *("distance_to_stop_line", "time_to_stop_line", "turn_on_red_sign"),
     )
 )
 """highD has neither signs nor stop lines, and no more of its ramps than their marks."""
@@ -95,7 +97,8 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "osi": _EITHER | {"icy", "no_overtaking_sign", "visibility", "wet"},
     "argoverse-motion": _ARGOVERSE,
     "argoverse-sensor": _ARGOVERSE,
-    "123d": _ARGOVERSE | {"built_up", "limit", "road_class"},
+    "123d": _ARGOVERSE
+    | {"built_up", "limit", "road_class", "distance_to_stop_line", "time_to_stop_line"},
 }
 """Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""
 

@@ -28,6 +28,7 @@ from rulec.extraction.signals.intention_signals import intention_signals
 from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.map.junction_signals import junction_signals
+from rulec.extraction.signals.map.line_signals import line_signals
 from rulec.extraction.signals.map.map_signals import map_signals
 from rulec.extraction.signals.map.merge_signals import merge_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
@@ -91,6 +92,7 @@ _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     map_signals,
     road_signals,
     junction_signals,
+    line_signals,
     priority_signals,
     crossing_signals,
     roundabout_signals,

@@ -23,6 +23,11 @@ RECORDED_UNITS = {
     "lateral_gap": "m",
     "ahead_for": "s",
     "distance_to_crossing": "m",
+    "distance_to_junction": "m",
+    "distance_to_stop_line": "m",
+    "time_to_stop_line": "s",
+    "time_to_collision": "s",
+    "acceleration": "m/s^2",
     "ego_length": "m",
     "visibility": "m",
 }

@@ -116,3 +116,22 @@ def test_a_lane_is_left_only_well_beyond_its_mark():
     assert context.steady_lane.tolist() == [0, 0, 1, 1, 0]
     early = replace(context, thresholds=replace(context.thresholds, changed_m=0.1))
     assert early.steady_lane.tolist() == [0, 1, 1, 0, 0]
+
+
+def test_acceleration_has_its_bounds():
+    # 20, 19, 17, 15 and 14 m/s, those of the middle known to 0.1 m/s: 0.14 m/s² for two of them
+    body = drive((0, 0), (10, 0), (19, 0), (27, 0), (34, 0))
+    found = ego_signals(context_of(recording(lanes(1), [body])))
+    assert found.world["acceleration"].tolist() == [-2.0, -3.0, -4.0, -3.0, -2.0]
+    low, high = found.bounds["acceleration"]
+    assert (low[2], high[2]) == (-4.15, -3.85)
+
+
+@pytest.mark.parametrize(
+    ("y", "right_hand", "left_hand"),
+    [(0, "first_lane", "fourth_or_further_lane"), (8, "third_lane", "third_lane")],
+)
+def test_lanes_are_numbered_from_the_kerb(y, right_hand, left_hand):
+    body = steady(7, 0, y)
+    assert set(world(body, 5)["lane_number"].tolist()) == {right_hand}
+    assert set(world(body, 5, side="left")["lane_number"].tolist()) == {left_hand}

@@ -277,3 +277,16 @@ def test_a_rider_who_is_beside_ego_when_first_seen():
     # Far from any junction nobody waits at one
     far = vehicle(7, dict.fromkeys(range(12), (0.0, 0.0)))
     assert set(came(dict.fromkeys(range(12), (0.0, -1.5)), far)) == {"False"}
+
+
+def test_hazard_lights_are_not_blue_ones():
+    lamps = {k: frozenset({"hazard_lights"} if k < 2 else {"blue_light"}) for k in range(4)}
+    shows = frozenset({"hazard_lights", "blue_light"})
+    car = replace(steady(8, 20, 0, steps=5), lamps=lamps, shows=shows)
+    ego = steady(7, 0, 0, steps=5)
+    assert told("hazard_lights", [straight(1, -50, 300)], ego, car, route=("1",)) == [
+        *("True", "True", "False", "False", "?")
+    ]
+    assert told("warning_lights", [straight(1, -50, 300)], ego, car, route=("1",)) == [
+        *["True"] * 5
+    ]

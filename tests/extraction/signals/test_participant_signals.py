@@ -219,3 +219,26 @@ def test_a_lane_that_ends_at_the_junction_leads_elsewhere(x, goes_on, elsewhere)
     found = recording(road, [steady(7, 0, 0, speed=10, steps=8), other])
     signals = participant_signals(context_of(found, ("1", "2", "3")))
     assert signals.about["leads_elsewhere"][0, 0] == elsewhere
+
+
+@pytest.mark.parametrize(
+    ("y", "speed", "expected"),
+    [(0, 5.0, 5.2), (0, 10.0, LONGEST_S), (0, 15.0, LONGEST_S), (4, 5.0, LONGEST_S)],
+    ids=["slower", "as fast", "faster", "in another lane"],
+)
+def test_the_time_to_a_collision_is_of_who_is_ahead_and_slower(y, speed, expected):
+    # Ego at 10 m/s, 26 m behind
+    assert about(steady(8, 30, y, speed=speed))["time_to_collision"] == expected
+
+
+def test_the_bounds_of_the_time_to_a_collision():
+    # 26 m to 5 cm, and 5 m/s to 0.14 m/s, the root of the sum of two squares of 0.1
+    signals = participant_signals(context(steady(8, 30, 0, speed=5.0)))
+    low, high = (bound[0, 1] for bound in signals.bounds["time_to_collision"])
+    now = signals.about["time_to_collision"][0, 1]
+    assert low < now < high
+    gap = 26 - 5 * STEP_S
+    assert (low, high) == (
+        pytest.approx((gap - 0.05) / 5.1414, abs=0.011),
+        pytest.approx((gap + 0.05) / 4.8586, abs=0.011),
+    )

@@ -140,3 +140,14 @@ def test_ways_that_meet_are_the_foes_of_the_net(path):
             for other, its in enumerate(junction.ways):
                 if own != other and foes is not None:
                     assert (junction.meeting(own, other) is not None) == bool(foes & its.names)
+
+
+@pytest.mark.parametrize(
+    ("y", "first"), [(lambda t: -3.9 + 0.1 * t, True), (lambda t: -3 + 10 * (t - 2.5), False)]
+)
+def test_who_arrives_more_than_a_second_before_ego_arrives_first(y, first):
+    # Ego is in the junction from 2 s on; who creeps has been there all the time
+    found = signals(NORTH, y, np.pi / 2)
+    assert found.world["conflict_from_right"].any()
+    assert bool(found.world["other_arrived_first"].any()) == first
+    assert bool(found.world["arrived_together"].any()) != first

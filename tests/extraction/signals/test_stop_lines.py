@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.map.junction_signals import junction_signals, stop_line
+from rulec.extraction.signals.map.line_signals import line_signals
 from rulec.extraction.signals.map.map_signals import map_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from support.builders.drive_contexts import context_of
@@ -99,3 +100,29 @@ def test_a_train_whose_way_crosses_ego_s(comes_s, conflict):
     signals = priority_signals(context_of(found, ("1", "2", "3")))
     assert bool(signals.world["conflict_with_rail"].any()) == conflict
     assert not signals.world["conflict_from_right"].any()
+
+
+def test_the_way_and_the_time_to_a_line():
+    # Fronts at 52, 62, 72, 82, 92 and 102 m, 20 m/s
+    found = line_signals(context(road(95.0, ["STOP"]), 50, 60, 70, 80, 90, 100))
+    way, time = found.world["distance_to_stop_line"], found.world["time_to_stop_line"]
+    assert way.tolist() == pytest.approx([43, 33, 23, 13, 3, 0], abs=0.05)
+    assert time.tolist() == pytest.approx([2.15, 1.65, 1.15, 0.65, 0.15, 0], abs=0.01)
+    near, far = found.bounds["distance_to_stop_line"]
+    assert (near[1], far[1]) == (pytest.approx(32.95, abs=0.05), pytest.approx(33.05, abs=0.05))
+    # Over it there is none any more
+    assert (near[5], far[5], found.bounds["time_to_stop_line"][1][5]) == (0, 0, 0)
+
+
+def test_one_that_stands_takes_for_ever_to_a_line():
+    found = line_signals(context(road(95.0, ["STOP"]), 90, 90, 90))
+    assert found.world["time_to_stop_line"].tolist() == [1000.0] * 3
+
+
+def test_without_lights_and_stop_signs_nobody_knows_of_lines():
+    assert line_signals(context(road(), 50, 60)).world.keys() == {"distance_to_junction"}
+
+
+def test_the_way_to_a_junction():
+    found = line_signals(context(road(), 50, 96, 99, 118, 125)).world["distance_to_junction"]
+    assert found.tolist() == pytest.approx([48, 2, 0, 0, 1000], abs=0.05)

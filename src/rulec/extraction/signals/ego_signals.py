@@ -15,6 +15,7 @@ from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
     rounded,
+    rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -29,6 +30,7 @@ _EGO_TYPES = {
 }
 _LANES = ("kerb_lane", "middle_lane", "far_lane")
 _COUNTS = ("one_lane", "two_lanes", "three_or_more_lanes")
+_NUMBERS = ("first_lane", "second_lane", "third_lane", "fourth_or_further_lane")
 _HAIR_M = 0.001
 _PLACES = ("centred", "at_near_edge", "at_far_edge")
 
@@ -73,6 +75,14 @@ def _change_of_speed(context: DriveContext) -> SignalColumns:
     )
 
 
+def _acceleration(context: DriveContext) -> SignalColumns:
+    gained, wrong = context.ego.acceleration[0], context.ego.acceleration_error[0]
+    return SignalColumns(
+        {"acceleration": rounded(gained)},
+        bounds={"acceleration": rounded_outward(gained - wrong, gained + wrong)},
+    )
+
+
 def _stopping(context: DriveContext) -> SignalColumns:
     (speed, error), slow = own_speed(context), context.thresholds.stops_at_once_kmh / KMH
     return SignalColumns(
@@ -88,6 +98,18 @@ def _lane(context: DriveContext) -> SignalColumns:
     return SignalColumns({"lane": lane}, unknown={"lane": moves}, texts={"lane": _LANES})
 
 
+def _lane_number(context: DriveContext) -> SignalColumns:
+    number, other = (
+        np.clip(_rank(context, lane), 0, len(_NUMBERS) - 1)
+        for lane in (context.steady_lane, context.ego_lane)
+    )
+    return SignalColumns(
+        {"lane_number": number},
+        unknown={"lane_number": number != other},
+        texts={"lane_number": _NUMBERS},
+    )
+
+
 def _lane_count(context: DriveContext) -> SignalColumns:
     count = context.existing_lanes.sum(axis=1)
     return SignalColumns({"lanes": np.clip(count - 1, 0, 2)}, texts={"lanes": _COUNTS})
@@ -100,12 +122,15 @@ def _lane_position(context: DriveContext) -> SignalColumns:
 
 def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     """Indices into ``_LANES`` of lanes by state: 0 at the kerb, 2 farthest, 1 between."""
-    existing = context.existing_lanes
-    state = np.arange(len(lane))
-    right: NDArray[intp] = np.cumsum(existing, axis=1)[state, lane] - existing[state, lane]
-    count = existing.sum(axis=1)
-    rank = right if context.side == "right" else count - 1 - right
+    rank, count = _rank(context, lane), context.existing_lanes.sum(axis=1)
     return np.where(rank <= 0, 0, np.where(rank >= count - 1, 2, 1))
+
+
+def _rank(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
+    """How many lanes lie between lanes by state and the kerb."""
+    existing, state = context.existing_lanes, np.arange(len(lane))
+    right: NDArray[intp] = np.cumsum(existing, axis=1)[state, lane] - existing[state, lane]
+    return right if context.side == "right" else existing.sum(axis=1) - 1 - right
 
 
 def _straddling(context: DriveContext) -> SignalColumns:
@@ -160,8 +185,10 @@ _PASSES: Passes = {
     ("ego_length",): _ego_length,
     ("speed",): _speed,
     ("accelerating", "braking_hard"): _change_of_speed,
+    ("acceleration",): _acceleration,
     ("can_stop_at_once",): _stopping,
     ("lane",): _lane,
+    ("lane_number",): _lane_number,
     ("lanes",): _lane_count,
     ("straddling",): _straddling,
     ("lane_position",): _lane_position,

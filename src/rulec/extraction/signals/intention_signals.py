@@ -81,6 +81,15 @@ def _warning_lights(context: DriveContext) -> SignalColumns:
     )
 
 
+def _hazard_lights(context: DriveContext) -> SignalColumns:
+    if not any("hazard_lights" in body.shows for body in context.recording.participants):
+        return SignalColumns()
+    hazard, told = _lit(context, "hazard_lights")
+    return SignalColumns(
+        about={"hazard_lights": hazard}, unknown={"hazard_lights": ~told & ~hazard}
+    )
+
+
 def _stands(context: DriveContext) -> Flags:
     stands: Flags = context.tracks.speed * KMH < context.thresholds.standing_kmh
     return stands
@@ -308,6 +317,7 @@ _PASSES: Passes = {
     ("on_call",): _called,
     ("leaving_stop",): _leaving_stop,
     ("warning_lights",): _warning_lights,
+    ("hazard_lights",): _hazard_lights,
     ("turning_far",): _turning_far,
     ("about_to_overtake",): _about_to_overtake,
     ("came_up_beside",): _came_up,

@@ -23,6 +23,7 @@ from rulec.extraction.signals.signal_columns import (
     latest,
     next_state,
     rounded,
+    rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -90,6 +91,26 @@ def _speed_difference(context: DriveContext) -> SignalColumns:
     speeds = context.zero_if_standing(context.extents.along * KMH)
     difference = context.ego_extents.along * KMH - speeds
     return _measured(context, "speed_difference", difference)
+
+
+def _time_to_collision(context: DriveContext) -> SignalColumns:
+    """How long ego takes to who is ahead in its lane, both as fast as they are."""
+    measured, surely, perhaps = relations.ahead_in_lane(context)
+    place, closing = context.tolerances.place_m, context.ego_extents.along - context.extents.along
+    wrong = np.hypot(context.ego.speed_error, context.tracks.speed_error)
+    way = relations.way_along(context)
+
+    def seconds(counts: Flags, more_m: float, faster: Floats) -> Floats:
+        runs_into = counts & (faster > 0)
+        taken = np.maximum(way + more_m, 0.0) / np.where(runs_into, faster, 1.0)
+        return np.where(runs_into, np.minimum(taken, LONGEST_S), LONGEST_S)
+
+    soonest = seconds(perhaps, -place, closing + wrong)
+    latest_s = seconds(surely, place, closing - wrong)
+    return SignalColumns(
+        about={"time_to_collision": rounded(seconds(measured, 0.0, closing))},
+        bounds={"time_to_collision": rounded_outward(soonest, latest_s)},
+    )
 
 
 def _measured(context: DriveContext, name: str, values: Floats) -> SignalColumns:
@@ -285,6 +306,7 @@ _PASSES: Passes = {
     ("time_headway",): _time_headway,
     ("lateral_gap",): _lateral_gap,
     ("speed_difference",): _speed_difference,
+    ("time_to_collision",): _time_to_collision,
     ("safe_gap",): _safe_gap,
     ("precedes",): _precedes,
     ("one_between",): _one_between,

@@ -29,6 +29,7 @@ _SIDES = ("conflict_from_left", "conflict_from_right", _ONCOMING)
 _RING, _RAIL = "conflict_on_roundabout", "conflict_with_rail"
 _CONFLICTS = (*_SIDES, _RING, _RAIL)
 _PRIORITY = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
+_ARRIVALS = ("arrived_together", "other_arrived_first", "other_in_junction")
 _ROADS = ("unregulated_junction", "own_road_ends", "other_road_ends", "on_priority_road")
 
 
@@ -47,6 +48,7 @@ class Encounter:
     known: bool
     other: Passage
     together: bool
+    comes_first: bool
 
 
 def priority_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -58,7 +60,7 @@ def _conflicts(context: DriveContext) -> SignalColumns:
     passages = own_passages(context)
     conflicts = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
     unknown = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
-    together, other_inside = np.zeros((2, context.states), dtype=bool)
+    together, other_inside, other_first = np.zeros((3, context.states), dtype=bool)
     for passage in passages:
         for met in _encounters(context, passage):
             span = slice(met.first, met.last + 1)
@@ -66,6 +68,7 @@ def _conflicts(context: DriveContext) -> SignalColumns:
                 from_then = slice(met.enters, met.last + 1) if kind == _ONCOMING else span
                 (conflicts if met.known else unknown)[kind][from_then] = True
             together[span] |= met.together
+            other_first[span] |= met.comes_first
             entered = met.other.first - first_column(context)
             other_inside[max(met.first, entered) : met.last + 1] = True
         for side in filter(None, _might_come(context, passage)):
@@ -77,9 +80,10 @@ def _conflicts(context: DriveContext) -> SignalColumns:
     unknown[_RING] |= without_junction(context)
     world: dict[str, SignalColumn] = {**conflicts}
     world |= {"arrived_together": together, "other_in_junction": other_inside}
+    world["other_arrived_first"] = other_first
     either: Flags = np.any([unknown[name] & ~conflicts[name] for name in _SIDES], axis=0)
     not_told = {name: unknown[name] & ~conflicts[name] for name in _CONFLICTS}
-    not_told |= {"arrived_together": either, "other_in_junction": either}
+    not_told |= dict.fromkeys(_ARRIVALS, either)
     return SignalColumns(world, unknown=not_told)
 
 
@@ -174,6 +178,7 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
         first = max(span.start, begins - shift)
         if not (kinds := _kinds(context, own, other)):
             continue
+        lead_s = (own.first - other.first) * context.recording.step_s
         yield Encounter(
             kinds=kinds,
             first=first,
@@ -181,8 +186,8 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
             last=min(last, context.states - 1),
             known=known and own.sure and other.sure,
             other=other,
-            together=abs(other.first - own.first) * context.recording.step_s
-            <= context.thresholds.together_s,
+            together=abs(lead_s) <= context.thresholds.together_s,
+            comes_first=lead_s > context.thresholds.together_s,
         )
 
 
@@ -260,5 +265,5 @@ def _leaves_at_latest(context: DriveContext, own: Passage) -> float:
 
 _PASSES: Passes = {
     _ROADS: _roads,
-    (*_CONFLICTS, "arrived_together", "other_in_junction"): _conflicts,
+    (*_CONFLICTS, *_ARRIVALS): _conflicts,
 }
