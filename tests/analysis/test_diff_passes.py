@@ -263,7 +263,7 @@ class TestRuleHistory:
         "r",
         (
             LineageStep("a", "declared", "first"),
-            LineageStep("b", "overridden", "second", ("cite", "says")),
+            LineageStep("b", "overridden", "second", ("cite", "says"), gives_law=True),
             LineageStep("c", "softened", "third", ("hard or soft",)),
             LineageStep("d", "dropped", None),
         ),

@@ -44,6 +44,7 @@ class Book:
     header: dict = field(default_factory=dict)
     rules: dict = field(default_factory=dict)
     overrides: dict = field(default_factory=dict)
+    confirmed: dict = field(default_factory=dict)
     dropped: list = field(default_factory=list)
     silent: list = field(default_factory=list)
     softened: dict = field(default_factory=dict)
@@ -99,7 +100,11 @@ def chains(draw):
             definitions=draw(some_of(["d0", "d1"], st.sampled_from(BODIES))),
         )
         for name in [*known]:
-            match draw(st.sampled_from(["keep", "keep", "override", "drop", "soften", "silent"])):
+            match draw(
+                st.sampled_from(["keep", "override", "confirm", "drop", "soften", "silent"])
+            ):
+                case "confirm":
+                    book.confirmed[name] = ({}, {"cite": draw(st.sampled_from(CLAUSES["cite"]))})
                 case "override":
                     book.overrides[name] = draw(rule)
                 case "drop":
@@ -155,6 +160,7 @@ def book_text(book, number):
     lines += [f"{verb} {name} = {body}" for name, body in book.definitions.items()]
     lines += [rule_text(name, *rule) for name, rule in book.rules.items()]
     lines += [rule_text(name, *rule, "override") for name, rule in book.overrides.items()]
+    lines += [rule_text(name, *rule, "confirm") for name, rule in book.confirmed.items()]
     return "\n".join(lines)
 
 
@@ -166,8 +172,8 @@ def in_force(dates, day):
 
 
 def merged_by_hand(books, day):
-    """One book without bases that says the same, and the steps and books of its rules."""
-    header, rules, steps, owners = {}, {}, {}, {}
+    """One book without bases that says the same; the steps, books and laws of its rules."""
+    header, rules, steps, owners, laws = {}, {}, {}, {}, {}
     options, parameters, definitions = {}, {}, {}
     for number, book in enumerate(books):
         header.update(book.header)
@@ -181,10 +187,14 @@ def merged_by_hand(books, day):
             head, inner = rules[name]
             rules[name] = ({**head, "strength": "soft", "weight": weight}, inner)
         rules.update(book.rules)
-        owners.update(dict.fromkeys((*book.rules, *book.overrides), f"b{number}"))
+        changed = {**book.overrides, **book.confirmed}
+        owners.update(dict.fromkeys((*book.rules, *changed), f"b{number}"))
+        laws.update(dict.fromkeys(book.rules, f"b{number}"))
         step = {True: "1/2", False: "2"}[book.header["step"]] if "step" in book.header else "1"
         steps.update(dict.fromkeys(book.rules, step))
-        for name, (head, inner) in book.overrides.items():
+        for name, (head, inner) in changed.items():
+            if "cite" in inner:
+                laws[name] = f"b{number}"
             before = dict(rules[name][1])
             if "cite" in inner:  # another provision: what was read elsewhere does not speak of it
                 before.pop("source", None)
@@ -196,7 +206,7 @@ def merged_by_hand(books, day):
         name: rule for name, rule in rules.items() if in_force(rule[1].get("in force", ""), day)
     }
     flat = Book(header, left, options=options, parameters=parameters, definitions=definitions)
-    return flat, steps, owners
+    return flat, steps, owners, {name: law for name, law in laws.items() if law != f"b{number}"}
 
 
 @given(chains(), st.sampled_from(DAYS))
@@ -206,11 +216,13 @@ def test_a_chain_of_rulebooks_is_one_merged_by_hand(books, day):
             path = Path(folder, f"b{number}.rules")
             path.write_text(book_text(book, number), encoding="utf-8")
         found = load_rulebook(path, at=day)
-    flat, steps, owners = merged_by_hand(books, day)
+    flat, steps, owners, inherited = merged_by_hand(books, day)
     expected = parse_rulebook(book_text(flat, 0), at=day)
     assert [str(rule.step_s) for rule in found.rules] == [steps[rule.name] for rule in found.rules]
     assert [rule.book for rule in found.rules] == [owners[rule.name] for rule in found.rules]
-    alike = [replace(rule, book="", step_s=1) for rule in found.rules]
+    laws = [rule.inherited_from for rule in found.rules]
+    assert laws == [inherited.get(rule.name, "") for rule in found.rules]
+    alike = [replace(rule, book="", step_s=1, inherited_from="") for rule in found.rules]
     assert alike == [replace(rule, book="", step_s=1) for rule in expected.rules]
     assert found.traffic == expected.traffic
     assert found.semantics == expected.semantics

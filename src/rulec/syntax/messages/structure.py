@@ -66,7 +66,7 @@ NOT_A_RULEBOOK = Code(
 CONFIRMED_AND_CHANGED = Code(
     "R0120",
     title="a confirmation changes the rule",
-    why="`confirm rule` says that an inherited rule is this rulebook's own law, too, and by which "
+    why="The words `confirm rule` say that an inherited rule is this rulebook's own law, too, and by which "
     "provision. What the rule demands stays as it is inherited: it may have `cite`, `source`, "
     "`certainty`, `says` and examples, no other clause.",
     bad="rulebook example\nextends vienna\n"
