@@ -156,3 +156,29 @@ def test_a_state_says_what_has_no_default(state, missing):
         parse_rulebook(text)
     (one,) = caught.value.diagnostics
     assert missing in one.message
+
+
+def test_a_rule_has_the_topics_that_it_names_else_those_that_name_it():
+    rulebook = parse_rulebook(
+        "rulebook a\nsignal p\n"
+        'topics { first "One" of gap, gap_to_cyclists; second "Two" of gap; third "Three" }\n'
+        + "".join(
+            f"hard rule {name} {{ {said} require p }}\n"
+            for name, said in {
+                "gap": "",
+                "gap_to_horses": "",
+                # The longest name decides, and only whole words of a name count.
+                "gap_to_cyclists_in_town": "",
+                "gaps": "",
+                "gap_to_trams": "topic third, first",
+            }.items()
+        )
+    )
+    assert {rule.name: rule.topics for rule in rulebook.rules} == {
+        "gap": ("first", "second"),
+        "gap_to_horses": ("first", "second"),
+        "gap_to_cyclists_in_town": ("first",),
+        "gaps": (),
+        "gap_to_trams": ("third", "first"),
+    }
+    assert [topic.title for topic in rulebook.topics] == ["One", "Two", "Three"]

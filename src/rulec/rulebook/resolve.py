@@ -13,7 +13,7 @@ from rulec.rulebook.names.symbol_table import symbol_table
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.overlay.priorities import pre_order
 from rulec.rulebook.overlay.rulebook_overlay import Overlay, in_force, overlay, own_law
-from rulec.rulebook.rulebook_model import Rule, Rulebook, SourceFile, Traffic
+from rulec.rulebook.rulebook_model import Provision, Rule, Rulebook, SourceFile, Topic, Traffic
 from rulec.rulebook.rules.axioms import axioms_of, contradicted
 from rulec.rulebook.rules.rule_elaboration import translate_rule
 from rulec.syntax import tree
@@ -94,6 +94,20 @@ def resolve(
         remarks=tuple(laid.remarks),
         at=at,
         axioms=axioms,
+        topics=tuple(Topic(name, entry.title.value) for name, entry in laid.topics.items()),
+        provisions=tuple(
+            Provision(
+                entry.number.value,
+                entry.heading.value,
+                item.link.value,
+                item.as_of,
+                treatment=entry.treatment,
+                because=entry.because.value if entry.because else "",
+            )
+            for file, item in laid.provisions
+            if any(file is one for one in own)
+            for entry in item.entries
+        ),
     )
     return rulebook, tuple(mistakes)
 

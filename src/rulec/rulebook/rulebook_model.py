@@ -96,6 +96,7 @@ class Rule:
     exemptions: tuple[Exemption, ...] = ()
     condition: Formula | None = None
     inherited_from: str = ""
+    topics: tuple[str, ...] = ()
 
 
 def cited_law(cite: str, inherited_from: str) -> str:
@@ -129,6 +130,33 @@ class Remark:
     kind: Literal["dropped", "silent", "softened"]
 
 
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """What rules can be about, such as zebra crossings."""
+
+    name: str
+    title: str
+
+
+Treatment = Literal["to do", "silent", "not machine-readable"]
+
+
+@dataclass(frozen=True, slots=True)
+class Provision:
+    """An article of the rulebook's law, in the text of a day (ISO), read at ``link``.
+
+    ``number`` is how rules cite it. ``treatment`` is what becomes of it as long as no rule does,
+    and ``because`` why.
+    """
+
+    number: str
+    heading: str
+    link: str = ""
+    as_of: str = ""
+    treatment: Treatment = "to do"
+    because: str = ""
+
+
 @dataclass(frozen=True)
 class Rulebook(Rows):
     """A jurisdiction's rules over one vocabulary.
@@ -136,6 +164,7 @@ class Rulebook(Rows):
     ``priorities`` is a pre-order of levels: all pairs (higher, lower), transitive; levels that are
     equal stand in both orders. ``extends`` are the rulebooks that it builds upon, nearest first.
     ``at`` is the day (ISO) whose law it is: what was not in force then has been left out.
+    ``topics`` are those of its chain, ``provisions`` the articles of its own law.
     """
 
     __repr__ = short_repr
@@ -155,6 +184,8 @@ class Rulebook(Rows):
     remarks: tuple[Remark, ...] = ()
     at: str = ""
     axioms: tuple[Axiom, ...] = ()
+    topics: tuple[Topic, ...] = ()
+    provisions: tuple[Provision, ...] = ()
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a rule."""

@@ -18,7 +18,7 @@ ClausePart = tuple[str, Clause | None, Span]
 _PLAIN = ("require", "cite", "says", "when", "source")
 """Clauses that are the rule's field of that name."""
 
-_CONFIRMING = ("cite", "says", "source", "certainty")
+_CONFIRMING = ("cite", "says", "source", "certainty", "topic")
 """Clauses that a confirmation may have."""
 
 Part = tree.HeaderLine | tree.Item
@@ -67,6 +67,7 @@ def assemble_rule(
         ),
         certainty=given.get("certainty") or "",
         in_force=given.get("in"),
+        topics=given.get("topic") or (),
         **plain,
     )
     return rule, mistakes
@@ -159,7 +160,7 @@ def _misplaced(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 
 def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     # One that has none of its own offers something to those that extend it.
-    enough = tree.RuleItem | tree.BrokenItem | tree.ExtendsLine | tree.Definition
+    enough = tree.RuleItem | tree.BrokenItem | tree.ExtendsLine | tree.Definition | tree.Listing
     if not any(isinstance(part, enough) for part in parts):
         yield structure.MISSING_PART.at(
             _start(parts[0].span),
@@ -170,7 +171,7 @@ def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 
 def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     for part in parts[1:]:
-        if isinstance(part, tree.RuleItem | tree.Definition | tree.HeaderLine):
+        if isinstance(part, tree.RuleItem | tree.Definition | tree.Listing | tree.HeaderLine):
             yield structure.MISPLACED_LINE.at(
                 _start(part.span),
                 "a vocabulary holds declarations only",

@@ -137,6 +137,10 @@ class Landmarks:
             return not self.is_word(index - 1, *keywords.CHANGE_WORDS, *keywords.RULE_WORDS)
         if not token.first or self._heads_a_rule(index - 1):
             return False
+        if token.text == "silent" and self.is_word(index + 1, "because"):
+            return False
+        if token.text == "topics" and not self.is_symbol(index + 1, "{"):
+            return False
         if token.text in keywords.ITEM_WORDS:
             return not self.wants_more(index - 1) or self.is_name(index + 1)
         return self._begins_enumeration(index)

@@ -15,14 +15,28 @@ PROVISION_WORDS: Final = (
     *("option", "param", "set", "define", "redefine"),
     *("drop", "soften", "silent"),
 )
+LISTING_WORDS: Final = ("topics", "provisions")
+"""The first words of items with a block of entries."""
+
 RULE_WORDS: Final = ("hard", "soft")
 CHANGE_WORDS: Final = ("override", "confirm")
 """The first words of rules that are laid over inherited ones."""
 ITEM_WORDS: Final = frozenset(
-    (*HEADER_WORDS, *DECLARATION_WORDS, *PROVISION_WORDS, *RULE_WORDS, "rule", *CHANGE_WORDS)
+    (
+        *HEADER_WORDS,
+        *DECLARATION_WORDS,
+        *PROVISION_WORDS,
+        *LISTING_WORDS,
+        *RULE_WORDS,
+        "rule",
+        *CHANGE_WORDS,
+    )
 )
 CLAUSE_WORDS: Final = frozenset(
-    (*("cite", "says", "source", "certainty"), *("require", "unless", "when", "accept", "reject"))
+    (
+        *("cite", "says", "source", "certainty"),
+        *("require", "unless", "when", "topic", "accept", "reject"),
+    )
 )
 """The first words of a rule's clauses, but for ``in force``, which begins with ``in``."""
 

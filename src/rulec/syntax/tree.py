@@ -224,6 +224,7 @@ class RuleItem(_SyntaxNode):
     certainty: Literal["", "verified", "secondary", "unverified"] = ""
     in_force: InForce | None = None
     confirm: bool = False
+    topics: tuple[Name, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -383,6 +384,51 @@ Definition = OptionItem | ParamItem | SetItem | DefineItem | DropItem | SoftenIt
 
 
 @dataclass(frozen=True, slots=True)
+class TopicEntry(_SyntaxNode):
+    """``name "title" of rules``: rules of these names are about it, if they say nothing else."""
+
+    name: Name
+    title: Text
+    rules: tuple[Name, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class TopicsItem(_SyntaxNode):
+    """``topics { … }``: what rules can be about."""
+
+    entries: tuple[TopicEntry, ...]
+
+
+Treatment = Literal["to do", "silent", "not machine-readable"]
+"""What is said of an article that no rule cites."""
+
+
+@dataclass(frozen=True, slots=True)
+class ArticleEntry(_SyntaxNode):
+    """``"number" "heading" silent because "…"``: an article, and why no rule comes from it."""
+
+    number: Text
+    heading: Text
+    treatment: Treatment = "to do"
+    because: Text | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ProvisionsItem(_SyntaxNode):
+    """``provisions "link" as of DATE { … }``: the articles of a law, as its text was on a day.
+
+    The date is ISO text, empty when not given.
+    """
+
+    link: Text
+    as_of: str
+    entries: tuple[ArticleEntry, ...]
+
+
+Listing = TopicsItem | ProvisionsItem
+
+
+@dataclass(frozen=True, slots=True)
 class HeaderLine(_SyntaxNode):
     """A line of a file's header."""
 
@@ -472,7 +518,7 @@ class BrokenItem(_SyntaxNode):
     nameless: bool = False
 
 
-Item = Declaration | Definition | RuleItem | BrokenItem
+Item = Declaration | Definition | Listing | RuleItem | BrokenItem
 
 
 @dataclass(frozen=True, slots=True)

@@ -139,6 +139,7 @@ def clauses_of(rule: tree.RuleItem, style: Style = "words") -> list[tuple[str, s
         ("source", rule.source and quoted(rule.source.value)),
         ("certainty", rule.certainty),
         ("says", rule.says and quoted(rule.says.value)),
+        ("topic", comma(rule.topics)),
         ("in", rule.in_force and print_in_force(rule.in_force).removeprefix("in ")),
         ("when", rule.when and print_whole(rule.when, style)),
         ("require", rule.require and print_whole(rule.require, style)),

@@ -48,6 +48,8 @@ def print_item(item, style="words"):
         return print_rule(item, style)
     if isinstance(item, tree.Definition):
         return print_provision(item, style)
+    if isinstance(item, tree.Listing):
+        return print_listing(item)
     return print_declaration(item, style)
 
 
@@ -129,6 +131,24 @@ def print_provision(item, style):
             return f"soften rule {name.text}{place}{why}"
         case tree.SilentItem(name, because):
             return f"silent on {name.text} because {quoted(because.value)}"
+
+
+def print_listing(item):
+    """Topics, or the articles of a law."""
+    if isinstance(item, tree.TopicsItem):
+        entries = (
+            f"{entry.name.text} {quoted(entry.title.value)}"
+            + (f" of {comma(entry.rules)}" if entry.rules else "")
+            for entry in item.entries
+        )
+        return f"topics {{ {'; '.join(entries)} }}"
+    entries = (
+        f"{quoted(entry.number.value)} {quoted(entry.heading.value)}"
+        + (f" {entry.treatment} because {quoted(entry.because.value)}" if entry.because else "")
+        for entry in item.entries
+    )
+    as_of = f" as of {item.as_of}" if item.as_of else ""
+    return f"provisions {quoted(item.link.value)}{as_of} {{ {'; '.join(entries)} }}"
 
 
 def _dates(in_force):

@@ -227,6 +227,49 @@ ITEMS = [
     ),
     Construct(
         (
+            'topics { zebra "Zebra" of r, s; lights "Lamps" }',
+            'topics {\n  zebra "Zebra" of r,\n    s;\n  lights "Lamps";\n}',
+        ),
+        (
+            'topics { zebra "Zebra" lights "Lamps" }',
+            'topics { zebra "Zebra"; "Lamps" }',
+            "topics { zebra }",
+            "topics { }",
+            'topics zebra "Zebra"',
+            'topics { zebra "Zebra" of rule r }',
+            'topisc { zebra "Zebra" }',
+        ),
+    ),
+    Construct(
+        (
+            'provisions "https://a" as of 2021-07-12 { "§ 1" "Care" to do; "§ 2" "R" }',
+            'provisions "https://a"\n  as of 2021-07-12 {\n "§ 1" "Care"\n; "§ 2" "R" to\n do;\n}',
+        ),
+        (
+            'provisions { "§ 1" "Care" }',
+            'provisions "https://a" { § 1 "Care" }',
+            'provisions "https://a" { "§ 1" }',
+            'provisions "https://a" { "§ 1" "Care" done }',
+            'provisions "https://a" { "§ 1" "Care" silent }',
+            'provisions "https://a" of 2021-07-12 { "§ 1" "Care" }',
+            'provisions "https://a" as of 2021-07-12 "§ 1" "Care"',
+        ),
+    ),
+    Construct(
+        (
+            'provisions "a" { "1" "C" silent because "b"; "2" "" not machine-readable because "" }',
+            (
+                'provisions "a" {\n"1" "C"\nsilent\nbecause "b"; '
+                '"2" ""\nnot\nmachine-readable\nbecause "" }'
+            ),
+        ),
+        (
+            'provisions "https://a" { "§ 2" "D" not machine readable because "c" }',
+            'provisions "https://a" { "§ 2" "D" silent on "c" }',
+        ),
+    ),
+    Construct(
+        (
             'silent on zipper because "it leaves this open"',
             'silent\n  on zipper\n  because "it leaves this open"',
             'silent on\n  zipper because\n  "it leaves this open"',
@@ -310,6 +353,10 @@ CONFIRMATIONS = [
 ]
 
 CLAUSES = [
+    Construct(
+        ("topic zebra, lights", "topic\n    zebra,\n    lights"),
+        ("topic", 'topic "zebra"', "topic zebra lights", "topics zebra", "topic zebra and lights"),
+    ),
     Construct(
         ('source "StVO"', 'source\n    "StVO"'),
         ("source StVO", "source", 'souce "StVO"', 'source "StVO', 'source: "StVO"'),

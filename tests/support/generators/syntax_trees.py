@@ -151,6 +151,7 @@ def _rules(draw):
         source=draw(st.none() | texts),
         certainty=draw(st.sampled_from(["", "verified", "secondary", "unverified"])),
         in_force=draw(st.none() | in_force),
+        topics=draw(_lists(names)),
     )
 
 

@@ -110,7 +110,7 @@ HARDNESS = "hard or soft"
 
 _CLAUSES = (
     *("strength", "variables", "level", "weight", "cite", "says", "source", "certainty"),
-    *("in_force", "require", "when", "unless", "examples"),
+    *("in_force", "topics", "require", "when", "unless", "examples"),
 )
 """Fields of a rule's tree."""
 

@@ -91,7 +91,7 @@ def _body(loaded: Loaded, inherited: BookLineage) -> Iterator[Block]:
         else "None."
     )
     for rule in rulebook.rules:
-        yield from rule_section(rule, inherited, rulebook.vocabulary)
+        yield from rule_section(rule, inherited, rulebook)
     yield from _values_section(inherited, rulebook.at)
     yield from _definitions_section(inherited)
     yield from _left_out_section(inherited, rulebook.at)

@@ -16,7 +16,7 @@ from rulec.report.rulebooks.rule_page import phrase_of, restrictions_of
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
-from rulec.rulebook.rulebook_model import Example, Rule
+from rulec.rulebook.rulebook_model import Example, Rule, Rulebook
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import clauses_of, print_in_force
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
@@ -42,9 +42,9 @@ def rule_heading(rule: Rule) -> str:
     return f"{rule.name} ({rule.cite})" if rule.cite else rule.name
 
 
-def rule_section(rule: Rule, inherited: BookLineage, vocabulary: Vocabulary) -> Iterator[Block]:
+def rule_section(rule: Rule, inherited: BookLineage, rulebook: Rulebook) -> Iterator[Block]:
     """The section on a rule of the rulebook at a chain's end."""
-    book = inherited.book
+    book, vocabulary = inherited.book, rulebook.vocabulary
     history = next(history for history in inherited.rules if history.name == rule.name)
     laws = {book.name: book.law or book.title or book.name for book in inherited.books}
     elsewhere = "" if history.cited_by == book else f" of: {laws[history.cited_by]}"
@@ -52,7 +52,9 @@ def rule_section(rule: Rule, inherited: BookLineage, vocabulary: Vocabulary) -> 
     if rule.says:
         yield f"> {escaped(rule.says)}"
     facts = _facts(rule, history, inherited, elsewhere)
-    yield "\n".join(f"- **{name}:** {text}" for name, text in facts)
+    titles = [escaped(topic.title) for topic in rulebook.topics if topic.name in rule.topics]
+    topics = [("Topic", listed(titles))] if titles else []
+    yield "\n".join(f"- **{name}:** {text}" for name, text in (*facts, *topics))
     yield Heading(4, "In plain English")
     for phrase in (phrase_of(rule, vocabulary), *restrictions_of(rule)):
         yield _sentence(phrase)

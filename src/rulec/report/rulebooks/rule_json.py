@@ -51,6 +51,7 @@ class RuleData(JsonPart, frozen=True, kw_only=True):
     in_force_until: str
     book: str
     inherited_from: str
+    topics: Sequence[str]
     sentence: str
     restrictions: Sequence[str]
     formula: str

@@ -141,6 +141,7 @@ def head(rule: Rule, rulebook: str, width: int) -> str:
 def _facts(rule: Rule, rulebook: str) -> Iterator[tuple[str, str]]:
     yield "cite", rule.cite
     yield "says", rule.says
+    yield "topic", ", ".join(rule.topics)
     yield "source", rule.source
     yield "certainty", rule.certainty
     yield "level", rule.level

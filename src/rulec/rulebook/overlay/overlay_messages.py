@@ -65,6 +65,17 @@ NEVER_IN_FORCE = Code(
     "  require not wet\n}\n",
 )
 
+UNKNOWN_TOPIC = Code(
+    "R0217",
+    title="a topic is declared nowhere",
+    why="A rule names the topics that it is about, for tables of what rulebooks cover. They are "
+    'declared in a rulebook or in one that it extends, by `topics { NAME "title" }`.',
+    bad='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
+    "hard rule r {\n  topic zebras\n  require p\n}\n",
+    good='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
+    "hard rule r {\n  topic zebra\n  require p\n}\n",
+)
+
 
 _CHANGES = {"option": "set", "parameter": "set", "definition": "redefine"}
 
@@ -86,6 +97,26 @@ def inherited_rule(item: tree.RuleItem, known: tree.RuleItem) -> Diagnostic:
         expected="named again here",
         help=f"write `override rule {item.name.text}` to change it, or choose another name",
         labels=(Label(known.name.span.place, "inherited from here"),),
+    )
+
+
+def no_topic(name: tree.Name, known: Sequence[str]) -> Diagnostic:
+    has = f"the topics are {named(known)}" if known else 'declare it: `topics { NAME "title" }`'
+    return UNKNOWN_TOPIC.at(
+        name.span,
+        f"there is no topic `{name.text}`",
+        expected="expected a topic",
+        help=did_you_mean(name.text, known) or has,
+    )
+
+
+def article_twice(again: tree.Text, first: tree.Text) -> Diagnostic:
+    return DECLARED_TWICE.at(
+        again.span,
+        f"article `{again.value}` is listed twice in this rulebook",
+        expected="listed again here",
+        help="keep one of them",
+        labels=(Label(first.span.place, "first listed here"),),
     )
 
 

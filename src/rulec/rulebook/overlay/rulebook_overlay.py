@@ -6,7 +6,7 @@ definitions of the rulebook that inherits it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import Diagnostic, Span
@@ -62,6 +62,9 @@ class Overlay:
     changed_at: dict[str, tree.Name] = field(default_factory=dict)
     """Where an option or a definition was last ``set`` or redefined."""
     mistakes: list[Diagnostic] = field(default_factory=list)
+    topics: dict[str, tree.TopicEntry] = field(default_factory=dict)
+    provisions: list[tuple[tree.File, tree.ProvisionsItem]] = field(default_factory=list)
+    """The lists of articles, each with the rulebook that it stands in."""
     unsure: bool = False
     """A rulebook of the chain could not be read whole: names may be missing for that reason."""
     unsure_rules: bool = False
@@ -127,6 +130,11 @@ class Overlay:
                     self.rules.pop(name.text, None)
                     self.gone[name.text] = name
                 self.remarks.append(Remark(name.text, because.value, "silent"))
+            case tree.TopicsItem(entries):
+                for entry in entries:
+                    self._add_topic(entry)
+            case tree.ProvisionsItem():
+                self._add_provisions(item, file)
             case tree.BrokenItem(names):
                 self.suspects |= names
                 self.unsure_rules |= item.word == "rule"
@@ -149,6 +157,48 @@ class Overlay:
     def _is_own(self, name: tree.Name) -> bool:
         """Tell whether the file that names something has also declared it."""
         return self.declared_at[name.text].span.source is name.span.source
+
+    def _add_topic(self, entry: tree.TopicEntry) -> None:
+        known = self.topics.setdefault(entry.name.text, entry)
+        if known is not entry:
+            self.mistakes.append(twice("topic", entry.name, known.name.span))
+
+    def _add_provisions(self, item: tree.ProvisionsItem, file: tree.File) -> None:
+        """Take a list of articles; each stands in a rulebook once."""
+        first = {
+            entry.number.value: entry.number
+            for book, earlier in self.provisions
+            for entry in earlier.entries
+            if book is file
+        }
+        for entry in item.entries:
+            known = first.setdefault(entry.number.value, entry.number)
+            if known is not entry.number:
+                self.mistakes.append(say.article_twice(entry.number, known))
+        self.provisions.append((file, item))
+
+    def topics_of(self, rule: tree.RuleItem) -> tuple[str, ...]:
+        """The topics of a rule: those that it names, else those that name it.
+
+        One that names the beginning of its name does, too; the longest such name decides.
+        """
+        if not rule.topics:
+            named = [
+                (len(one.text), topic)
+                for topic, entry in self.topics.items()
+                for one in entry.rules
+                if f"{rule.name.text}_".startswith(f"{one.text}_")
+            ]
+            longest = max((length for length, _ in named), default=0)
+            return tuple(topic for length, topic in named if length == longest)
+        return tuple(name.text for name in rule.topics)
+
+    def wrong_topics(self, rule: tree.RuleItem) -> Iterator[Diagnostic]:
+        """Topics of a rule that are not declared, and are nothing that could not be read."""
+        known = self.topics.keys() | self.suspects
+        for name in () if self.unsure else rule.topics:
+            if name.text not in known:
+                yield say.no_topic(name, list(self.topics))
 
     def _set(self, item: tree.SetItem, file: tree.File, level: int) -> None:
         name, known = item.name, [*self.options, *self.parameters]
@@ -289,7 +339,7 @@ def _lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Param
 
 _CLAUSES = (
     *("strength", "variables", "require", "cite", "says", "examples", "level", "weight"),
-    *("unless", "when", "source", "certainty", "in_force"),
+    *("unless", "when", "source", "certainty", "in_force", "topics"),
 )
 
 

@@ -55,6 +55,7 @@ def translate_rule(
     weight = Fraction(1) if item.weight is None else exact_value(item.weight, scope)
     if item.weight is not None and weight == 0:
         scope.report(say.weightless(item.weight))
+    mistakes += constants.overlay.wrong_topics(item)
     sound = len(mistakes)
     examples = [example_of(example, formula, scope) for example in item.examples]
     misfits = _errors(mistakes[sound:])
@@ -90,6 +91,7 @@ def translate_rule(
         required=parts.required if parts.exemptions or parts.condition else None,
         exemptions=parts.exemptions,
         condition=parts.condition,
+        topics=constants.overlay.topics_of(item),
         inherited_from=law.name.text if law.name and not confirmed else "",
     )
     if rule.examples:

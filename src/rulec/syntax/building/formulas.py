@@ -30,8 +30,14 @@ class NodeValues:
         return tuple(tree.Name(leaf.text, span=self.span(leaf)) for leaf in node.leaves(kind))
 
     def text(self, node: ParseNode) -> tree.Text:
-        """The node's text in quotes, its escapes and characters checked."""
-        leaf = node.leaves("STRING")[0]
+        """The node's first text in quotes, its escapes and characters checked."""
+        return self._text(node.leaves("STRING")[0])
+
+    def texts(self, node: ParseNode) -> tuple[tree.Text, ...]:
+        """All texts in quotes directly below a node."""
+        return tuple(map(self._text, node.leaves("STRING")))
+
+    def _text(self, leaf: ParseLeaf) -> tree.Text:
         value: list[str] = []
         characters = enumerate(leaf.text[1:-1], leaf.start + 1)
         for position, character in characters:

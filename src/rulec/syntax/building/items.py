@@ -12,7 +12,7 @@ from rulec.syntax.keywords import token_kind
 
 def item(
     values: NodeValues, node: ParseNode
-) -> tree.HeaderLine | tree.Declaration | tree.Definition:
+) -> tree.HeaderLine | tree.Declaration | tree.Definition | tree.Listing:
     """A header line, a declaration or a provision."""
     span = values.span(node)
     names = values.names(node)
@@ -64,6 +64,13 @@ def item(
             return tree.ConstantItem(_listed(values, node), span=span)
         case "presumed_item":
             return tree.PresumedItem(_listed(values, node), span=span)
+        case "topics_item":
+            entries = tuple(_topic(values, entry) for entry in node.branches("topic"))
+            return tree.TopicsItem(entries, span=span)
+        case "provisions_item":
+            date = "".join(map(values.date, node.leaves("DATE")))
+            articles = tuple(_article(values, entry) for entry in node.branches("article"))
+            return tree.ProvisionsItem(values.text(node), date, articles, span=span)
         case _:
             return _definition(values, node)
 
@@ -71,6 +78,25 @@ def item(
 def _listed(values: NodeValues, node: ParseNode) -> tuple[tree.Name, ...]:
     (names,) = node.branches("names")
     return values.names(names)
+
+
+def _topic(values: NodeValues, node: ParseNode) -> tree.TopicEntry:
+    (name,) = values.names(node)
+    rules = _listed(values, node) if node.branches("names") else ()
+    return tree.TopicEntry(name, values.text(node), rules, span=values.span(node))
+
+
+_TREATMENTS: dict[str, tree.Treatment] = {
+    token_kind(words.replace("-", " ")): words for words in get_args(tree.Treatment)
+}
+
+
+def _article(values: NodeValues, node: ParseNode) -> tree.ArticleEntry:
+    number, heading, *because = values.texts(node)
+    kinds = {leaf.kind for leaf in node.children if isinstance(leaf, ParseLeaf)}
+    said: list[tree.Treatment] = [words for kind, words in _TREATMENTS.items() if kind in kinds]
+    treatment = said[0] if said else "to do"
+    return tree.ArticleEntry(number, heading, treatment, *because, span=values.span(node))
 
 
 def _quantity(values: NodeValues, node: ParseNode) -> tree.QuantityItem:
@@ -146,8 +172,8 @@ def weight(values: NodeValues, node: ParseNode) -> tree.NumberLiteral | None:
 _SCOPES: dict[str, tree.Scope] = {token_kind(scope): scope for scope in get_args(tree.Scope)}
 
 
-Clause = tree.Text | tree.Formula | tree.Unless | tree.InForce | str
-"""What a clause says; a text for ``certainty``."""
+Clause = tree.Text | tree.Formula | tree.Unless | tree.InForce | tuple[tree.Name, ...] | str
+"""What a clause says; a text for ``certainty``, names for ``topic``."""
 
 
 def rule_head(values: NodeValues, node: ParseNode) -> tree.RuleItem:
@@ -176,6 +202,8 @@ def clause(values: NodeValues, node: ParseNode) -> Clause:
             return tree.Unless(value_of(values, node), scope, span=values.span(node))
         case "certainty_clause":
             return last.text if isinstance(last, ParseLeaf) else ""
+        case "topic_clause":
+            return _listed(values, node)
         case "in_force":
             return in_force(values, node)
         case _:

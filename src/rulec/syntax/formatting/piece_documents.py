@@ -131,6 +131,21 @@ class DocumentBuilder:
             head, Nest(2, run(lead, self.plain(node.children[at:], node.kind))), forced=broken
         )
 
+    def block(self, node: ParseNode) -> Document:
+        """A head, and entries in braces, one on a line."""
+        at = next(index for index, child in enumerate(node.children) if child.kind == "LBRACE") + 1
+        head = self.plain(node.children[:at], node.kind)
+        inside: list[Document] = []
+        for child in node.children[at:-1]:
+            if isinstance(child, ParseNode):
+                gap = self.gap(Break(), first_leaf(child).start)
+                inside += [gap, self.plain(child.children, child.kind)]
+            else:
+                inside.append(self.spell(child))
+        ends = self.closing_gap("", first_leaf(node.children[-1]).start)
+        closing = self.spell(node.children[-1])
+        return group(head, Nest(2, run(*inside)), ends, closing, forced=True)
+
     def _chain(self, links: Sequence[Sequence[Node]]) -> Document:
         """Operands of equally strong operators: on one line, or one per line."""
         parts: list[Document] = []

@@ -28,6 +28,8 @@ FORMS: Final = {
     "redefine": "a definition is written `redefine NAME(parameters) = formula`",
     "drop": 'the line is written `drop rule NAME because "…"`',
     "soften": 'the line is written `soften rule NAME in LEVEL weight NUMBER because "…"`',
+    "topics": 'topics are written `topics { NAME "title" of RULE, RULE; NAME "title" }`',
+    "provisions": 'a law is listed as `provisions "link" as of 2024-01-01 { "§ 1" "heading"; … }`',
     "silent": 'the line is written `silent on NAME because "…"`',
 }
 IN_FORCE: Final = "dates are written `in force from 2020-04-28 until 2024-12-31`"

@@ -67,6 +67,8 @@ _WHAT = {
     **{word: f"`{word}`" for word in ("cite", "says", "source", "certainty")},
     **dict.fromkeys(("define", "redefine"), "the definition"),
     **dict.fromkeys(("accept", "reject"), "the example"),
+    **{word: f"the list of {word}" for word in ("topics", "provisions")},
+    "topic": "`topic`",
     "param": "the parameter",
     "set": "the setting",
     "in": "`in force`",

@@ -66,9 +66,9 @@ NOT_A_RULEBOOK = Code(
 CONFIRMED_AND_CHANGED = Code(
     "R0120",
     title="a confirmation changes the rule",
-    why="The words `confirm rule` say that an inherited rule is this rulebook's own law, too, and by which "
-    "provision. What the rule demands stays as it is inherited: it may have `cite`, `source`, "
-    "`certainty`, `says` and examples, no other clause.",
+    why="The words `confirm rule` say that an inherited rule is this rulebook's own law, too, and "
+    "by which provision. What the rule demands stays as it is inherited: it may have `cite`, "
+    "`source`, `certainty`, `says`, `topic` and examples, no other clause.",
     bad="rulebook example\nextends vienna\n"
     'confirm rule near_side_passing {\n  cite "s. 1"\n  unless congested\n}\n',
     good='rulebook example\nextends vienna\nconfirm rule near_side_passing {\n  cite "s. 1"\n}\n',
@@ -79,7 +79,7 @@ def changed_by_confirming(rule: str, word: str, place: Span) -> Diagnostic:
     return CONFIRMED_AND_CHANGED.at(
         place,
         f"`{'in force' if word == 'in' else word}` changes rule `{rule}`, which is confirmed here",
-        expected="expected `cite`, `source`, `certainty`, `says` or an example",
+        expected="expected `cite`, `source`, `certainty`, `says`, `topic` or an example",
         help=f"write `override rule {rule}` to change it, or leave this out",
     )
 
