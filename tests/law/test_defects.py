@@ -47,6 +47,18 @@ SHOWN = [
     (24, "gb", "red_light_at_level_crossings", ["waits"], [""]),
     (25, "fr", "no_overtaking_sign", ["no sign"], ["all the way"]),
     (25, "gb", "no_overtaking_sign", ["no sign"], [""]),
+    (4, "us-ca", "speed_limit_by_class", ["a truck of 15 t"], ["a car with a trailer"]),
+    (6, "us-ca", "stop_sign_giving_way", ["waits"], ["from the left"]),
+    (7, "us-ca", "give_way_to_pedestrians_when_turning", ["straight on"], ["at green, too"]),
+    (
+        16,
+        "us-ca",
+        "near_side_passing",
+        ["lanes without marks in a district"],
+        ["lanes without marks"],
+    ),
+    (17, "us-ca", "solid_line", ["a single line"], ["straight on"]),
+    (18, "us-ca", "move_over", ["no freeway"], [""]),
 ]
 
 NO_LAW = [
