@@ -59,6 +59,12 @@ SHOWN = [
     ),
     (17, "us-ca", "solid_line", ["a single line"], ["straight on"]),
     (18, "us-ca", "move_over", ["no freeway"], [""]),
+    (4, "it", "speed_limit_by_class", ["a lorry of 12 t"], ["a heavy lorry"]),
+    (5, "it", "give_way_sign", ["waits"], ["from the left"]),
+    (6, "it", "stop_sign", ["waits for the others"], ["stops, and goes before another one"]),
+    (8, "it", "amber_light", ["too near to stop"], ["there was time to stop"]),
+    (25, "it", "stopping_on_motorways", ["in a queue"], [""]),
+    (25, "it", "closed_lane", ["stopped before it"], [""]),
 ]
 
 NO_LAW = [
