@@ -12,6 +12,7 @@ from pathlib import Path
 
 from rulec.files import written_whole
 from tools.codes_page import codes_page
+from tools.coverage_page import coverage_page
 from tools.formats_page import format_words_page, formats_page
 from tools.json_schemas import SCHEMAS, schema_text
 from tools.parser_tables import parser_tables
@@ -24,6 +25,7 @@ GENERATED: Mapping[str, Callable[[], str]] = {
     "grammar/rulec.tmLanguage.json": textmate_grammar,
     "docs/codes.md": codes_page,
     "docs/vocabulary.md": road_page,
+    "docs/coverage.md": coverage_page,
     "docs/formats.md": formats_page,
     "docs/format_words.md": format_words_page,
     **{f"docs/schemas/{name}.json": partial(schema_text, name) for name in SCHEMAS},

@@ -20,10 +20,15 @@ NATIONAL = sorted(
     for path in FOLDER.glob("*/*.rules")
     if path.stem == path.parent.name and path.stem not in NO_LAW
 )
-_CASES = Path(__file__).parents[2] / "law" / "cases.toml"
-CASES: list[dict[str, Any]] = parsed_toml(
-    Source(_CASES.name, _CASES.read_text(encoding="utf-8")), "R0704", ""
-)["case"]
+_SITUATIONS = Path(__file__).parents[2] / "law"
+CASES: list[dict[str, Any]] = [
+    case
+    for path in sorted(_SITUATIONS.glob("*.toml"))
+    for case in parsed_toml(Source(path.name, path.read_text(encoding="utf-8")), "R0704", "")[
+        "case"
+    ]
+]
+"""The situations of all files in `tests/law`."""
 
 
 @cache
