@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from rulec.book_tests.example_runs import ExampleOutcome as ExampleOutcome
     from rulec.book_tests.example_runs import ExampleRun as ExampleRun
     from rulec.diagnostics import Diagnostic as Diagnostic
+    from rulec.diagnostics import Fix as Fix
     from rulec.diagnostics import Label as Label
     from rulec.diagnostics import RulecError as RulecError
     from rulec.diagnostics import SourceLocation as SourceLocation
@@ -142,7 +143,7 @@ _HOME = {
     "rulec.automata.mealy_monitor": "MealyMonitor",
     "rulec.book_tests.example_coverage": "RuleCoverage UncoveredEdge",
     "rulec.book_tests.example_runs": "ExampleOutcome ExampleRun",
-    "rulec.diagnostics": "Diagnostic Label RulecError SourceLocation",
+    "rulec.diagnostics": "Diagnostic Fix Label RulecError SourceLocation",
     "rulec.diagnostics.code": "Code",
     "rulec.extraction.drives": "NoDrive",
     "rulec.extraction.moment_search": "DriveMoments",

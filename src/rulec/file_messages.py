@@ -13,8 +13,9 @@ NOT_UTF8 = Code(
     title="a file is not a text in UTF-8",
     why="Files are plain text in UTF-8, so that names and sentences in any language read the same "
     "everywhere. Save the file as UTF-8; a file from a word processor is not a plain text.",
-    bad=r"printf 'rulebook stra\337e signal p hard rule r { require p }' | rulec check -",
-    good=r"printf 'rulebook stra\303\237e signal p hard rule r { require p }' | rulec check -",
+    bad=r"printf 'rulebook stra\337e signal p hard rule r { require always p }' | rulec check -",
+    good=r"printf 'rulebook stra\303\237e signal p "
+    "hard rule r { require always p }' | rulec check -",
     kind="command",
 )
 
@@ -23,9 +24,9 @@ FILE_TOO_LARGE = Code(
     title="a file is too large",
     why="A rulebook or a vocabulary may have 5,000,000 bytes. No law is that long; if a program "
     "wrote the file, split it into several rulebooks.",
-    bad="{ echo 'rulebook a signal p hard rule r { require p }'\n"
+    bad="{ echo 'rulebook a signal p hard rule r { require always p }'\n"
     "  head -c 5000000 /dev/zero | tr '\\0' '#'; } | rulec check -",
-    good="{ echo 'rulebook a signal p hard rule r { require p }'\n"
+    good="{ echo 'rulebook a signal p hard rule r { require always p }'\n"
     "  head -c 50000 /dev/zero | tr '\\0' '#'; } | rulec check -",
     kind="command",
 )
@@ -36,7 +37,7 @@ UNREADABLE_FILE = Code(
     why="There is no such file, it is a folder, or it may not be read, or it is "
     "packed (gzip) and damaged; the message says which.",
     bad="rulec check ./no_such.rules",
-    good="echo 'rulebook a signal p hard rule r { require p }' > such.rules\n"
+    good="echo 'rulebook a signal p hard rule r { require always p }' > such.rules\n"
     "rulec check ./such.rules",
     kind="command",
 )
@@ -68,9 +69,9 @@ LINK_OUT = Code(
     why="A file in a stranger's checkout may be a link to any file of this machine, so rulec "
     "neither reads nor writes through links that lead out of the tree: the git work tree, and "
     "where there is none, the folder that was named. If you do mean that file, give its own path.",
-    bad="mkdir books\necho 'rulebook a signal p hard rule r { require p }' > a.rules\n"
+    bad="mkdir books\necho 'rulebook a signal p hard rule r { require always p }' > a.rules\n"
     "ln -s ../a.rules books/a.rules\nrulec check books",
-    good="mkdir books\necho 'rulebook a signal p hard rule r { require p }' > a.rules\n"
+    good="mkdir books\necho 'rulebook a signal p hard rule r { require always p }' > a.rules\n"
     "ln -s ../a.rules books/a.rules\nrulec check a.rules",
     kind="command",
 )
@@ -81,7 +82,7 @@ NO_ORDINARY_FILE = Code(
     why="A pipe, a socket or a device has the name of a source. Reading it might never end, so it "
     "is left alone. Standard input is called `-`.",
     bad="mkfifo pipe.rules\nrulec check .",
-    good="mkfifo pipe\necho 'rulebook a signal p hard rule r { require p }' > pipe &\n"
+    good="mkfifo pipe\necho 'rulebook a signal p hard rule r { require always p }' > pipe &\n"
     "rulec check - < pipe",
     kind="command",
 )
@@ -104,7 +105,7 @@ NOTHING_LEFT = Code(
     "are in an environment such as `venv`. A file that is named itself is never left alone.",
     bad="echo 'package x; rule y' > other.rules\nrulec check .",
     good="echo 'package x; rule y' > other.rules\n"
-    "echo 'rulebook a signal p hard rule r { require p }' > mine.rules\nrulec check .",
+    "echo 'rulebook a signal p hard rule r { require always p }' > mine.rules\nrulec check .",
     kind="command",
 )
 
@@ -114,9 +115,9 @@ NOT_THE_SAME_FILE = Code(
     why="What `rulec fmt` changes is a new file with the old one's name, so that none is ever half "
     "written. A file with several names (hard links) would then be two, and one whose owner you "
     "are not might have you for its owner. Such files are left as they are.",
-    bad="echo 'rulebook a  signal p hard rule r { require p }' > a.rules\n"
+    bad="echo 'rulebook a  signal p hard rule r { require always p }' > a.rules\n"
     "ln a.rules b.rules\nrulec fmt a.rules",
-    good="echo 'rulebook a  signal p hard rule r { require p }' > a.rules\n"
+    good="echo 'rulebook a  signal p hard rule r { require always p }' > a.rules\n"
     "cp a.rules b.rules\nrulec fmt a.rules",
     kind="command",
 )
@@ -127,9 +128,9 @@ OVERWRITES_INPUT = Code(
     why="The file that an answer is to be written to is one that the command reads, perhaps by "
     "another path or a link, or a source that is there already. Nothing was read or written. "
     "Give the answer another name.",
-    bad="echo 'rulebook a signal p hard rule r { require p }' > a.rules\n"
+    bad="echo 'rulebook a signal p hard rule r { require always p }' > a.rules\n"
     "rulec doc ./a.rules -o a.rules --output-format markdown",
-    good="echo 'rulebook a signal p hard rule r { require p }' > a.rules\n"
+    good="echo 'rulebook a signal p hard rule r { require always p }' > a.rules\n"
     "rulec doc ./a.rules -o a.md",
     kind="command",
 )

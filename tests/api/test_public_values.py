@@ -77,7 +77,8 @@ def values():
     moments = next(rulec.find("(v: vehicle) b(v)", traces, "esterle2019"))
     known = [
         *(rulec.Session(), mistake, mistake.place, error, rulec.explain("R0104")),
-        *(rulec.Label(mistake.place, "here"), book.vocabulary, example, book.rules[0], book),
+        *(rulec.Label(mistake.place, "here"), rulec.Fix(mistake.place, "p"), book.vocabulary),
+        *(example, book.rules[0], book),
         *(book.rules[0].variables[0], rulec.check("esterle2019"), rules.rules[0], rules),
         *(rules.rules[0].machine, trace, maneuvers.paths, cells, columns, verdict),
         *(

@@ -149,7 +149,7 @@ def test_an_older_audit_that_is_not_there(folder, capsys):
 
 
 def test_one_bad_rulebook_does_not_hide_the_others(folder, capsys):
-    (folder / "bad.rules").write_text("rulebook bad hard rule r { require q }")
+    (folder / "bad.rules").write_text("rulebook bad hard rule r { require always q }")
     status, out, err = run(capsys, "bad.rules", "clean.rules")
     assert status == 2
     assert out.startswith("clean\n")

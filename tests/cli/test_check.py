@@ -72,7 +72,7 @@ def test_a_folder_stands_for_the_files_in_it_and_below(folder, capsys):
 def test_a_vocabulary_that_several_use_is_complained_about_once(folder, capsys):
     (folder / "words.rules").write_text("vocabulary words {\n  signal p q\n}\n")
     for name in ("first", "second"):
-        text = f"rulebook {name}\nuse words\nhard rule r {{ require p }}\n"
+        text = f"rulebook {name}\nuse words\nhard rule r {{ require always p }}\n"
         (folder / f"{name}.rules").write_text(text)
     status, out, _ = check(capsys, "first.rules", "second.rules", ".", "--output-format", "concise")
     assert status == 1
@@ -164,8 +164,41 @@ def imported(arguments):
 
 def test_a_name_that_is_a_file_of_the_working_folder(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "mine.rules").write_text("rulebook mine\nsignal p\nhard rule r { require p }\n")
+    (tmp_path / "mine.rules").write_text(
+        "rulebook mine\nsignal p\nhard rule r { require always p }\n"
+    )
     for verb in ("check", "show"):
         assert main([verb, "mine"]) == 2
         said = "".join(capsys.readouterr())
         assert "  = help: write `./mine.rules` for the file in the working folder\n" in said
+
+
+def test_fixes_are_written_and_leave_nothing_to_say(capsys, tmp_path):
+    path = tmp_path / "reach.rules"
+    before = (
+        "rulebook reach\nsignal p, q, r default false\n"
+        "hard rule a { require p # first\n and q }\n"
+        "hard rule b { require not (p or q) }\n"
+        "hard rule c { require p implies never[<= 3 s] q and r }\n"
+        "hard rule d { require never p then q }\n"
+        "hard rule e { require always p and q or never r }\n"
+    )
+    after = (
+        "rulebook reach\nsignal p, q, r default false\n"
+        "hard rule a { require always p # first\n and always q }\n"
+        "hard rule b { require never (p or q) }\n"
+        "hard rule c { require p implies never[<= 3 s] (q and r) }\n"
+        "hard rule d { require never (p then q) }\n"
+        "hard rule e { require always (p and q) or never r }\n"
+    )
+    path.write_text(before)
+    status, out, _ = check(capsys, str(path), "--output-format", "json")
+    assert (status, [one["fix"] is not None for one in json.loads(out)]) == (0, [True] * 6)
+    assert path.read_text() == before
+    status, out, err = check(capsys, str(path), "--fix")
+    assert (status, path.read_text()) == (0, after)
+    assert (out, err) == (
+        "1 file checked, nothing found\n",
+        f"6 fixes written to {path}\n",
+    )
+    assert check(capsys, "-", "--fix")[0] == 2

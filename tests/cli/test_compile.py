@@ -21,7 +21,7 @@ def test_files_and_their_contents(tmp_path, capsys):
 
 def test_a_rulebook_with_mistakes_writes_nothing(tmp_path, capsys):
     source = tmp_path / "bad.rules"
-    source.write_text("rulebook bad\nuse paper\nhard rule A { require CONGSTED }\n")
+    source.write_text("rulebook bad\nuse paper\nhard rule A { require always CONGSTED }\n")
     assert main(["compile", str(source), "-o", str(tmp_path / "out")]) == 2
     assert not (tmp_path / "out").exists()
     assert "CONGESTED" in capsys.readouterr().err

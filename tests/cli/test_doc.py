@@ -211,7 +211,9 @@ def test_it_is_the_same_every_time(folder, capsys):
 
 
 def test_a_rulebook_without_rules(folder, capsys):
-    (folder / "single.rules").write_text("rulebook single signal p hard rule r { require p }\n")
+    (folder / "single.rules").write_text(
+        "rulebook single signal p hard rule r { require always p }\n"
+    )
     (folder / "empty.rules").write_text('rulebook empty\nextends single\ndrop rule r because ""\n')
     page = written(capsys, "empty.rules", "--format", "markdown")
     assert page.startswith("# empty\n")

@@ -30,13 +30,13 @@ def test_a_code(code, capsys):
         "\n"
         "    rulebook example\n"
         "    light is one of red, green default grean\n"
-        "    hard rule r { require red }\n"
+        "    hard rule r { require always red }\n"
         "\n"
         "Mended:\n"
         "\n"
         "    rulebook example\n"
         "    light is one of red, green default green\n"
-        "    hard rule r { require red }\n"
+        "    hard rule r { require always red }\n"
     )
 
 

@@ -12,8 +12,8 @@ import pytest
 from rulec.cli.main import main
 from rulec.syntax.formatting import safe_format
 
-GOOD = "rulebook good\nsignal p\nhard rule r { require p }\n"
-UGLY = "rulebook good   signal p\nhard rule r {require p }"
+GOOD = "rulebook good\nsignal p\nhard rule r { require always p }\n"
+UGLY = "rulebook good   signal p\nhard rule r {require always p }"
 WRONG = "rulebook wrong\nsignal p\nhard rule r { require p p }\n"
 RULEC = [sys.executable, "-c", "from rulec.cli.main import main; raise SystemExit(main())"]
 
@@ -80,11 +80,11 @@ def test_diff_can_be_applied(folder, capsys):
         "+++ ugly.rules\n"
         "@@ -1,2 +1,3 @@\n"
         "-rulebook good   signal p\n"
-        "-hard rule r {require p }\n"
+        "-hard rule r {require always p }\n"
         "\\ No newline at end of file\n"
         "+rulebook good\n"
         "+signal p\n"
-        "+hard rule r { require p }\n"
+        "+hard rule r { require always p }\n"
     )
     assert (folder / "ugly.rules").read_text() == UGLY
     assert fmt(capsys, "--diff", "good.rules")[:2] == (0, "")

@@ -56,7 +56,7 @@ def test_a_kind_that_there_is_not(capsys):
 
 def test_a_file_that_cannot_be_read_is_listed_without_a_title(tmp_path):
     (tmp_path / "good.rules").write_text(
-        'rulebook good\ntitle "A title"\nsignal p\nhard rule r { require p }\n'
+        'rulebook good\ntitle "A title"\nsignal p\nhard rule r { require always p }\n'
     )
     (tmp_path / "broken.rules").write_bytes(b'rulebook broken\ntitle "\xff"\n')
     (tmp_path / "words.rules").write_text(

@@ -195,7 +195,7 @@ def test_a_source_that_is_there_is_never_written_over(tmp_path, monkeypatch, cap
     monkeypatch.chdir(tmp_path)
     Path("rulec.toml").write_text('search_path = ["."]')
     Path("words.rules").write_text("vocabulary words { signal p }")
-    Path("mine.rules").write_text("rulebook mine use words hard rule r { require p }")
+    Path("mine.rules").write_text("rulebook mine use words hard rule r { require always p }")
     for path in ("words.rules", "mine.rules"):
         before = Path(path).read_text()
         assert main(["doc", "mine", "-o", path, "--output-format", "markdown"]) == 2

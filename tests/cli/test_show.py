@@ -108,10 +108,10 @@ def test_an_unknown_rule(two, name, hint, capsys):
 def test_a_rule_that_is_not_there_any_more(name, why, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "above.rules").write_text(
-        "rulebook above\nsignal p\nhard rule A { require p }\n"
+        "rulebook above\nsignal p\nhard rule A { require always p }\n"
         'silent on B because "nobody asks"\n'
         "hard rule C { require p in force until 2020-01-31 }\n"
-        "hard rule E { require p }\n"
+        "hard rule E { require always p }\n"
     )
     (tmp_path / "below.rules").write_text(
         'rulebook below\nextends above\ndrop rule A because "it is old"\n'

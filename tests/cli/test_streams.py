@@ -153,7 +153,7 @@ def test_an_output_without_a_name_is_refused(tmp_path):
 def test_a_name_that_no_encoding_holds(tmp_path):
     source = os.fsencode(tmp_path) + b"/r\xff.rules"
     with open(source, "w") as stream:
-        stream.write("rulebook r\nsignal p\nhard rule A { require p }\n")
+        stream.write("rulebook r\nsignal p\nhard rule A { require always p }\n")
     folder = str(tmp_path / "out")
     assert run(["compile", source, "-o", folder]).returncode == 0
     done = run(["verify", "-", "-r", f"{folder}/r.json"], input=b'{"states": [{"p": true}]}')

@@ -265,7 +265,7 @@ def test_warnings_are_said_aside(odd, capsys, tmp_path):
 
 
 def test_a_rule_that_its_examples_do_not_exercise_gets_a_warning(tmp_path, capsys):
-    source = "rulebook a\nsignal p\nhard rule r { require p accept { p } }\n"
+    source = "rulebook a\nsignal p\nhard rule r { require always p accept { p } }\n"
     path = tmp_path / "a.rules"
     path.write_text(source)
     status, out, err = run(capsys, str(path), "--output-format", "json")

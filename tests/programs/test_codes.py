@@ -14,8 +14,8 @@ NO_PROGRAMS = {
     "R0101": b"\xff",
     "R0102": b"#" * 5_000_001,
     "R0103": b"# nothing\n",
-    "R0107": START + b'says "\x1b[2J" require p }',
-    "R0111": START + b"require " + b"!" * 201 + b"p }",
+    "R0107": START + b'says "\x1b[2J" require always p }',
+    "R0111": START + b"require always " + b"!" * 201 + b"p }",
 }
 
 

@@ -245,7 +245,7 @@ def test_a_relation_is_looked_up_where_the_definition_is_used():
     signal a default false
     define both(a: car, b) = near(a) and b
     signal near(c: car) default false
-    hard rule r (v: car) { require both(v, a) }"""
+    hard rule r (v: car) { require always both(v, a) }"""
     near, a = (
         parse_rulebook(text).rules[0].formula.left,
         parse_rulebook(text).rules[0].formula.right,

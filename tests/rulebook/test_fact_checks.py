@@ -15,7 +15,7 @@ quantity gap in m default 5
 
 def states_that_cannot_be(fact, formula, states, variables=""):
     """The texts of those that are reported."""
-    text = f"{BOOK}fact {fact}\nhard rule r {variables} {{ require {formula} {states} }}"
+    text = f"{BOOK}fact {fact}\nhard rule r {variables} {{ require always ({formula}) {states} }}"
     found = ()
     try:
         parse_rulebook(text)
@@ -83,7 +83,7 @@ def test_a_fact_that_grows_too_large_is_a_mistake():
     steps = (f"define d{n} = d{n - 1} or d{n - 1}\n" for n in range(1, 12))
     text = f"{BOOK}define d0 = p or p\n{''.join(steps)}fact d11 and d11 and d11\n"
     with pytest.raises(RulecError) as caught:
-        parse_rulebook(f"{text}hard rule r {{ require p }}")
+        parse_rulebook(f"{text}hard rule r {{ require always p }}")
     (mistake,) = caught.value.diagnostics
     assert mistake.code == "R0323"
     assert mistake.message.startswith("the fact `d11 and d11 and d11` has more than 20,000 parts")

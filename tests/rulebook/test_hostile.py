@@ -48,7 +48,7 @@ HOSTILE = {
     "sums of sums": (SUMS + rule("speed < n60"), {"R0323"}),
     "cases of cases": (CASES + rule("gap < n60"), {"R0323"}),
     "choices of choices": (CHOICES + rule("d60"), {"R0323"}),
-    "counts in counts": (COUNTS + "hard rule r (v: car) { require d300(v) }", {"R0111"}),
+    "counts in counts": (COUNTS + "hard rule r (v: car) { require always d300(v) }", {"R0111"}),
     "many exceptions and phases": (
         rule(f"never ({'p then q then ' * 40} p)", THROUGHOUT),
         {"R0323"},
@@ -61,7 +61,7 @@ HOSTILE = {
     "far too small": (rule("gap < 1e-999999999 m"), {"R0112"}),
     "nothing, far too small": (rule("gap < 0e999999999 m"), {"R0112"}),
     "steps": (rule("next[1e999999999 steps] p"), {"R0112"}),
-    "a weight": ("\nsoft rule r weight 1e-999999999 { require p }", {"R0112"}),
+    "a weight": ("\nsoft rule r weight 1e-999999999 { require always p }", {"R0112"}),
     "a value that overflows in its unit": (
         rule("gap < 1 m", "accept { gap = 1e308 km }"),
         {"R0112"},
@@ -110,7 +110,7 @@ def test_types_in_a_chain_that_is_too_long_are_cut_where_it_is():
         SUMMED + rule("gap < n3000"),
         BACKWARDS + rule("gap < n3000"),
         chain("define d0 = p", "define d{here} = not d{before}", 100) + rule("d100"),
-        "\n".join(f"hard rule r{at} {{ require p }}" for at in range(2000)),
+        "\n".join(f"hard rule r{at} {{ require always p }}" for at in range(2000)),
     ],
     ids=["many parameters", "a long sum", "a long sum, backwards", "definitions", "rules"],
 )
@@ -120,7 +120,7 @@ def test_what_is_long_but_right(text):
 
 def write_chain(folder, number):
     """Rulebooks of which each extends the one before; the path of the last one."""
-    (folder / "b0.rules").write_text("rulebook b0 signal p hard rule r { require p }")
+    (folder / "b0.rules").write_text("rulebook b0 signal p hard rule r { require always p }")
     for at in range(1, number):
         text = f'rulebook b{at} extends b{at - 1} override rule r {{ says "{at}" }}'
         (folder / f"b{at}.rules").write_text(text)

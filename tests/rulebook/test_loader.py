@@ -15,7 +15,7 @@ from rulec.rulebook.loader import (
     parse_rulebook,
 )
 
-MINE = "rulebook mine\nuse words\nhard rule r { require p }\n"
+MINE = "rulebook mine\nuse words\nhard rule r { require always p }\n"
 WORDS = "vocabulary words { signal p }\n"
 
 
@@ -33,7 +33,7 @@ def only(reference, search_path=()):
 
 
 def test_a_name_is_found_on_the_search_path_first(tmp_path):
-    mine = "rulebook esterle2019\nsignal p\nhard rule mine { require p }\n"
+    mine = "rulebook esterle2019\nsignal p\nhard rule mine { require always p }\n"
     write(tmp_path / "esterle2019.rules", mine)
     assert load_rulebook("esterle2019").rules[0].name == "R1"
     assert load_rulebook("esterle2019", [tmp_path]).rules[0].name == "mine"
@@ -48,7 +48,7 @@ def test_a_name_may_be_a_folder_s(tmp_path):
 
 def test_the_folders_come_in_their_order(tmp_path):
     for folder, rule in (("one", "first"), ("two", "second")):
-        text = f"rulebook a\nsignal p\nhard rule {rule} {{ require p }}\n"
+        text = f"rulebook a\nsignal p\nhard rule {rule} {{ require always p }}\n"
         write(tmp_path / folder / "a.rules", text)
     folders = [tmp_path / "one", tmp_path / "two"]
     assert load_rulebook("a", folders).rules[0].name == "first"
@@ -64,7 +64,7 @@ def test_a_vocabulary_is_found_beside_its_rulebook_first(tmp_path):
 
 def test_a_rulebook_and_its_vocabulary_may_share_a_name(tmp_path):
     path = write(
-        tmp_path / "paper.rules", "rulebook paper\nuse paper\nhard rule r {require R_pc}\n"
+        tmp_path / "paper.rules", "rulebook paper\nuse paper\nhard rule r {require always R_pc}\n"
     )
     assert "surface" in load_rulebook(path).vocabulary.declarations
 
@@ -145,10 +145,10 @@ def test_a_vocabulary_that_is_used_but_empty(tmp_path):
 
 
 def test_text_at_hand_is_read_as_well():
-    rulebook = parse_rulebook("rulebook a\nsignal p\nhard rule r { require p }", "at hand")
+    rulebook = parse_rulebook("rulebook a\nsignal p\nhard rule r { require always p }", "at hand")
     assert rulebook.sources[0].name == "at hand"
     with pytest.raises(RulecError) as caught:
-        parse_rulebook("rulebook a\nhard rule r { require q }", "at hand")
+        parse_rulebook("rulebook a\nhard rule r { require always q }", "at hand")
     assert caught.value.diagnostics[0].place.file == "at hand"
 
 

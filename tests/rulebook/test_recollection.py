@@ -13,7 +13,7 @@ from rulec.rulebook.batch.check_cache import CheckQuestion, cache_folder, recall
 from support.builders.rulebook_projects import project_in
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"
-BASE = "rulebook base\nuse words\nhard rule first { require p }\n"
+BASE = "rulebook base\nuse words\nhard rule first { require always p }\n"
 BOOK = "rulebook book\nextends base\nhard rule second { require always q }\n"
 
 
@@ -228,7 +228,7 @@ def test_mistakes_that_quote_a_long_line_again_and_again_are_not_kept(folder, ma
 
 
 def test_mistakes_in_one_line_share_its_text(folder):
-    rules = "hard rule r { require q } hard rule s { require t }"
+    rules = "hard rule r { require always q } hard rule s { require always t }"
     (folder / "two.rules").write_text(f"rulebook two\n{rules}\n")
     found = batch_check.check(["two.rules"], lambda: b"", (), "", recalls=False).findings
     first, second = [one.place.excerpt for one in found if one.code == "R0202"]

@@ -127,14 +127,16 @@ def test_subtypes_fit_where_their_supertypes_are_asked_for():
 
 def test_an_unused_variable_is_a_warning(tmp_path):
     path = tmp_path / "warned.rules"
-    path.write_text("rulebook warned\nuse paper\nhard rule r (v: vehicle) { require CONGESTED }\n")
+    path.write_text(
+        "rulebook warned\nuse paper\nhard rule r (v: vehicle) { require always CONGESTED }\n"
+    )
     (warning,) = read_rulebook(path).warnings
     assert (warning.code, warning.severity) == ("R0207", "warning")
     assert "`v`" in warning.message
 
 
 def test_what_is_unreadable_yields_no_rulebook_but_no_second_error():
-    text = "rulebook a\nsignal p q\nhard rule r { require p }\nhard rule s { require q and x_1 }\n"
+    text = "rulebook a\nsignal p q\nhard rule r { require always p }\nhard rule s { require q and x_1 }\n"
     tree, (syntax,) = parse(Source("a", text))
     rulebook, (meaning,) = resolve([tree], at="2026-01-01")
     assert rulebook is None

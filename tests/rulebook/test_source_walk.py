@@ -10,7 +10,7 @@ from rulec.cli.main import main
 from rulec.rulebook.files.source_walk import sources_below
 from rulec.source_detection import is_foreign
 
-BOOK = "rulebook a\nsignal p\nhard rule r { require p }\n"
+BOOK = "rulebook a\nsignal p\nhard rule r { require always p }\n"
 SECRET = "DEPLOY_KEY=hunter2"
 
 
@@ -142,7 +142,7 @@ def test_nothing_is_written_behind_a_link(tree):
 def test_no_line_of_a_file_that_is_no_source_is_shown(secret, tree, capsys):
     write("b.rules", secret.encode("latin-1"))
     write("c.rules", "rulebook c\nextends b\n")
-    write("d.rules", "rulebook d\nuse b\nhard rule r { require p }\n")
+    write("d.rules", "rulebook d\nuse b\nhard rule r { require always p }\n")
     arguments = ["./b.rules"], ["./c.rules"], ["./d.rules"]
     for form in ("full", "json", "sarif", "github", "concise"):
         for argument in arguments:

@@ -152,9 +152,9 @@ def print_left_alone(left_alone: Sequence[LeftAlone], *, verbose: bool) -> None:
         print_remark(f"left alone: {in_words(left_alone)}")
 
 
-def counted(number: int, noun: str) -> str:
+def counted(number: int, noun: str, several: str = "") -> str:
     """A number of things, such as ``1 file`` and ``1,000 files``."""
-    return f"{number:,} {noun if number == 1 else f'{noun}s'}"
+    return f"{number:,} {noun if number == 1 else several or f'{noun}s'}"
 
 
 def print_findings(

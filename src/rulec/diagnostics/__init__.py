@@ -3,12 +3,13 @@
 Nothing here prints. ``rulec.report`` turns diagnostics into text.
 """
 
-from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError
+from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, RulecError
 from rulec.diagnostics.phrases import any_of, did_you_mean, named, nearest_name
 from rulec.diagnostics.source_text import Source, SourceLocation, Span
 
 __all__ = [
     "Diagnostic",
+    "Fix",
     "Label",
     "RulecError",
     "Source",

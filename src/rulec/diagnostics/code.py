@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict
 
-from rulec.diagnostics.diagnostic import Diagnostic, Label, RulecError, Severity
+from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, RulecError, Severity
 from rulec.diagnostics.source_text import SourceLocation, Span
 from rulec.value_display import short_repr
 
@@ -42,6 +42,7 @@ class Details(TypedDict, total=False):
     labels: tuple[Label, ...]
     notes: tuple[str, ...]
     severity: Severity
+    fix: Fix
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,12 +21,20 @@ class Label:
 
 
 @dataclass(frozen=True, slots=True)
+class Fix:
+    """An edit that mends something: what stands at ``place`` becomes ``text``."""
+
+    place: SourceLocation
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
     """One mistake (or remark).
 
     ``message`` says what is wrong in one clause; ``expected`` stands beside the underlined place
-    (``expected a name``); ``help`` is the way out. It is made by the ``Code`` whose
-    text ``code`` is.
+    (``expected a name``); ``help`` is the way out, ``fix`` the same as an edit, where there is one.
+    It is made by the ``Code`` whose text ``code`` is.
     """
 
     __repr__ = short_repr
@@ -39,6 +47,7 @@ class Diagnostic:
     labels: tuple[Label, ...] = ()
     notes: tuple[str, ...] = ()
     severity: Severity = "error"
+    fix: Fix | None = None
 
 
 def at(span: Span | None) -> SourceLocation | None:

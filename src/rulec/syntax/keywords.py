@@ -100,6 +100,15 @@ UNARY_OPERATORS: Final = (
     *("once", "historically", "previously", "weak previously"),
 )
 
+OF_ONE_STATE: Final = frozenset(("not", "and", "or", "implies", "iff", "xor"))
+"""The operators that are not temporal."""
+
+BINDS_NARROWLY: Final = frozenset(("always", "never", "eventually"))
+"""The operators that are often taken to speak of all that follows them."""
+
+JOINS_ALIKE: Final = frozenset(("and", "or", "xor"))
+"""The operators between parts that may each have an operator of time: `always p and never q`."""
+
 _LOOSEST_FIRST: Final = ("iff", "implies", "then", "xor", "or", "and")
 PRECEDENCE: Final = {
     **{word: level for level, word in enumerate(_LOOSEST_FIRST, 1)},

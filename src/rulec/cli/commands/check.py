@@ -11,6 +11,7 @@ from rulec.cli.options.shared_options import at_option, findings_options, verbos
 from rulec.cli.options.shell_completion import complete_sources
 from rulec.cli.output import counted, print_findings, print_left_alone
 from rulec.files import MAX_SOURCE_BYTES
+from rulec.report.text.console import print_remark
 from rulec.settings import search_path
 
 
@@ -24,12 +25,24 @@ from rulec.settings import search_path
     is_flag=True,
     help="Check anew also what has not changed since the last time.",
 )
+@click.option(
+    "--fix",
+    is_flag=True,
+    help="Write into the files what warnings offer. It may change what rules mean: read it.",
+)
 @verbose_option
 @at_option
 def command(
-    sources: tuple[str, ...], to: Output, *, fail_on: str, at: str, no_cache: bool, verbose: bool
+    sources: tuple[str, ...],
+    to: Output,
+    *,
+    fail_on: str,
+    at: str,
+    no_cache: bool,
+    fix: bool,
+    verbose: bool,
 ) -> int:
-    """Check rulebooks and vocabularies, and write nothing.
+    """Check rulebooks and vocabularies, and write nothing but fixes that are asked for.
 
     Each is a name, a file, a folder (the sources in and below it, but for what git ignores, and for
     environments), or `-` for standard input.
@@ -42,7 +55,16 @@ def command(
     def standard_input() -> bytes:
         return sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1)
 
+    if fix and "-" in sources:
+        raise click.UsageError("`-` is standard input and cannot be written; write it to a file")
     done = check(sources, standard_input, search_path(), at, recalls=not no_cache)
+    if fix and any(finding.fix for finding in done.findings):
+        # The formatter, 20 ms: only where something is to be written.
+        from rulec.rulebook.batch.batch_fix import write_fixes
+
+        number, changed = write_fixes(done.files, done.findings)
+        print_remark(f"{counted(number, 'fix', 'fixes')} written to {', '.join(changed)}")
+        done = check(sources, standard_input, search_path(), at, recalls=not no_cache)
     status = print_findings(
         done.findings,
         done.unread,

@@ -29,6 +29,13 @@ class LabelData(JsonPart, frozen=True, kw_only=True):
     message: str
 
 
+class FixData(JsonPart, frozen=True, kw_only=True):
+    """An edit that mends something: what stands at ``place`` becomes ``text``."""
+
+    place: PlaceData
+    text: str
+
+
 class FindingData(JsonDocument, frozen=True, kw_only=True):
     """A mistake or a warning; what it does not have is empty."""
 
@@ -40,6 +47,7 @@ class FindingData(JsonDocument, frozen=True, kw_only=True):
     help: str
     labels: Sequence[LabelData]
     notes: Sequence[str]
+    fix: FixData | None = None
 
 
 class CodeData(JsonDocument, frozen=True, kw_only=True):

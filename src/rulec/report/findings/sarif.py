@@ -75,6 +75,13 @@ def _result(diagnostic: Diagnostic, index: int) -> dict[str, Any]:
             }
             for number, label in enumerate(diagnostic.labels)
         ]
+    if diagnostic.fix is not None:
+        place = _location(diagnostic.fix.place)
+        mend = {"deletedRegion": place["region"], "insertedContent": {"text": diagnostic.fix.text}}
+        changes = [{"artifactLocation": place["artifactLocation"], "replacements": [mend]}]
+        result["fixes"] = [
+            {"description": {"text": diagnostic.help}, "artifactChanges": changes},
+        ]
     return result
 
 

@@ -18,7 +18,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
+from rulec.diagnostics import Diagnostic, Fix, Label, RulecError, SourceLocation
 from rulec.files import OF_OTHERS, is_own, written_whole
 from rulec.resources import package_files
 from rulec.rulebook.files.search_path import Dependency, locate_base, locate_vocabulary, read_bytes
@@ -172,7 +172,9 @@ def diagnostic_of(data: dict[str, Any]) -> Diagnostic:
     """The diagnostic that ``asdict`` made this of. Raises TypeError or LookupError."""
     place = None if data["place"] is None else SourceLocation(**data["place"])
     labels = [Label(SourceLocation(**label["place"]), label["message"]) for label in data["labels"]]
-    parts = {"place": place, "labels": tuple(labels), "notes": tuple(data["notes"])}
+    mend = data["fix"]
+    fix = None if mend is None else Fix(SourceLocation(**mend["place"]), mend["text"])
+    parts = {"place": place, "labels": tuple(labels), "notes": tuple(data["notes"]), "fix": fix}
     return Diagnostic(**{**data, **parts})
 
 

@@ -8,6 +8,7 @@ from rulec.diagnostics import Diagnostic
 from rulec.rulebook.elaborate.elaboration import elaborate, number
 from rulec.rulebook.elaborate.macro_expansion import parameter_value
 from rulec.rulebook.elaborate.scope import AnyArgument, Call, Scope, bound_variables
+from rulec.rulebook.elaborate.time_reach import operator_warnings
 from rulec.rulebook.names.declaration_messages import twice, unknown_dimension
 from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.names.symbol_table import SymbolTable
@@ -102,4 +103,5 @@ def _check_definition(
         constants.broken.add(item.name.text)
     elif meaning is not None:
         mistakes += scope.unused(item.parameters, item)
+        mistakes += operator_warnings(item.body, constants.overlay)
     return mistakes

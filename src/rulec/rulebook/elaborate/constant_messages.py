@@ -23,9 +23,9 @@ CIRCULAR_DEFINITION = Code(
     why="A definition is put in the place of its name, so it cannot contain itself, not even by "
     "way of another.",
     bad="rulebook example\nsignal wet\ndefine slippery = wet or slippery\n"
-    "hard rule r { require not slippery }\n",
-    good="rulebook example\nsignal wet\ndefine slippery = wet\nhard rule r { require not slippery "
-    "}\n",
+    "hard rule r { require never slippery }\n",
+    good="rulebook example\nsignal wet\ndefine slippery = wet\n"
+    "hard rule r { require never slippery }\n",
 )
 
 NO_SINGLE_VALUE = Code(

@@ -19,12 +19,8 @@ from rulec.rulebook.elaborate.rule_messages import unused_variable
 from rulec.rulebook.elaborate.scope import AnyArgument, BoundVariable, Scope
 from rulec.rulebook.names.declaration_messages import twice
 from rulec.syntax import tree
+from rulec.syntax.keywords import BINDS_NARROWLY, OF_ONE_STATE
 from rulec.vocabulary.dimensions import DIMENSIONS
-
-_OF_ONE_STATE = frozenset(("not", "and", "or", "implies", "iff", "xor"))
-"""The operators that are not temporal."""
-
-_ENDLESS = ("always", "never", "eventually")
 
 _ONE = numbers.constant(Fraction(1), DIMENSIONS["number"], "1")
 
@@ -155,9 +151,9 @@ def _infix(node: tree.Infix, scope: Scope) -> ltl.Formula | None:
     left, right = truth(node.left, scope), truth(node.right, scope)
     bound = bound_of(node, scope, number)
     phase = node.left if node.operator == "then" else None
-    if isinstance(phase, tree.Prefix) and phase.operator in _ENDLESS and not phase.grouped:
+    if isinstance(phase, tree.Prefix) and phase.operator in BINDS_NARROWLY and not phase.grouped:
         # `never p then q` means `never (p then q)`, and `never p` has no end.
-        scope.report(say.endless_phase(phase))
+        scope.report(say.endless_phase(phase, node))
     if _out_of_place(node, scope) or left is None or right is None or bound is False:
         return None
     return ltl.Binary(ltl.BinaryOperator(node.operator), left, right, bound)
@@ -165,7 +161,7 @@ def _infix(node: tree.Infix, scope: Scope) -> ltl.Formula | None:
 
 def _out_of_place(node: tree.Prefix | tree.Infix, scope: Scope) -> bool:
     """Tell, and report, whether a temporal operator stands where one state is spoken of."""
-    misplaced = scope.in_moment and node.operator not in _OF_ONE_STATE
+    misplaced = scope.in_moment and node.operator not in OF_ONE_STATE
     if misplaced:
         scope.report(say.temporal_in_count(node))
     return misplaced

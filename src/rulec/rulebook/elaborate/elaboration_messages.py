@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rulec.diagnostics import Diagnostic, Label, any_of, did_you_mean
+from rulec.diagnostics import Diagnostic, Fix, Label, Span, any_of, did_you_mean
 from rulec.diagnostics.code import Code
 from rulec.logic.formula import Formula
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
@@ -280,12 +280,17 @@ def temporal_in_count(node: tree.Prefix | tree.Infix) -> Diagnostic:
     )
 
 
-def endless_phase(phase: tree.Prefix) -> Diagnostic:
+def endless_phase(phase: tree.Prefix, sequence: tree.Infix) -> Diagnostic:
     """``never p then q``, where ``never (p then q)`` is probably meant."""
+    span, bound = phase.span, phase.bound
+    behind = span.start + len(phase.sign) if bound is None else bound.span.end
+    head = Span(span.source, span.start, behind).text
+    inside = Span(span.source, behind, sequence.span.end).text.strip()
     return OPERATOR_BEFORE_THEN.at(
-        phase.span,
+        span,
         f"`{phase.operator}` speaks of this phase alone, not of the whole sequence",
         expected=f"`{phase.operator}` binds tighter than `then`",
         help=f"write `{phase.operator} (… then …)` to speak of the sequence",
         severity="warning",
+        fix=Fix(Span(span.source, span.start, sequence.span.end).place, f"{head} ({inside})"),
     )

@@ -35,9 +35,9 @@ UNUSED_CONSTANT = Code(
     "R0208",
     title="an option, a parameter or a definition is not used",
     why="No rule, parameter or definition of the rulebook speaks of it, so it changes nothing.",
-    bad="rulebook example\nsignal wet\noption strict = on\nhard rule r { require not wet }\n",
+    bad="rulebook example\nsignal wet\noption strict = on\nhard rule r { require never wet }\n",
     good="rulebook example\nsignal wet\noption strict = on\n"
-    "hard rule r { require strict implies not wet }\n",
+    "hard rule r { require always (strict implies not wet) }\n",
 )
 
 MANY_CHOICES = Code(
@@ -62,9 +62,9 @@ UNKNOWN_PRIORITY = Code(
     why="A rule's place, such as `in legal`, is one of the levels that the `priority` lines of the "
     "rulebook, or of those that it extends, put in order.",
     bad="rulebook example\npriority safety > legal\nsignal wet\n"
-    "hard rule r in lawful { require not wet }\n",
+    "hard rule r in lawful { require never wet }\n",
     good="rulebook example\npriority safety > legal\nsignal wet\n"
-    "hard rule r in legal { require not wet }\n",
+    "hard rule r in legal { require never wet }\n",
 )
 
 UNFITTING_SCOPE = Code(
@@ -84,8 +84,8 @@ NOT_ABOVE_ZERO = Code(
     title="a weight or a step is not above 0",
     why="A weight says how much a rule counts beside others of its level, a step how far the "
     "states of examples are apart in time.",
-    bad="rulebook example\nsignal wet\nsoft rule r weight 0 { require not wet }\n",
-    good="rulebook example\nsignal wet\nsoft rule r weight 1 { require not wet }\n",
+    bad="rulebook example\nsignal wet\nsoft rule r weight 0 { require never wet }\n",
+    good="rulebook example\nsignal wet\nsoft rule r weight 1 { require never wet }\n",
 )
 
 NOT_A_MULTIPLE = Code(

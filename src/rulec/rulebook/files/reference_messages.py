@@ -19,7 +19,7 @@ WRONG_KIND_OF_FILE = Code(
     "A vocabulary `NAME` is found in a file `NAME.rules` that begins with `vocabulary NAME`.",
     bad="echo 'vocabulary town { signal fog }' > town.rules\nrulec compile ./town.rules -o build",
     good="echo 'vocabulary town { signal fog }' > town.rules\n"
-    "echo 'rulebook city use town hard rule r { require not fog }' > city.rules\n"
+    "echo 'rulebook city use town hard rule r { require never fog }' > city.rules\n"
     "rulec compile ./city.rules -o build",
     kind="command",
 )
@@ -31,7 +31,7 @@ EXTENDS_CIRCLE = Code(
     bad="printf 'rulebook a\\nextends b\\n' > a.rules\n"
     "printf 'rulebook b\\nextends a\\n' > b.rules\nrulec check a.rules\n",
     good="printf 'rulebook a\\nextends b\\n' > a.rules\n"
-    "printf 'rulebook b\\nsignal p\\nhard rule r { require p }\\n' > b.rules\n"
+    "printf 'rulebook b\\nsignal p\\nhard rule r { require always p }\\n' > b.rules\n"
     "rulec check a.rules\n",
     kind="command",
 )
@@ -42,8 +42,8 @@ NAME_NOT_FOUND = Code(
     why="A rulebook or a vocabulary with this name is neither beside the file that asks for it "
     "nor among those that ship with rulec (`rulec list`). A file is given by its path, such "
     "as `./mine.rules`.",
-    bad="rulebook example\nuse papr\nhard rule r { require not CONGESTED }\n",
-    good="rulebook example\nuse paper\nhard rule r { require not CONGESTED }\n",
+    bad="rulebook example\nuse papr\nhard rule r { require never CONGESTED }\n",
+    good="rulebook example\nuse paper\nhard rule r { require never CONGESTED }\n",
 )
 
 

@@ -27,7 +27,7 @@ UNKNOWN_VARIABLE = Code(
     why="The variables of a rule are those in the parentheses behind its name, each with a type.",
     bad="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(w) and b(v) "
     "}\n",
-    good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(v) and b(v) "
+    good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require never (r(v) and b(v)) "
     "}\n",
 )
 
@@ -49,7 +49,8 @@ WRONG_ARITY = Code(
     why="A signal or an enumeration is about the world, or about as many objects as its "
     "declaration has parameters; in a formula it stands with as many variables.",
     bad="rulebook example\nuse paper\nhard rule r (v: vehicle) { require f(v) or CONGESTED(v) }\n",
-    good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require f(v) or CONGESTED }\n",
+    good="rulebook example\nuse paper\n"
+    "hard rule r (v: vehicle) { require always (f(v) or CONGESTED) }\n",
 )
 
 WRONG_ARGUMENT_TYPE = Code(
@@ -57,9 +58,9 @@ WRONG_ARGUMENT_TYPE = Code(
     title="an argument is of the wrong type",
     why="What is declared for one type can be said of its subtypes, and of no other objects.",
     bad="rulebook example\ntype car\ntype pedestrian\nsignal braking(c: car)\n"
-    "hard rule r (p: pedestrian) { require not braking(p) }\n",
+    "hard rule r (p: pedestrian) { require never braking(p) }\n",
     good="rulebook example\ntype car\ntype pedestrian\nsignal braking(c: car)\n"
-    "hard rule r (c: car) { require not braking(c) }\n",
+    "hard rule r (c: car) { require never braking(c) }\n",
 )
 
 NOT_BOOLEAN = Code(
@@ -67,9 +68,10 @@ NOT_BOOLEAN = Code(
     title="a name stands for something that cannot be true or false",
     why="Formulas are made of what is true or false in a state: signals, and values of "
     "enumerations. Quantities, types, objects and an enumeration as a whole are neither.",
-    bad="rulebook example\nsurface is one of road, crossing\nhard rule r { require not surface }\n",
+    bad="rulebook example\nsurface is one of road, crossing\n"
+    "hard rule r { require never surface }\n",
     good="rulebook example\nsurface is one of road, crossing\n"
-    "hard rule r { require not crossing }\n",
+    "hard rule r { require never crossing }\n",
 )
 
 AMBIGUOUS_NAME = Code(
@@ -80,7 +82,7 @@ AMBIGUOUS_NAME = Code(
     bad="rulebook example\ntype t\nsignal a(o: t), a_b(o: t)\n"
     "hard rule r (b_c: t, c: t) { require a_b_c and a(c) and a(b_c) }\n",
     good="rulebook example\ntype t\nsignal a(o: t), a_b(o: t)\n"
-    "hard rule r (b_c: t, c: t) { require a_b(c) and a(c) and a(b_c) }\n",
+    "hard rule r (b_c: t, c: t) { require always (a_b(c) and a(c) and a(b_c)) }\n",
 )
 
 

@@ -25,8 +25,10 @@ DECLARED_TWICE = Code(
     why="Types, signals, quantities, enumerations and their values share one set of names, with "
     "those of the vocabularies that are used. Give one of the two another name. Two "
     "vocabularies that share names cannot be used together.",
-    bad="rulebook example\nsignal wet\nsurface is one of dry, wet\nhard rule r { require dry }\n",
-    good="rulebook example\nsignal raining\nsurface is one of dry, wet\nhard rule r { require dry }"
+    bad="rulebook example\nsignal wet\nsurface is one of dry, wet\n"
+    "hard rule r { require always dry }\n",
+    good="rulebook example\nsignal raining\nsurface is one of dry, wet\n"
+    "hard rule r { require always dry }"
     "\n",
 )
 
@@ -57,9 +59,9 @@ TYPE_CIRCLE = Code(
     title="types are subtypes of one another in a circle",
     why="A type can be a subtype of another, that of a third, and so on, but never of itself.",
     bad="rulebook example\ntype bus is vehicle\ntype vehicle is bus\nsignal p\n"
-    "hard rule r { require p }\n",
+    "hard rule r { require always p }\n",
     good="rulebook example\ntype vehicle\ntype bus is vehicle\nsignal p\n"
-    "hard rule r { require p }\n",
+    "hard rule r { require always p }\n",
 )
 
 UNFITTING_DEFAULT = Code(
@@ -67,9 +69,10 @@ UNFITTING_DEFAULT = Code(
     title="a default is not one of the values",
     why="An enumeration's default is what holds where nothing is said, so it has to be one of "
     "the values.",
-    bad="rulebook example\nlight is one of red, green default grean\nhard rule r { require red }\n",
+    bad="rulebook example\nlight is one of red, green default grean\n"
+    "hard rule r { require always red }\n",
     good="rulebook example\nlight is one of red, green default green\n"
-    "hard rule r { require red }\n",
+    "hard rule r { require always red }\n",
 )
 
 PARAMETER_WITHOUT_TYPE = Code(
@@ -78,9 +81,9 @@ PARAMETER_WITHOUT_TYPE = Code(
     why="Without a type, `signal near(o)` is about objects of the one type that has no parent. If "
     "there are several such types, or none, the type has to be written.",
     bad="rulebook example\ntype vehicle\ntype pedestrian\nsignal near(o)\n"
-    "hard rule r (v: vehicle) { require not near(v) }\n",
+    "hard rule r (v: vehicle) { require never near(v) }\n",
     good="rulebook example\ntype vehicle\ntype pedestrian\nsignal near(o: vehicle)\n"
-    "hard rule r (v: vehicle) { require not near(v) }\n",
+    "hard rule r (v: vehicle) { require never near(v) }\n",
 )
 
 NOTHING_TO_MARK = Code(
@@ -90,9 +93,9 @@ NOTHING_TO_MARK = Code(
     "be declared in the rulebook or in a vocabulary that it uses. Of an enumeration it names "
     "the whole and not a value; of what is about objects it has the name alone.",
     bad="rulebook example\nkind is one of a_car, a_truck\nconstant kinds\n"
-    "hard rule r { require a_car }\n",
+    "hard rule r { require always a_car }\n",
     good="rulebook example\nkind is one of a_car, a_truck\nconstant kind\n"
-    "hard rule r { require a_car }\n",
+    "hard rule r { require always a_car }\n",
 )
 
 NOT_TO_BE_PRESUMED = Code(
@@ -103,9 +106,9 @@ NOT_TO_BE_PRESUMED = Code(
     "a verdict that rests on more says little of what was seen. What is not presumed is "
     "unknown where nobody tells it.",
     bad="rulebook example\nsignal waved_through\npresumed waved_through\n"
-    "hard rule r { require not waved_through }\n",
+    "hard rule r { require never waved_through }\n",
     good="rulebook example\nsignal waved_through default false\npresumed waved_through\n"
-    "hard rule r { require not waved_through }\n",
+    "hard rule r { require never waved_through }\n",
 )
 
 

@@ -16,8 +16,10 @@ RULE_TWICE = Code(
     title="two rules have the same name",
     why="Verdicts name the rule that is violated, and each has a file of its own when it is "
     "compiled; so every rule needs a name of its own.",
-    bad="rulebook example\nsignal p, q\nhard rule a { require p }\nhard rule a { require q }\n",
-    good="rulebook example\nsignal p, q\nhard rule a { require p }\nhard rule b { require q }\n",
+    bad="rulebook example\nsignal p, q\nhard rule a { require always p }\n"
+    "hard rule a { require always q }\n",
+    good="rulebook example\nsignal p, q\nhard rule a { require always p }\n"
+    "hard rule b { require always q }\n",
 )
 
 NOT_INHERITED = Code(
@@ -47,9 +49,9 @@ PRIORITY_CIRCLE = Code(
     title="levels of priority go round in a circle",
     why="With `a > b` level a is above level b. Levels of one rank are written `a = b`.",
     bad="rulebook example\npriority safety > legal\npriority legal > safety\nsignal wet\n"
-    "hard rule r in legal { require not wet }\n",
+    "hard rule r in legal { require never wet }\n",
     good="rulebook example\npriority safety > legal\nsignal wet\n"
-    "hard rule r in legal { require not wet }\n",
+    "hard rule r in legal { require never wet }\n",
 )
 
 NEVER_IN_FORCE = Code(
@@ -59,10 +61,10 @@ NEVER_IN_FORCE = Code(
     "them. If the second day comes first there is none.",
     bad="rulebook example\nsignal wet\nhard rule r {\n"
     "  in force from 2024-07-01 until 2020-06-30\n"
-    "  require not wet\n}\n",
+    "  require never wet\n}\n",
     good="rulebook example\nsignal wet\nhard rule r {\n"
     "  in force from 2020-07-01 until 2024-06-30\n"
-    "  require not wet\n}\n",
+    "  require never wet\n}\n",
 )
 
 UNKNOWN_TOPIC = Code(

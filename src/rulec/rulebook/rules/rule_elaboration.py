@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -15,6 +15,11 @@ from rulec.rulebook.elaborate import rule_messages as say
 from rulec.rulebook.elaborate.amounts import exact_value
 from rulec.rulebook.elaborate.elaboration import number, truth
 from rulec.rulebook.elaborate.scope import Scope, bound_variables
+from rulec.rulebook.elaborate.time_reach import (
+    covers,
+    operator_warnings,
+    requirement_warnings,
+)
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.overlay.rulebook_overlay import RuleEntry
@@ -48,6 +53,7 @@ def translate_rule(
     formula = None if parts is None else _formula(item, parts, scope)
     if item.complete and formula is not None:
         mistakes += scope.unused(item.variables, item)
+        mistakes += _time_warnings(item, scope)
     if (crowded := say.many_choices(item, len(variables))) is not None:
         scope.report(crowded)
     if item.level is not None and levels is not None and item.level.text not in levels:
@@ -100,6 +106,18 @@ def translate_rule(
         except NotAMultipleError as error:
             return None, [*mistakes, say.no_multiple(rule, error)]
     return rule, mistakes
+
+
+def _time_warnings(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:
+    overlay = scope.constants.overlay
+    parts = (item.require, item.when, *(exception.formula for exception in item.unless))
+    narrow = [one for part in parts if part is not None for one in operator_warnings(part, overlay)]
+    yield from narrow
+    if item.require is not None:
+        for warning in requirement_warnings(item.require, scope.symbols, overlay):
+            # What an operator was meant to speak of is not blamed a second time.
+            if not any(covers(one.fix, warning) for one in narrow):
+                yield warning
 
 
 def _errors(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:

@@ -1,15 +1,19 @@
-"""Operators of a parse node, and parentheses that group nothing."""
+"""Operators of a parse node, parentheses that group nothing, and those that show what is meant."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import Final
 
-from rulec.syntax.grammar import ParseLeaf, ParseNode
+from rulec.syntax.grammar import MAX_DEPTH, ParseLeaf, ParseNode
 from rulec.syntax.keywords import (
     ARITHMETIC_PRECEDENCE,
+    BINDS_NARROWLY,
     COMPARISON_PRECEDENCE,
+    JOINS_ALIKE,
+    OF_ONE_STATE,
     PRECEDENCE,
+    UNARY_OPERATORS,
     token_kind,
 )
 
@@ -20,6 +24,11 @@ OPERATIONS: Final = frozenset(
 _LEVELS = {token_kind(word): level for word, level in PRECEDENCE.items()}
 _FORMULAS_ONLY = frozenset(
     ("require_clause", "when_clause", "fact_item", "define_item", "aggregate")
+)
+_NARROW = frozenset(map(token_kind, BINDS_NARROWLY))
+_ALIKE = frozenset(map(token_kind, JOINS_ALIKE))
+_OF_TIME = frozenset(
+    token_kind(word) for word in (*UNARY_OPERATORS, *PRECEDENCE) if word not in OF_ONE_STATE
 )
 _WHOLE = _FORMULAS_ONLY | {"unless_clause", "param_item", "set_item", "group"}
 
@@ -33,17 +42,30 @@ def level(node: ParseNode) -> int:
     return ARITHMETIC_PRECEDENCE[sign.text] if node.kind == "arithmetic" else _LEVELS[sign.kind]
 
 
-def without_spare_parentheses(node: ParseNode) -> ParseNode:
-    """The node without parentheses that it never needs."""
+def with_fitting_parentheses(node: ParseNode) -> ParseNode:
+    """The node without parentheses that it never needs, with those that show what it means.
+
+    `never p and q` is written `(never p) and q`: few readers know that it means this.
+    """
+    shown = _fitted(node, shows=True)
+    return shown if _depth(shown) <= MAX_DEPTH else _fitted(node, shows=False)
+
+
+def _fitted(node: ParseNode, *, shows: bool) -> ParseNode:
+    if shows and node.kind == "infix":
+        left, *rest = node.children
+        node = replace(node, children=(_end_shown(left, node), *rest))
     whole = node.kind in _WHOLE and _has_no_words_behind(node)
     children = tuple(
-        child if isinstance(child, ParseLeaf) else _child(node, child, whole=whole)
+        child
+        if isinstance(child, ParseLeaf)
+        else _fitted(_without_spare(node, child, whole=whole), shows=shows)
         for child in node.children
     )
     return replace(node, children=children)
 
 
-def _child(node: ParseNode, child: ParseNode, *, whole: bool) -> ParseNode:
+def _without_spare(node: ParseNode, child: ParseNode, *, whole: bool) -> ParseNode:
     while child.kind == "group":
         inside = child.children[1]
         assert isinstance(inside, ParseNode), "a group holds a formula"
@@ -53,7 +75,41 @@ def _child(node: ParseNode, child: ParseNode, *, whole: bool) -> ParseNode:
             child = inside
         else:
             break
-    return without_spare_parentheses(child)
+    return child
+
+
+def _depth(node: ParseNode | ParseLeaf) -> int:
+    if isinstance(node, ParseLeaf):
+        return 0
+    return max(map(_depth, node.children), default=0) + (node.kind in OPERATIONS)
+
+
+def _end_shown(part: ParseNode | ParseLeaf, around: ParseNode) -> ParseNode | ParseLeaf:
+    """An operand with parentheses around the operator at its end that speaks of too little."""
+    if not isinstance(part, ParseNode) or part.kind not in ("infix", "prefix"):
+        return part
+    *before, last = part.children
+    sign = part.children[0]
+    if isinstance(sign, ParseLeaf) and sign.kind in _NARROW and _is_narrow(sign, last, around):
+        opening = ParseLeaf("LPAR", "(", part.start, part.start)
+        closing = ParseLeaf("RPAR", ")", part.end, part.end)
+        return ParseNode("group", (opening, part, closing), part.start, part.end)
+    return replace(part, children=(*before, _end_shown(last, around)))
+
+
+def _is_narrow(sign: ParseLeaf, operand: ParseNode | ParseLeaf, around: ParseNode) -> bool:
+    operation, behind = around.children[1], around.children[-1]
+    if operand.kind == "group":
+        return False
+    if operation.kind in _ALIKE:
+        return not _speaks_of_time(behind)
+    return sign.kind != "EVENTUALLY" or operation.kind == "THEN"
+
+
+def _speaks_of_time(node: ParseNode | ParseLeaf) -> bool:
+    if isinstance(node, ParseLeaf):
+        return node.kind in _OF_TIME
+    return any(map(_speaks_of_time, node.children))
 
 
 def _has_no_words_behind(node: ParseNode) -> bool:

@@ -20,7 +20,7 @@ from rulec.syntax.formatting.document import (
     on_one_line,
     run,
 )
-from rulec.syntax.formatting.parentheses import without_spare_parentheses
+from rulec.syntax.formatting.parentheses import with_fitting_parentheses
 from rulec.syntax.formatting.piece_documents import DocumentBuilder, first_leaf
 from rulec.syntax.grammar import ParseNode, Start, parse_piece
 from rulec.syntax.keywords import CLAUSE_WORDS, HEADER_WORDS, PROVISION_WORDS
@@ -60,7 +60,7 @@ class Pieces:
         span = span_of(self.source, self.tokens, piece)
         branch = parse_piece(cast("Start", piece.kind), self.source.text, span.start, span.end)
         assert isinstance(branch, ParseNode), "the file has no mistakes"
-        return without_spare_parentheses(branch)
+        return with_fitting_parentheses(branch)
 
     def item(self, piece: Piece, column: int) -> Document:
         """Rows of a header line, provision or declaration."""

@@ -9,8 +9,8 @@ UNKNOWN_ESCAPE = Code(
     "R0106",
     title="a text holds an unknown escape",
     why='In a text a backslash makes a quote (`\\"`) or a backslash (`\\\\`), and nothing else.',
-    bad='rulebook example\ntitle "either\\or"\nsignal p\nhard rule r { require p }\n',
-    good='rulebook example\ntitle "either\\\\or"\nsignal p\nhard rule r { require p }\n',
+    bad='rulebook example\ntitle "either\\or"\nsignal p\nhard rule r { require always p }\n',
+    good='rulebook example\ntitle "either\\\\or"\nsignal p\nhard rule r { require always p }\n',
 )
 
 CONTROL_CHARACTER = Code(
@@ -18,8 +18,10 @@ CONTROL_CHARACTER = Code(
     title="a text holds a control character",
     why="Texts are shown in terminals and in reports. Characters that drive a terminal, or turn "
     "the direction of the text around, could make a rule look like another one.",
-    bad="printf 'rulebook a title \"\\033[2J\" signal p hard rule r { require p }' | rulec check -",
-    good="printf 'rulebook a title \"clear\" signal p hard rule r { require p }' | rulec check -",
+    bad='printf \'rulebook a title "\\033[2J" signal p '
+    "hard rule r { require always p }' | rulec check -",
+    good='printf \'rulebook a title "clear" signal p '
+    "hard rule r { require always p }' | rulec check -",
     kind="command",
 )
 
@@ -27,8 +29,10 @@ NO_SUCH_DATE = Code(
     "R0110",
     title="a date is not in the calendar",
     why="A date is written `year-month-day` and has to exist, behind `as of` and in `in force`.",
-    bad='rulebook example\nlaw "A law" as of 2023-02-29\nsignal p\nhard rule r { require p }\n',
-    good='rulebook example\nlaw "A law" as of 2024-02-29\nsignal p\nhard rule r { require p }\n',
+    bad='rulebook example\nlaw "A law" as of 2023-02-29\nsignal p\n'
+    "hard rule r { require always p }\n",
+    good='rulebook example\nlaw "A law" as of 2024-02-29\nsignal p\n'
+    "hard rule r { require always p }\n",
 )
 
 NUMBER_TOO_LARGE = Code(
@@ -36,9 +40,9 @@ NUMBER_TOO_LARGE = Code(
     title="a number is too large or too long",
     why="Numbers reach to about 1.8e308, as in nearly all programs, and have at most 400 digits.",
     bad="rulebook example\nquantity speed in km/h default 1e999\nsignal p\n"
-    "hard rule r { require p }\n",
+    "hard rule r { require always p }\n",
     good="rulebook example\nquantity speed in km/h default 130\nsignal p\n"
-    "hard rule r { require p }\n",
+    "hard rule r { require always p }\n",
 )
 
 

@@ -26,8 +26,9 @@ HIDDEN_IN_COMMENT = Code(
     why="A character that drives a terminal, or turns the direction of the text around, can show a "
     "comment as if it were a rule, or a rule as if it were a comment (CVE-2021-42574). Comments "
     "hold what can be seen, and tabs.",
-    bad=r"printf 'rulebook a signal p # \342\200\256\nhard rule r { require p }' | rulec check -",
-    good="printf 'rulebook a signal p # left\\nhard rule r { require p }' | rulec check -",
+    bad=r"printf 'rulebook a signal p # \342\200\256\n"
+    r"hard rule r { require always p }' | rulec check -",
+    good="printf 'rulebook a signal p # left\\nhard rule r { require always p }' | rulec check -",
     kind="command",
 )
 
@@ -38,8 +39,8 @@ CONFUSABLE_NAME = Code(
     "several scripts, or is in one that the file has no other word of (Unicode Technical Standard "
     "39). A rule about the wrong one of them is never violated. Write one of them otherwise.",
     bad="rulebook example\nsignal stop, \u0455top\n"
-    "hard rule r { require not (stop and \u0455top) }\n",
-    good="rulebook example\nsignal stop, halt\nhard rule r { require not (stop and halt) }\n",
+    "hard rule r { require never (stop and \u0455top) }\n",
+    good="rulebook example\nsignal stop, halt\nhard rule r { require never (stop and halt) }\n",
 )
 
 

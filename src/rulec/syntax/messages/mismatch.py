@@ -23,7 +23,7 @@ UNEXPECTED_WORD = Code(
     "`1 m < gap(v) and gap(v) < 2 m`; a conditional inside a formula stands in parentheses; a "
     "bound's numbers have a unit.",
     bad="rulebook example\nsignal rain, wet\nhard rule r { require rain => wet }\n",
-    good="rulebook example\nsignal rain, wet\nhard rule r { require rain implies wet }\n",
+    good="rulebook example\nsignal rain, wet\nhard rule r { require always (rain implies wet) }\n",
 )
 
 UNTERMINATED_TEXT = Code(
@@ -31,8 +31,8 @@ UNTERMINATED_TEXT = Code(
     title="a text has no closing quote",
     why="A text stands in straight double quotes and ends on the line on which it begins. A long "
     'sentence stays on one line; a quote inside is written `\\"`.',
-    bad='rulebook example\ntitle "An example\nsignal p\nhard rule r { require p }\n',
-    good='rulebook example\ntitle "An example"\nsignal p\nhard rule r { require p }\n',
+    bad='rulebook example\ntitle "An example\nsignal p\nhard rule r { require always p }\n',
+    good='rulebook example\ntitle "An example"\nsignal p\nhard rule r { require always p }\n',
 )
 
 FORMULA_TOO_DEEP = Code(
@@ -42,7 +42,7 @@ FORMULA_TOO_DEEP = Code(
     "more, and such a formula comes from a program; say its parts in rules of their own.",
     bad=f"rulebook example\nsignal p\nhard rule r {{\n  require\n{'    ' + '!' * 67}\n"
     f"{'    ' + '!' * 67}\n{'    ' + '!' * 67} p\n}}\n",
-    good="rulebook example\nsignal p\nhard rule r { require not p }\n",
+    good="rulebook example\nsignal p\nhard rule r { require never p }\n",
 )
 
 RESERVED_WORD = Code(

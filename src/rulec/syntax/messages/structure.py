@@ -20,7 +20,8 @@ EMPTY_FILE = Code(
     why="There is nothing in the file but blank space and comments. A rulebook begins with "
     "`rulebook NAME`, a vocabulary with `vocabulary NAME {`.",
     bad="# nothing yet\n",
-    good="# as short as can be\nrulebook shortest\nsignal p\nhard rule keep_it { require p }\n",
+    good="# as short as can be\nrulebook shortest\nsignal p\n"
+    "hard rule keep_it { require always p }\n",
 )
 
 MISSING_PART = Code(
@@ -40,8 +41,8 @@ MISPLACED_LINE = Code(
     why="Header lines (`title`, `law`, `use`, `extends`, `traffic`, `semantics`, `step`, "
     "`priority`) stand between `rulebook NAME` and the first item; a vocabulary holds "
     "declarations only; a file holds one rulebook or one vocabulary.",
-    bad="vocabulary town {\n  signal fog\n  hard rule r { require not fog }\n}\n",
-    good="rulebook town\nsignal fog\nhard rule r { require not fog }\n",
+    bad="vocabulary town {\n  signal fog\n  hard rule r { require never fog }\n}\n",
+    good="rulebook town\nsignal fog\nhard rule r { require never fog }\n",
 )
 
 GIVEN_TWICE = Code(
@@ -50,8 +51,8 @@ GIVEN_TWICE = Code(
     why="A rulebook has one title, one law, and extends one other; a rule has one `require`, "
     "`cite`, `says` and `when`, and as many `unless` and examples as it needs. Two demands are "
     "joined by `and`, or stand in two rules.",
-    bad="rulebook example\nsignal p, q\nhard rule r { require p require q }\n",
-    good="rulebook example\nsignal p, q\nhard rule r { require p and q }\n",
+    bad="rulebook example\nsignal p, q\nhard rule r { require always p require always q }\n",
+    good="rulebook example\nsignal p, q\nhard rule r { require always (p and q) }\n",
 )
 
 NOT_A_RULEBOOK = Code(
@@ -60,7 +61,7 @@ NOT_A_RULEBOOK = Code(
     why="The file begins with neither `rulebook` nor `vocabulary`, comments aside, so it is "
     "probably another file than was meant. Nothing of it is shown, as it might be a secret.",
     bad="Dear all,\nplease find the rules attached.\n",
-    good="rulebook attached\nsignal p\nhard rule r { require p }\n",
+    good="rulebook attached\nsignal p\nhard rule r { require always p }\n",
 )
 
 CONFIRMED_AND_CHANGED = Code(
@@ -122,8 +123,10 @@ UNBALANCED_BRACE = Code(
     title="a brace is missing or closes nothing",
     why="The clauses of a rule, the states of an example and the items of a vocabulary stand "
     "between `{` and `}`. The message names what was not begun or not ended.",
-    bad="rulebook example\nsignal p\nhard rule a { require p\nhard rule b { require not p }\n",
-    good="rulebook example\nsignal p\nhard rule a { require p }\nhard rule b { require not p }\n",
+    bad="rulebook example\nsignal p\nhard rule a { require always p\n"
+    "hard rule b { require never p }\n",
+    good="rulebook example\nsignal p\nhard rule a { require always p }\n"
+    "hard rule b { require never p }\n",
 )
 
 OUTSIDE_BRACES = Code(
@@ -131,8 +134,8 @@ OUTSIDE_BRACES = Code(
     title="something stands outside the braces that it belongs in",
     why="A clause such as `cite` or `accept` belongs to a rule and stands between its braces; "
     "behind the `}` of a vocabulary nothing can stand.",
-    bad="rulebook example\nsignal p\nhard rule r { require p }\naccept { p }\n",
-    good="rulebook example\nsignal p\nhard rule r { require p accept { p } }\n",
+    bad="rulebook example\nsignal p\nhard rule r { require always p }\naccept { p }\n",
+    good="rulebook example\nsignal p\nhard rule r { require always p accept { p } }\n",
 )
 
 

@@ -1,0 +1,126 @@
+"""Formulas in which operators of time speak of less than it seems.
+
+They are read as they are written, and they are right: what is found here is worth a warning,
+because hardly anyone means it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from rulec.diagnostics import Diagnostic, Fix
+from rulec.rulebook.elaborate import time_reach_messages as say
+from rulec.rulebook.elaborate.elaboration_messages import short
+from rulec.rulebook.names.referenced_names import atoms_in, parts_of
+from rulec.rulebook.names.symbol_table import SymbolTable
+from rulec.rulebook.overlay.rulebook_overlay import Overlay
+from rulec.syntax import tree
+from rulec.syntax.keywords import BINDS_NARROWLY, JOINS_ALIKE, OF_ONE_STATE
+
+
+def requirement_warnings(
+    node: tree.Formula, symbols: SymbolTable, overlay: Overlay
+) -> Iterator[Diagnostic]:
+    """Warnings for the parts of a requirement that speak of the first state only."""
+    parts = [*_conjuncts(node)]
+    for part in parts:
+        if not _speaks_of_time(part, overlay.definitions) and _changes(part, symbols, overlay):
+            yield say.first_state_only(part, short(part), alone=len(parts) == 1)
+
+
+def operator_warnings(node: tree.Formula, overlay: Overlay) -> Iterator[Diagnostic]:
+    """Warnings for the operators of time in a formula that reach less far than what follows."""
+    yield from _narrow(node, (), overlay.definitions)
+
+
+def covers(fix: Fix | None, warning: Diagnostic) -> bool:
+    """Tell whether a fix rewrites the place of another warning."""
+    if fix is None or warning.place is None or fix.place.file != warning.place.file:
+        return False
+    end = (fix.place.end_line or 0, fix.place.end_column or 0)
+    return fix.place.start <= warning.place.start < end
+
+
+def _conjuncts(node: tree.Formula) -> Iterator[tree.Formula]:
+    if isinstance(node, tree.Infix) and node.operator == "and":
+        yield from _conjuncts(node.left)
+        yield from _conjuncts(node.right)
+    else:
+        yield node
+
+
+def _narrow(
+    node: tree.Formula,
+    behind: Sequence[tree.Infix],
+    definitions: Mapping[str, tree.DefineItem],
+) -> Iterator[Diagnostic]:
+    """Go through a formula; ``behind`` are the operations that go on behind it, nearest first."""
+    if isinstance(node, tree.Grouping) and node.grouped:
+        behind = ()
+    match node:
+        case tree.Infix(_, left, right):
+            yield from _narrow(left, (node, *behind), definitions)
+            yield from _narrow(right, behind, definitions)
+        case tree.Prefix(operator, operand):
+            if operator in BINDS_NARROWLY and behind and not _is_grouped(operand):
+                nearest = behind[0]
+                joins = nearest.operator in JOINS_ALIKE
+                alike = joins and _speaks_of_time(nearest.right, definitions)
+                # `then` has a warning of its own, and `eventually p implies q` reads as it is.
+                if not alike and nearest.operator != "then" and (joins or operator != "eventually"):
+                    until = _reach(node, behind, definitions)
+                    yield say.narrow_operator(node, nearest.operator, until)
+                    behind = ()
+            yield from _narrow(operand, behind, definitions)
+        case _:
+            for part in parts_of(node):
+                yield from _narrow(part, (), definitions)
+
+
+def _is_grouped(node: tree.Formula) -> bool:
+    return isinstance(node, tree.Grouping) and node.grouped
+
+
+def _reach(
+    prefix: tree.Prefix,
+    behind: Sequence[tree.Infix],
+    definitions: Mapping[str, tree.DefineItem],
+) -> int:
+    """Where that ends which the operator was probably meant to speak of."""
+    end = prefix.span.end
+    for operation in behind:
+        alike = operation.operator in JOINS_ALIKE
+        if alike and _speaks_of_time(operation.right, definitions):
+            break
+        end = operation.span.end
+    return end
+
+
+def _speaks_of_time(node: tree.Formula, definitions: Mapping[str, tree.DefineItem]) -> bool:
+    """Tell whether a formula has an operator of time, also in the definitions that it uses."""
+    pending, seen = [node], set[str]()
+    while pending:
+        part = pending.pop()
+        if isinstance(part, tree.Prefix | tree.Infix) and part.operator not in OF_ONE_STATE:
+            return True
+        if isinstance(part, tree.AtomUse):
+            names = {part.name.text, *(argument.text for argument in part.arguments)} - seen
+            seen |= names
+            pending += (definitions[name].body for name in names if name in definitions)
+        pending += parts_of(part)
+    return False
+
+
+def _changes(node: tree.Formula, symbols: SymbolTable, overlay: Overlay) -> bool:
+    """Tell whether a formula reads something that may change while a trace goes on."""
+    pending, seen = [node], set[str]()
+    while pending:
+        for use in atoms_in(pending.pop()):
+            name = use.name.text
+            if name in overlay.definitions and name not in seen:
+                seen.add(name)
+                pending.append(overlay.definitions[name].body)
+            item = symbols.items.get(name) or symbols.value_of.get(name)
+            if item is not None and not item.constant:
+                return True
+    return False
