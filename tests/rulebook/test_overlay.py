@@ -236,3 +236,18 @@ def test_a_chain_of_rulebooks_is_one_merged_by_hand(books, day):
         for book in books
     ]
     assert kinds == [one for some in said for one in some]
+
+
+def test_also_unless_adds_to_what_is_inherited_and_unless_replaces_it(tmp_path):
+    head = "signal p, q, r default false\n"
+    base = f"rulebook base\n{head}hard rule a {{ require never p unless q when r }}\n"
+    Path(tmp_path, "base.rules").write_text(base)
+    made = {}
+    for word, whole in (("also unless", "unless q unless r"), ("unless", "unless r")):
+        over = f"rulebook over\nextends base\noverride rule a {{ {word} r }}\n"
+        Path(tmp_path, "over.rules").write_text(over)
+        by_hand = f"rulebook over\n{head}hard rule a {{ require never p {whole} when r }}\n"
+        rule = load_rulebook(Path(tmp_path, "over.rules")).rules[0]
+        made[word] = rule.formula
+        assert made[word] == parse_rulebook(by_hand).rules[0].formula
+    assert made["also unless"] != made["unless"]

@@ -42,7 +42,7 @@ class Details(TypedDict, total=False):
     labels: tuple[Label, ...]
     notes: tuple[str, ...]
     severity: Severity
-    fix: Fix
+    fix: Fix | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,7 @@ def assemble_rule(
     for part in parts:
         if isinstance(part, tuple):
             first = first_given.setdefault(part[0], part)
-            if first is not part and part[0] != "unless":
+            if first is not part and part[0] not in ("unless", "also"):
                 what = "in force" if part[0] == "in" else part[0]
                 mistakes.append(structure.given_twice(f"`{what}`", part[2], first[2]))
     unread = any(part is None or (isinstance(part, tuple) and part[1] is None) for part in parts)

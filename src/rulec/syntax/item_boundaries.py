@@ -161,6 +161,8 @@ class Landmarks:
         token = self.tokens[index]
         if token.kind != "word" or token.text not in keywords.CLAUSE_WORDS:
             return self._begins_in_force(index)
+        if token.text == "unless" and self.is_word(index - 1, "also"):
+            return False
         if token.first or not self.wants_more(index - 1):
             return True
         return self.is_symbol(index - 1, "{") and not self._stands_alone(index)

@@ -35,7 +35,7 @@ ITEM_WORDS: Final = frozenset(
 CLAUSE_WORDS: Final = frozenset(
     (
         *("cite", "says", "source", "certainty"),
-        *("require", "unless", "when", "topic", "accept", "reject"),
+        *("require", "also", "unless", "when", "topic", "accept", "reject"),
     )
 )
 """The first words of a rule's clauses, but for ``in force``, which begins with ``in``."""

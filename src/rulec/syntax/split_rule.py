@@ -94,7 +94,7 @@ class RuleSplitter:
             return self.marks.is_word(clause, "cite", "says", "source", "certainty")
         if not (self.tokens[index].first and self.marks.is_name(index)):
             return False
-        if self.marks.goes_on(index) and self.marks.is_word(clause, "unless", "in"):
+        if self.marks.goes_on(index) and self.marks.is_word(clause, "unless", "also", "in"):
             return False
         if self.marks.begins_misspelt(index):
             return True

@@ -193,10 +193,14 @@ Scope = Literal["initially", "at start", "throughout", "at some point", "at end"
 
 @dataclass(frozen=True, slots=True)
 class Unless(_SyntaxNode):
-    """``unless formula scope``; None where no scope is written."""
+    """``unless formula scope``; None where no scope is written.
+
+    ``also unless`` is added to the exceptions that an override inherits.
+    """
 
     formula: Formula
     scope: Scope | None = None
+    also: bool = False
 
 
 @dataclass(frozen=True, slots=True)

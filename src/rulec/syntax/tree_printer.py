@@ -131,7 +131,10 @@ def print_in_force(dates: tree.InForce) -> str:
 def clauses_of(rule: tree.RuleItem, style: Style = "words") -> list[tuple[str, str]]:
     """Words and texts of a rule's clauses, without examples, in order."""
     unless = (
-        (print_whole(clause.formula, style), f" {clause.scope}" if clause.scope else "")
+        (
+            "also unless" if clause.also else "unless",
+            print_whole(clause.formula, style) + (f" {clause.scope}" if clause.scope else ""),
+        )
         for clause in rule.unless
     )
     clauses = [
@@ -143,6 +146,6 @@ def clauses_of(rule: tree.RuleItem, style: Style = "words") -> list[tuple[str, s
         ("in", rule.in_force and print_in_force(rule.in_force).removeprefix("in ")),
         ("when", rule.when and print_whole(rule.when, style)),
         ("require", rule.require and print_whole(rule.require, style)),
-        *(("unless", formula + scope) for formula, scope in unless),
+        *unless,
     ]
     return [(word, text) for word, text in clauses if text]

@@ -14,7 +14,7 @@ from rulec.analysis.lineage import rule_lineage
 from rulec.rulebook.loader import Loaded, read_rulebook
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.names.referenced_names import names_used
-from rulec.rulebook.overlay.rulebook_overlay import in_force, merged
+from rulec.rulebook.overlay.rulebook_overlay import in_force, lost_exceptions, merged
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula, print_parameters
 
@@ -94,7 +94,8 @@ def _step(
         deed: rule_lineage.LineageAction = "confirmed" if item.confirm else "overridden"
         changed = _changed_clauses(before, after)
         gives_law = item.cite is not None
-        return rule_lineage.LineageStep(book, deed, after, changed, gives_law=gives_law)
+        lost = tuple(_one_line(one.span.text) for one in lost_exceptions(before, item))
+        return rule_lineage.LineageStep(book, deed, after, changed, gives_law=gives_law, lost=lost)
     after = replace(
         before,
         strength="soft",
@@ -103,6 +104,10 @@ def _step(
     )
     why = item.because.value if item.because else ""
     return rule_lineage.LineageStep(book, "softened", after, _changed_clauses(before, after), why)
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.removeprefix("also").split())
 
 
 HARDNESS = "hard or soft"

@@ -32,7 +32,8 @@ class LineageStep:
 
     ``clauses`` are the kinds of clauses that an override or a softening has changed. ``rule`` is
     what the rule was from then on, None where it is gone. It ``gives_law`` to the rule if that is
-    the book's own law from then on, by a provision that it cites.
+    the book's own law from then on, by a provision that it cites. ``lost`` are the inherited
+    exceptions that it replaces by others, as they were written.
     """
 
     book: str
@@ -41,6 +42,7 @@ class LineageStep:
     clauses: tuple[str, ...] = ()
     because: str = ""
     gives_law: bool = False
+    lost: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,6 +34,7 @@ class LineageStepData(JsonPart, frozen=True, kw_only=True):
     deed: rule_lineage.LineageAction
     clauses: Sequence[str]
     because: str
+    lost: Sequence[str]
 
 
 class RuleLineageData(JsonPart, frozen=True, kw_only=True):
@@ -141,6 +142,8 @@ def _rule(
     if rule_history.rule is not None and rule_history.rule.in_force is not None:
         label.append(f"  {print_in_force(rule_history.rule.in_force)}", "dim")
     here = rules.add(label)
+    for exception in rule_history.last.lost:
+        here.add(Text(f"without the inherited `{visible(exception)}`", "dim"))
     upon_one = ("overridden", "confirmed")
     is_one_override = len(rule_history.steps) == 2 and rule_history.last.deed in upon_one
     for step in () if is_one_override else rule_history.steps[:-1]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rulec.diagnostics import Diagnostic, Label, Span, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Fix, Label, Span, did_you_mean, named
 from rulec.diagnostics.code import Code
 from rulec.rulebook.names.atom_messages import NUMBER_OR_FORMULA, UNKNOWN_VARIABLE, WRONG_ARITY
 from rulec.rulebook.names.declaration_messages import DECLARED_TWICE
@@ -29,6 +29,19 @@ NOT_INHERITED = Code(
     "nothing of the name, the line would have no effect.",
     bad='rulebook example\nextends esterle2019\ndrop rule R4 because "not in this country"\n',
     good='rulebook example\nextends esterle2019\ndrop rule R3 because "not in this country"\n',
+)
+
+LOST_EXCEPTION = Code(
+    "R0260",
+    title="an override replaces exceptions that it inherits",
+    why="Each kind of clause that stands in an override replaces those of its kind, so `unless` "
+    "replaces every inherited exception: the rule forbids again what they allowed. `also unless` "
+    "adds an exception to the inherited ones. Who means to replace them repeats those that stay, "
+    "or says what the rule is now, in words by `says` or as a formula by `require`.",
+    bad="rulebook example\nextends vienna\n"
+    "override rule keep_near_side { unless congested at some point }\n",
+    good="rulebook example\nextends vienna\n"
+    "override rule keep_near_side { also unless congested at some point }\n",
 )
 
 INHERITED_ALREADY = Code(
@@ -248,4 +261,39 @@ def priority_circle(
         labels=tuple(
             Label(levels[name].span.place, f"`{name}` was placed here") for name in placed
         ),
+    )
+
+
+def lost_exceptions(item: tree.RuleItem, gone: Sequence[tree.Unless]) -> Diagnostic:
+    """An override whose ``unless`` replaces inherited exceptions."""
+    plain = [exception for exception in item.unless if not exception.also]
+    first = plain[0].span
+    texts = named([" ".join(one.span.text.removeprefix("also").split()) for one in gone])
+    what = "the inherited exception" if len(gone) == 1 else "the inherited exceptions"
+    return LOST_EXCEPTION.at(
+        Span(first.source, first.start, first.start + len("unless")),
+        f"`{item.name.text}` loses {what} {texts}",
+        expected="this replaces what is inherited",
+        help="write `also unless` to add to it, or repeat what stays; or say what the rule is now",
+        labels=tuple(Label(one.span.place, "lost here") for one in gone),
+        severity="warning",
+        fix=_added(plain),
+    )
+
+
+def _added(plain: Sequence[tree.Unless]) -> Fix | None:
+    """The fix, where one word mends it."""
+    span = plain[0].span
+    return (
+        Fix(Span(span.source, span.start, span.start).place, "also ") if len(plain) == 1 else None
+    )
+
+
+def nothing_to_add_to(exception: tree.Unless) -> Diagnostic:
+    """``also unless`` in a rule that overrides nothing."""
+    return NOT_INHERITED.at(
+        Span(exception.span.source, exception.span.start, exception.span.start + len("also")),
+        "`also unless` adds to inherited exceptions, and this rule inherits none",
+        expected="expected `unless`",
+        help="write `unless`, or `override rule` before the name of an inherited rule",
     )

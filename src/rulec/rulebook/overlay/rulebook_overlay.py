@@ -89,6 +89,9 @@ class Overlay:
             case tree.RuleItem(override=True):
                 self._override(item, file)
             case tree.RuleItem(name=name):
+                self.mistakes += map(
+                    say.nothing_to_add_to, (one for one in item.unless if one.also)
+                )
                 known = self.rules.get(name.text)
                 if known is None:
                     self.rules[name.text] = RuleEntry(item, file, file, file)
@@ -235,6 +238,10 @@ class Overlay:
             return
         base = self.rules[item.name.text]
         after = merged(base.item, item)
+        gone = lost_exceptions(base.item, item)
+        # Who says in words what the rule is now has said what its exceptions are.
+        if gone and item.says is None and not item.confirm:
+            self.mistakes.append(say.lost_exceptions(item, gone))
         lost = _lost_variables(base.item, item)
         if lost:
             self.mistakes.append(say.lost_variables(item, lost))
@@ -323,7 +330,7 @@ def _lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Param
         base,
         require=None if over.require else base.require,
         when=None if over.when else base.when,
-        unless=() if over.unless else base.unless,
+        unless=() if _replaces_exceptions(over) else base.unless,
         examples=() if over.examples else base.examples,
     )
     names = {*names_used(inherited), *names_in_examples(inherited)}
@@ -335,6 +342,35 @@ def _lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Param
         if variable.name.text in names
         or any(name.endswith(f"_{variable.name.text}") for name in names)
     ]
+
+
+def _replaces_exceptions(over: tree.RuleItem) -> bool:
+    return not all(exception.also for exception in over.unless)
+
+
+def lost_exceptions(base: tree.RuleItem, over: tree.RuleItem) -> tuple[tree.Unless, ...]:
+    """Inherited exceptions that an override replaces without saying anew what they say.
+
+    One that says what must hold anew has its own exceptions, too.
+    """
+    if over.require is not None or not _replaces_exceptions(over):
+        return ()
+    kept = [
+        (formula, exception.scope)
+        for exception in over.unless
+        for formula in (exception.formula, *_alternatives(exception.formula))
+    ]
+    return tuple(
+        one
+        for one in base.unless
+        if not all((formula, one.scope) in kept for formula in _alternatives(one.formula))
+    )
+
+
+def _alternatives(formula: tree.Formula) -> tuple[tree.Formula, ...]:
+    if isinstance(formula, tree.Infix) and formula.operator == "or":
+        return (*_alternatives(formula.left), *_alternatives(formula.right))
+    return (formula,)
 
 
 _CLAUSES = (
@@ -351,5 +387,7 @@ def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
     if over.cite:
         base = replace(base, source=None, certainty="")
     given = {clause: value for clause in _CLAUSES if (value := getattr(over, clause))}
+    if not _replaces_exceptions(over):
+        given["unless"] = (*base.unless, *over.unless)
     complete = over.complete and base.complete
     return replace(base, name=over.name, span=over.span, complete=complete, **given)

@@ -199,7 +199,8 @@ def clause(values: NodeValues, node: ParseNode) -> Clause:
             return value_of(values, node)
         case "unless_clause":
             scope = _SCOPES[last.kind] if isinstance(last, ParseLeaf) else None
-            return tree.Unless(value_of(values, node), scope, span=values.span(node))
+            also = bool(node.leaves("ALSO"))
+            return tree.Unless(value_of(values, node), scope, also, span=values.span(node))
         case "certainty_clause":
             return last.text if isinstance(last, ParseLeaf) else ""
         case "topic_clause":

@@ -113,6 +113,8 @@ class DocumentBuilder:
         word, *content = node.children
         start = self.spell(word)
         assert isinstance(start, str), "a word is a leaf"
+        if isinstance(word, ParseLeaf) and word.kind == "ALSO":
+            start, content = "also unless", content[1:]
         lead = self.gap(Break(" " * (column - len(start))), first_leaf(content[0]).start)
         first = lead.flat if isinstance(lead, Break) else lead
         return run(start, Nest(column, run(first, self.plain(content, node.kind, deeper))))

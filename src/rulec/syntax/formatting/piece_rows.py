@@ -28,10 +28,12 @@ from rulec.syntax.scanner import Token
 
 Part = Piece | ExamplePieces | RulePieces
 
+_TWO_WORDS: Final = {"in": "in force", "also": "also unless"}
+
 _WORDS: Final = (
     (frozenset(HEADER_WORDS) - frozenset(FILE_WORDS))
     | (frozenset(PROVISION_WORDS) - {"define", "redefine"})
-    | (CLAUSE_WORDS | {"in force"})
+    | (CLAUSE_WORDS - {"also"} | set(_TWO_WORDS.values()))
 )
 """What makes a column with others of its kind."""
 
@@ -140,7 +142,7 @@ class Pieces:
         """The first word of a header line, a clause or an example."""
         first = part.head.first if isinstance(part, ExamplePieces | RulePieces) else part.first
         word = self.tokens[first].text
-        return "in force" if word == "in" else word
+        return _TWO_WORDS.get(word, word)
 
     def columns(self, parts: Sequence[Part]) -> list[int]:
         """Columns at which contents begin, shared by parts without blank lines between."""

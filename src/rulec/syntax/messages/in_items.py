@@ -177,7 +177,7 @@ def advise_on_clause(scene: ParseContext) -> str:
         return _example_head(scene)
     if scene.kind != "clause":
         return ""
-    scoped = scene.first == "unless"
+    scoped = scene.first in ("unless", "also")
     if scoped and scene.text in ("initially", "throughout", "at") and scene.operand:
         return "the scope stands behind the formula, such as `unless p throughout`"
     if scoped and scene.accepted >= SCOPES and scene.is_word():

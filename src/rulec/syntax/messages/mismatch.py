@@ -74,6 +74,7 @@ _WHAT = {
     "in": "`in force`",
     "when": "the condition",
     "unless": "the exception",
+    "also": "the exception",
     "require": "the formula",
 }
 _CLAUSE_BEGINS = keywords.CLAUSE_WORDS | {"throughout", "initially"}
