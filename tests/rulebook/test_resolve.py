@@ -136,7 +136,8 @@ def test_an_unused_variable_is_a_warning(tmp_path):
 
 
 def test_what_is_unreadable_yields_no_rulebook_but_no_second_error():
-    text = "rulebook a\nsignal p q\nhard rule r { require always p }\nhard rule s { require q and x_1 }\n"
+    rules = "hard rule r { require always p }\nhard rule s { require q and x_1 }\n"
+    text = f"rulebook a\nsignal p q\n{rules}"
     tree, (syntax,) = parse(Source("a", text))
     rulebook, (meaning,) = resolve([tree], at="2026-01-01")
     assert rulebook is None
