@@ -86,9 +86,9 @@ UNKNOWN_TOPIC = Code(
     why="A rule names the topics that it is about, for tables of what rulebooks cover. They are "
     'declared in a rulebook or in one that it extends, by `topics { NAME "title" }`.',
     bad='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
-    "hard rule r {\n  topic zebras\n  require p\n}\n",
+    "hard rule r {\n  topic zebras\n  require always p\n}\n",
     good='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
-    "hard rule r {\n  topic zebra\n  require p\n}\n",
+    "hard rule r {\n  topic zebra\n  require always p\n}\n",
 )
 
 
