@@ -57,6 +57,18 @@ def test_within_the_tolerance_of_places_nobody_knows_who_is_on_a_line(y, told):
     assert state(y, "solid", "solid", name="USA_Peach-1")["on_solid_line"] is told
 
 
+@pytest.mark.parametrize(("drifts", "told"), [(0.0, UNKNOWN), (1.5, True)])
+def test_a_box_alone_that_points_across_a_line_decides_nothing(drifts, told):
+    """Turned by 0.15 rad it reaches 0.3 m more to either side: 0.49 m over the line, not 0.2 m."""
+    lanes = [
+        straight(1, 0, 100, left_of=2, left_mark="solid", right_mark="solid"),
+        straight(2, 0, 100, y=4, right_of=1, right_mark="solid", left_mark="solid"),
+    ]
+    body = vehicle(7, {0: (40, 1.2), 1: (50, 1.2 + drifts)}, heading=0.15)
+    (drive,) = Drives(recording(lanes, [body]), "right").of("7")
+    assert drive.trace.states[0]["on_solid_line"] is told
+
+
 def test_a_map_without_marks_says_nothing():
     found = recording([straight(1, 0, 100)], [vehicle(7, {0: (40, 0), 1: (50, 0)})])
     (drive,) = Drives(found, "right").of("7")

@@ -10,6 +10,7 @@ import pytest
 
 from rulec.extraction.signals.clearance_signals import clearance_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
@@ -250,3 +251,77 @@ def test_nobody_goes_to_a_lane_for_buses(kind, free):
     ]
     behind = steady(9, 0, 4, 10.0)
     assert signals(lanes, ego(100, y=4), behind)["near_lane_is_free"][0] == free
+
+
+def two_lanes():
+    return [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
+
+
+@pytest.mark.parametrize(
+    ("form", "last"), [("CommonRoad scenario", "True"), ("Waymo scenario", "?")]
+)
+def test_a_camera_that_stands_sees_what_ego_leaves_behind(form, last):
+    """Who comes at 20 m/s while ego drives 10 needs 20 m and (400 - 100) / 16 m: 38.75 m.
+
+    Ego's rear is 35 m from where it began in state 7, 40 m in state 8.
+    """
+    body = ego(100, y=4, steps=10)
+    found = replace(recording(two_lanes(), [body], step_s=STEP_S), form=form)
+    told = clearance_signals(context_of(found, ("1",)))
+    words = np.where(told.unknown["near_lane_is_free"], "?", told.world["near_lane_is_free"])
+    assert words.tolist() == ["?"] * 8 + [last] * 2
+
+
+@pytest.mark.parametrize(("end", "free"), [(250, "?"), (430, "True")])
+def test_nobody_has_to_go_to_a_lane_that_ends_soon(end, free):
+    """Ego is at 100 m, and lanes to join or to leave by begin or end within 300 m."""
+    lanes = [
+        straight(1, 0, end, left_of=2),
+        straight(2, 0, end, 4, right_of=1, successors=(3,)),
+        straight(3, end, 800, 4, predecessors=(2,)),
+    ]
+    behind = steady(9, 0, 4, 10.0)
+    found = signals(lanes, ego(100, y=4), behind, route=("2", "3"))
+    assert found["near_lane_is_free"][0] == free
+
+
+@pytest.mark.parametrize(("more", "free"), [((35, 60, 85), "?"), ((35,), "True")])
+def test_nobody_has_to_go_to_a_hole_in_a_full_lane(more, free):
+    """At 10 m/s 30 m may be a gap in a queue: two of the three here are of 21 m."""
+    others = [steady(10 + x, 100 + x, 0, 10.0) for x in (-40, *more)]
+    behind = steady(9, 0, 4, 10.0)
+    found = signals(two_lanes(), ego(100, y=4), behind, *(others[1:] if more == (35,) else others))
+    assert found["near_lane_is_free"][0] == free
+
+
+INSIDE = frozenset({"intersection"})
+
+
+def junction(straight_on=True, lights=()):
+    """Two lanes up to 150 m; the one at the kerb turns right there, and may lead straight on."""
+    lanes = [
+        straight(1, 0, 150, left_of=2, successors=(3, 5) if straight_on else (5,), lights=lights),
+        straight(2, 0, 150, 4, right_of=1, successors=(4,)),
+        straight(4, 150, 170, 4, predecessors=(2,), successors=(7,), types=INSIDE),
+        lanelet(
+            5, [(150, 0), (160, -2), (164, -20)], predecessors=(1,), successors=(8,), types=INSIDE
+        ),
+        straight(6, 170, 600, left_of=7),
+        straight(7, 170, 600, 4, predecessors=(4,), right_of=6),
+        lanelet(8, [(164, -20), (164, -200)], predecessors=(5,)),
+    ]
+    if straight_on:
+        lanes.append(straight(3, 150, 170, predecessors=(1,), successors=(6,), types=INSIDE))
+    return lanes
+
+
+@pytest.mark.parametrize(
+    ("x", "straight_on", "free"),
+    # At 10 m/s the junction is 10 s away from 48 m on, where the front is
+    [(80, False, "False"), (80, True, "?"), (30, False, "True"), (30, True, "True")],
+)
+def test_drivers_sort_themselves_before_a_junction(x, straight_on, free):
+    behind = steady(9, x - 80, 4, 10.0)
+    lanes = junction(straight_on, (Light(0, (("green", 9),)),))
+    found = signals(lanes, ego(x, y=4), behind, route=("2", "4", "7"))
+    assert found["near_lane_is_free"][0] == free

@@ -10,8 +10,8 @@ from rulec.extraction.signals.participant_signals import (
     participant_signals,
     safe_distance,
 )
-from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording, straight, vehicle
+from support.builders.drive_contexts import along, context_of, steady
+from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 STEP_S = 0.5
@@ -81,6 +81,18 @@ def test_a_safe_gap_is_asked_for_in_egos_lane_only():
     assert not about(steady(8, 10, 0, speed=5))["safe_gap"]
     assert about(steady(8, 10, 4, speed=5))["safe_gap"]
     assert about(steady(8, -10, 0, speed=5))["safe_gap"]
+
+
+@pytest.mark.parametrize(
+    ("x", "word"),
+    # Bodies are 4 m long: gaps of 16.8, 16.0, 7.0 and 5.5 m, and speeds are good to 0.1 m/s. Within
+    # the second of reaction and in the braking distance, 100 / 16 m, behind it one can stop
+    [(20.8, True), (20.0, "?"), (11.0, "?"), (9.5, False)],
+)
+def test_ego_may_have_seen_one_stand_that_has_for_long(x, word):
+    signals = participant_signals(context(steady(8, x, 0, speed=0)))
+    unknown = bool(signals.unknown["safe_gap"][0, 0])
+    assert ("?" if unknown else bool(signals.about["safe_gap"][0, 0])) == word
 
 
 @pytest.mark.parametrize(("leaves_at", "unknown"), [(8, True), (9, False)])
@@ -242,3 +254,41 @@ def test_the_bounds_of_the_time_to_a_collision():
         pytest.approx((gap - 0.05) / 5.1414, abs=0.011),
         pytest.approx((gap + 0.05) / 4.8586, abs=0.011),
     )
+
+
+@pytest.mark.parametrize(
+    ("ways", "goes", "word"),
+    [
+        ("left", None, True),
+        ("straight", None, False),
+        # Of a lane to both its own way decides, and without one nobody knows
+        ("both", None, "?"),
+        ("both", "left", True),
+        ("both", "straight", False),
+    ],
+)
+def test_where_a_lane_leads_that_others_beyond_have_the_number_of(ways, goes, word):
+    """Ego drives straight on beside it; the road beyond has two lanes as well."""
+    inside = frozenset({"intersection"})
+    onward = {"left": (7,), "straight": (6,), "both": (6, 7)}[ways]
+    left = [(112, 4), (120, 6), (124, 24)]
+    road = [
+        straight(1, 0, 112, successors=(2,), left_of=5),
+        straight(2, 112, 132, predecessors=(1,), successors=(3,), types=inside),
+        straight(3, 132, 300, predecessors=(2,), left_of=8),
+        straight(5, 0, 112, 4, right_of=1, successors=onward),
+        straight(8, 132, 300, 4, right_of=3),
+        lanelet(9, [(124, 24), (124, 200)]),
+    ]
+    if 6 in onward:
+        road.append(straight(6, 112, 132, 4, predecessors=(5,), successors=(8,), types=inside))
+    if 7 in onward:
+        road.append(lanelet(7, left, predecessors=(5,), successors=(9,), types=inside))
+    path = {"left": [(90, 4), *left, (124, 60)], "straight": [(90, 4), (300, 4)]}.get(goes)
+    way = np.array([0, 5, 10, 15, 20, 25, 30, 40, 60, 70], dtype=float)
+    waits = vehicle(8, dict.fromkeys(range(8), (90, 4)), speed=0)
+    other = waits if path is None else along(8, np.array(path), way)
+    found = recording(road, [steady(7, 0, 0, speed=10, steps=10), other])
+    signals = participant_signals(context_of(found, ("1", "2", "3")))
+    unknown = bool(signals.unknown["leads_elsewhere"][0, 0])
+    assert ("?" if unknown else bool(signals.about["leads_elsewhere"][0, 0])) == word

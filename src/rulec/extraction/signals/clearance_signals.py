@@ -6,9 +6,11 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
+from rulec.extraction.signals.queues import LOOSE, lanes_that_go_on, queues_by_lane
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -23,6 +25,19 @@ _SOLID = frozenset({"solid", "double_solid"})
 
 _UNSEEN_S = 5.0
 """For so long one whose track has ended is thought to drive on as before."""
+
+_FASTER_MPS = 10.0
+
+_STANDING_CAMERAS = frozenset(
+    {
+        "CommonRoad scenario",
+        "NGSIM tracks",
+        "highD tracks",
+        "levelX tracks",
+        "INTERACTION tracks",
+    }
+)
+"""Forms of what is recorded from above a stretch of road, or made up for one."""
 
 
 def clearance_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -52,7 +67,9 @@ def _on_near_lane(context: DriveContext) -> SignalColumns:
     free = _near_lane_is_free(context)
     return SignalColumns(
         {"near_lane_is_free": free},
-        unknown={"near_lane_is_free": free & _perhaps_on_near_lane(context)},
+        unknown={
+            "near_lane_is_free": free & (_perhaps_on_near_lane(context) | _of_no_use(context))
+        },
     )
 
 
@@ -189,7 +206,8 @@ def _far_lane_is_free(context: DriveContext) -> Flags:
 def _near_lane_is_free(context: DriveContext) -> Flags:
     """Flags of states in which ego, in the next lane to the kerb, would be at safe distances.
 
-    It cannot go there across a solid line, as beside lanes for who turns off, nor to a bus lane.
+    It cannot go there across a solid line, as beside lanes for who turns off, nor to a bus lane,
+    nor to one that leads elsewhere at the junction that ego gets to within ``preparing_s``.
     """
     limits = context.thresholds
     inside, there = _on_next_lane(context, context.side)
@@ -200,8 +218,43 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * limits.braking_mps2)
     taken = inside & ((station == relations.BESIDE) | (gap < safe))
     parted = own_lanelets(context).flags(lambda lanelet: _near_mark(lanelet, context) in _SOLID)
-    free: Flags = ~there | ~(taken.any(axis=0) | parted | _bus_lane_beside(context))
+    turned, _ = _sorted_ahead(context)
+    kept = parted | _bus_lane_beside(context) | turned
+    free: Flags = ~there | ~(taken.any(axis=0) | kept)
     return free
+
+
+def _of_no_use(context: DriveContext) -> Flags:
+    """Flags of states in which nobody can tell whether ego has to go to the next lane to the kerb.
+
+    It begins or ends near ego while others go on, as beside a ramp; it is full, but for a hole; or
+    drivers sort themselves by lanes before a junction.
+    """
+    lane, there = _next_lane(context, context.side)
+    states = np.arange(context.states)
+    side_lane = ~lanes_that_go_on(context)[states, lane]
+    queues, _ = queues_by_lane(context)
+    _, sorting = _sorted_ahead(context)
+    no_use: Flags = there & (side_lane | queues[LOOSE, states, lane] | sorting)
+    return no_use
+
+
+@once
+def _sorted_ahead(context: DriveContext) -> tuple[Flags, Flags]:
+    """Where the next lane to the kerb leads elsewhere than ego, and where drivers choose lanes.
+
+    They do before lights, and where one lane leads to several roads, from ``preparing_s`` before.
+    """
+    lane, there = _next_lane(context, context.side)
+    front, speed = context.ego_extents.s_max[0], np.maximum(context.ego_extents.along[0], 0.0)
+    reach = np.maximum(speed * context.thresholds.preparing_s, context.thresholds.approach_m)
+    elsewhere, sorting = np.zeros((2, context.states), dtype=bool)
+    for junction in junctions_ahead(context):
+        nears = there & (front <= junction.low) & (junction.low - front <= reach)
+        leads = [junction.leads[number] for number in np.minimum(lane, len(junction.leads) - 1)]
+        elsewhere |= nears & np.array([lead is Leads.ELSEWHERE for lead in leads])
+        sorting |= nears & np.array([junction.lit or lead is Leads.BOTH for lead in leads])
+    return elsewhere, sorting & ~elsewhere
 
 
 def _bus_lane_beside(context: DriveContext) -> Flags:
@@ -232,7 +285,7 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
         return np.zeros(context.states, dtype=bool)
     lane, there = _next_lane(context, context.side)
     behind = context.going_along & (relations.station(context) == relations.IN_FRONT_OF)
-    perhaps: Flags = there & ~behind.any(axis=0)
+    perhaps: Flags = there & ~behind.any(axis=0) & ~_seen_behind(context)
     others, states, step_s = context.extents, np.arange(context.states), context.recording.step_s
     rows = np.flatnonzero(context.driving_along.any(axis=1))
     seen = context.driving_along[rows]
@@ -244,6 +297,24 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
         near &= others.lane[rows, edge][:, None] == lane
         perhaps |= (unseen & there & near & (np.abs(away_s) < _UNSEEN_S)).any(axis=0)
     return perhaps
+
+
+def _seen_behind(context: DriveContext) -> Flags:
+    """Flags of states in which one that comes from behind would have been recorded.
+
+    A camera that stands sees all the way from where anybody on ego's road was first. Who comes
+    faster by ``_FASTER_MPS`` from farther behind would not have to brake for ego.
+    """
+    if context.recording.form not in _STANDING_CAMERAS:
+        return np.zeros(context.states, dtype=bool)
+    limits, own = context.thresholds, np.maximum(context.ego_extents.along[0], 0.0)
+    others = np.where(context.driving_along, context.extents.s_min, np.inf)
+    rear = context.ego_extents.s_min[0]
+    first = min(float(rear.min()), float(others.min(initial=np.inf)))
+    faster = own + _FASTER_MPS
+    safe = limits.reaction_s * faster + (faster**2 - own**2) / (2 * limits.braking_mps2)
+    seen: Flags = rear - first >= safe
+    return seen
 
 
 def _on_next_lane(context: DriveContext, side: Side) -> tuple[Flags, Flags]:

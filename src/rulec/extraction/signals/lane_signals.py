@@ -30,6 +30,11 @@ _SINGLE = (
 )
 """One line between two lanes is the mark of both, or of the one whose bound it is."""
 
+_STEADY_MPS = 1.0
+"""Of who is slower nobody knows from places where it points."""
+
+_EXACT_M = 0.1
+
 _Marks = tuple[LaneMark | None, LaneMark | None]
 
 
@@ -173,13 +178,12 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     shifts = [unmoved, offsets] if offsets.any() else [unmoved]
     others = list(product((place, -place), shifts))
     tried = [(near, _across(context, low, high, other)) for other in others]
-    # Where places are known so badly, a body's direction is that of its slow or slipping track
-    if place >= context.thresholds.touching_m:
-        middle, half = context.ego_extents.left_of[0], own_widths(context)[:, None] / 2
-        tried += [
-            (near | found[:, 0], _across(context, middle - half, middle + half, other))
-            for other in [(0.0, unmoved), *others]
-        ]
+    # A body lies across a line by where it is, not by the direction in which its box points alone
+    middle, half = context.ego_extents.left_of[0], _half_across(context)[:, None]
+    tried += [
+        (near | found[:, 0], _across(context, middle - half, middle + half, other))
+        for other in [(0.0, unmoved), *others]
+    ]
     states = np.concatenate([np.flatnonzero(where) for where, _ in tried])
     others_found = _under(context, np.concatenate([lines[where] for where, lines in tried]), states)
     differs = (others_found[:, :-1] != found[states, :-1]).any(axis=1)
@@ -187,6 +191,31 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     return SignalColumns(
         dict(zip(names, found.T, strict=False)), unknown=dict.fromkeys(names, not_told)
     )
+
+
+def _half_across(context: DriveContext) -> Floats:
+    """How far (m) ego reaches to either side of its middle, were it to point where it moves.
+
+    Of who is slow, where its box points in sources as good as ``_EXACT_M``, and along the lanes in
+    others; along them, too, where places are known so badly that a track points where it slips.
+    """
+    width, turned = own_widths(context), context.ego_extents.turned[0]
+    place = context.tolerances.place_m
+    if place >= context.thresholds.touching_m:
+        return width / 2
+    steps = max(round(context.thresholds.smoothing_s / 2 / context.recording.step_s), 1)
+    at = np.arange(context.states)
+    before, after = np.maximum(at - steps, 0), np.minimum(at + steps, context.states - 1)
+    dx, dy = (places[0, after] - places[0, before] for places in (context.ego.x, context.ego.y))
+    lasts = np.maximum(after - before, 1) * context.recording.step_s
+    # From the road's direction, which is the heading less how far that is turned
+    aside = np.arctan2(dy, dx) - context.ego.heading[0] + turned
+    slow = turned if place < _EXACT_M else 0.0
+    aside = np.where(np.hypot(dx, dy) >= _STEADY_MPS * lasts, aside, slow)
+    along = context.ego_extents.s_max[0] - context.ego_extents.s_min[0]
+    lengths = (along - width * np.abs(np.sin(turned))) / np.maximum(np.abs(np.cos(turned)), 0.5)
+    reach: Floats = (width * np.abs(np.cos(aside)) + lengths * np.abs(np.sin(aside))) / 2
+    return reach
 
 
 def _across(context: DriveContext, low: Floats, high: Floats, other: tuple[float, Floats]) -> Flags:

@@ -8,6 +8,12 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.map.lanes_ahead import (
+    JunctionAhead,
+    Leads,
+    goes_along,
+    junctions_ahead,
+)
 from rulec.extraction.signals.measured_numbers import (
     LONGEST_S,
     bounds_to_others,
@@ -29,9 +35,6 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
 from rulec.trace.plain_arrays import distinct
-
-_BEYOND_M = 1.0
-"""So far behind a junction the lanes are those that go on."""
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
@@ -119,21 +122,36 @@ def _measured(context: DriveContext, name: str, values: Floats) -> SignalColumns
 
 
 def _safe_gap(context: DriveContext) -> SignalColumns:
-    """Whether ego keeps its distance from who is, or may be, ahead in its lane."""
+    """Whether ego keeps its distance from who is, or may be, ahead in its lane.
+
+    Unknown of one that stood ``reaction_s`` ago already, if ego could stop behind it by braking at
+    once: it may have seen it stand long before.
+    """
     _, _, may_follow = relations.ahead_in_lane(context)
-    place, cells = context.tolerances.place_m, may_follow.nonzero()
+    place, cells, limits = context.tolerances.place_m, may_follow.nonzero(), context.thresholds
     short = safe_distance(context)[cells] - relations.gap(context)[cells]
     wrong = np.hypot(safe_distance_error(context)[cells], place)
-    stands = context.tracks.speed[cells] * KMH < context.thresholds.standing_kmh
+    stands = context.tracks.speed[cells] * KMH < limits.standing_kmh
     # One that stands, and that ego drives by, does not drive ahead
-    aside = relations.way_across(context)[cells] - context.thresholds.touching_m
+    aside = relations.way_across(context)[cells] - limits.touching_m
     room = np.where(stands, aside, -np.inf)
     may_pass_by, follows = np.abs(room) < place, room <= 0
     moot = may_pass_by | (follows & _parts_soon(context, cells[0])[cells])
+    react_m = np.maximum(context.ego_extents.along[0], 0.0)[cells[1]] * limits.reaction_s
+    moot |= follows & _stood_before(context)[cells] & (short - react_m <= 0)
     safe, unknown = np.ones(may_follow.shape, dtype=bool), np.zeros(may_follow.shape, dtype=bool)
     safe[cells] = ~follows | (short <= 0)
     unknown[cells] = (follows & (np.abs(short) < wrong)) | (moot & (short > -wrong))
     return SignalColumns(about={"safe_gap": safe}, unknown={"safe_gap": unknown})
+
+
+def _stood_before(context: DriveContext) -> Flags:
+    """Flags of those who stand, and have for ``reaction_s`` or since they were seen first."""
+    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    steps = round(context.thresholds.reaction_s / context.recording.step_s)
+    moved = latest(~stands & ~np.isnan(context.extents.s_min))
+    stood: Flags = stands & ((moved < 0) | (np.arange(context.states) - moved > steps))
+    return stood
 
 
 def _parts_soon(context: DriveContext, rows: NDArray[intp]) -> Flags:
@@ -270,16 +288,47 @@ def _stays_aside(context: DriveContext) -> Flags:
 
 
 def _leads_elsewhere(context: DriveContext) -> SignalColumns:
-    """Whether the lane of those before a junction does not go on beside ego's beyond it."""
+    """Whether the lane of those before a junction does not go on along ego's road beyond it.
+
+    Of a lane from which ways lead there and elsewhere, that of the one who takes it decides.
+    """
     others, reach = context.extents, context.thresholds.approach_m
-    elsewhere = np.zeros(context.relevant.shape, dtype=bool)
-    for low, high in context.road.junctions:
-        (beyond,) = context.road.lanes.existing_at(np.array([high + _BEYOND_M]))
-        near = context.on_lanes & (others.s < low) & (low - others.s_max <= reach)
-        if beyond.any():
-            lane = np.clip(others.lane, 0, len(beyond) - 1)
-            elsewhere |= near & ~beyond[lane]
-    return SignalColumns(about={"leads_elsewhere": elsewhere})
+    elsewhere, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
+    for junction in junctions_ahead(context):
+        near = context.on_lanes & (others.s < junction.low)
+        near &= junction.low - others.s_max <= reach
+        if not near.any():
+            continue
+        lane = np.clip(others.lane, 0, len(junction.leads) - 1)
+        away, both = (
+            np.array([leads is kind for leads in junction.leads])[lane]
+            for kind in (Leads.ELSEWHERE, Leads.BOTH)
+        )
+        elsewhere |= near & away
+        for row in np.flatnonzero((near & both).any(axis=1)).tolist():
+            turns_off = _turns_off(context, row, junction)
+            elsewhere[row] |= near[row] & both[row] & bool(turns_off)
+            unknown[row] |= near[row] & both[row] & (turns_off is None)
+    return SignalColumns(
+        about={"leads_elsewhere": elsewhere}, unknown={"leads_elsewhere": unknown & ~elsewhere}
+    )
+
+
+def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool | None:
+    """Does a participant leave ego's road at a junction; None if its track does not tell."""
+    passages = context.surroundings.passages
+    inside = {
+        lanelet.id
+        for lanelets, low in zip(context.road.rows, context.road.borders.tolist(), strict=False)
+        if junction.low - 0.1 <= low < junction.high
+        for lanelet in lanelets
+        if lanelet is not None
+    }
+    for passage in passages.of_row.get(int(context.tracks.rows[row]), ()):
+        same = passages.junctions[passage.junction]
+        if passage.sure and any(inside & way.names for way in same.ways):
+            return not goes_along(context, passages.way(passage), junction.turned)
+    return None
 
 
 def _two_wheeled(context: DriveContext) -> SignalColumns:

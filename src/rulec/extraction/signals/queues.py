@@ -45,11 +45,19 @@ def lanes_that_decide(context: DriveContext) -> Flags:
     ``fewest`` vehicles at the largest distances of a queue. One that begins or ends near ego while
     others go on is for who joins or leaves, as between two ramps.
     """
-    there, only_others = _lane_lengths(context)
+    there, _ = _lane_lengths(context)
     room = _length_near(context, there, _reach(context))
-    without = _length_near(context, only_others, np.full(context.states, _SIDE_LANE_M))
     enough = room >= _shortest_queue(context)[:, None] - _HAIR_M
-    return enough & (without <= _UNEVEN_M)
+    return enough & lanes_that_go_on(context)
+
+
+@once
+def lanes_that_go_on(context: DriveContext) -> Flags:
+    """Flags of lanes (second axis) that neither begin nor end near ego while others go on."""
+    _, only_others = _lane_lengths(context)
+    without = _length_near(context, only_others, np.full(context.states, _SIDE_LANE_M))
+    goes_on: Flags = without <= _UNEVEN_M
+    return goes_on
 
 
 @once_a_road

@@ -1,0 +1,99 @@
+"""Where the lanes before a junction lead: along ego's road beyond it, elsewhere, or to both."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum, auto
+
+import numpy as np
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.signal_passes import once_a_recording, once_a_road
+from rulec.extraction.tracks.junctions import JunctionWay
+from rulec.scenario.recorded.reference_line import turn
+
+_BEYOND_M = 1.0
+"""So far behind a junction the lanes are those that go on."""
+
+_HAIR_M = 0.01
+
+
+class Leads(Enum):
+    """Where a lane leads beyond a junction; ``NOWHERE``: the map has no way from it."""
+
+    ALONG = auto()
+    ELSEWHERE = auto()
+    BOTH = auto()
+    NOWHERE = auto()
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class JunctionAhead:
+    """A junction on ego's road, from where to where, and where each lane before it leads.
+
+    ``turned`` is the angle (rad) by which ego's road turns there. ``lit``: may there be lights?
+    """
+
+    low: float
+    high: float
+    turned: float
+    leads: Sequence[Leads]
+    lit: bool
+
+
+@once_a_road
+def junctions_ahead(context: DriveContext) -> Sequence[JunctionAhead]:
+    """The junctions of ego's road, and where the lanes before them lead."""
+    return tuple(_junctions_ahead(context))
+
+
+def _junctions_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
+    road, ways = context.road, _ways_from(context)
+    for low, high in road.junctions:
+        if low <= 0.0:
+            continue
+        ends = np.array([low - _HAIR_M, high + _HAIR_M])
+        turned = float(turn(*road.line.headings_at(ends).tolist()))
+        row = road.rows[int(road.piece(ends[:1])[0])]
+        (beyond,) = road.lanes.existing_at(np.array([high + _BEYOND_M]))
+        leads = []
+        for number, lanelet in enumerate(row):
+            lead = Leads.NOWHERE
+            if lanelet is not None:
+                lead = _lead(context, ways.get(lanelet.id, ()), turned)
+            # A lane that the road beyond does not have leads to another one
+            if lanelet is not None and beyond.any() and not beyond[number] and lead != Leads.BOTH:
+                lead = Leads.ELSEWHERE
+            leads.append(lead)
+        lights = [light for lanelet in row if lanelet is not None for light in lanelet.lights]
+        told = "light" in context.recording.complete or map_contents(context).lights
+        lit = bool(lights) or not told
+        yield JunctionAhead(low, high, turned, tuple(leads), lit)
+
+
+def goes_along(context: DriveContext, way: JunctionWay, turned: float) -> bool:
+    """True if a way turns about as much as ego's road does there (rad)."""
+    return bool(abs(turn(way.turned, turned)) <= np.radians(context.thresholds.turned_deg))
+
+
+def _lead(context: DriveContext, ways: Sequence[JunctionWay], turned: float) -> Leads:
+    along = [goes_along(context, way, turned) for way in ways]
+    if not along:
+        return Leads.NOWHERE
+    if all(along):
+        return Leads.ALONG
+    return Leads.BOTH if any(along) else Leads.ELSEWHERE
+
+
+@once_a_recording
+def _ways_from(context: DriveContext) -> Mapping[str, Sequence[JunctionWay]]:
+    """Lanelet before a junction -> the ways that lead on from it."""
+    ways: dict[str, list[JunctionWay]] = defaultdict(list)
+    for junction in context.surroundings.passages.junctions:
+        for way in junction.ways:
+            for entry in way.entries:
+                ways[entry].append(way)
+    return ways
