@@ -113,18 +113,21 @@ class JunctionPassages:
         """The way of a passage."""
         return self.junctions[passage.junction].ways[passage.way]
 
-    def occupied(self, passage: Passage, interval: Interval) -> tuple[int | None, int | None]:
-        """The first columns in which its front is in an interval of its way, and its rear is past.
+    def occupied(self, passage: Passage, interval: Interval) -> tuple[float | None, float | None]:
+        """When, in columns, its front gets to an interval of its way, and its rear is past.
 
-        None where the recording ends before.
+        Between two columns in proportion; None where the recording ends before.
         """
         low, high = interval
-        middle = self._places(passage)
+        middle, first = self._places(passage), passage.first
+        if first > 0 and self.tracks.present[passage.row, first - 1]:
+            # It gets there on its way into the junction
+            came = self.travelled[passage.row, first] - self.travelled[passage.row, first - 1]
+            middle, first = np.append(middle[0] - came, middle), first - 1
         half = self.lengths[passage.row] / 2
-        enters, leaves = middle + half >= low, middle - half > high
         return tuple(  # type: ignore[return-value]
-            passage.first + int(flags.argmax()) if flags.any() else None
-            for flags in (enters, leaves)
+            None if (at := _gets_to(ends, place)) is None else first + at
+            for ends, place in ((middle + half, low), (middle - half, high))
         )
 
     def _places(self, passage: Passage) -> Floats:
@@ -138,6 +141,18 @@ class JunctionPassages:
         end = last + 1 + int((~np.append(row[last + 1 :], False)).argmax())
         beyond = self.travelled[passage.row, last + 1 : end] - self.travelled[passage.row, last]
         return np.concatenate((inside, inside[-1] + beyond))
+
+
+def _gets_to(places: Floats, place: float) -> float | None:
+    """When, in numbers of places, one is got to that ascend; None if none is."""
+    beyond = places >= place
+    if not beyond.any():
+        return None
+    after = int(beyond.argmax())
+    if after == 0:
+        return 0.0
+    before, step = places[after - 1], places[after] - places[after - 1]
+    return float(after - 1 + (place - before) / step) if step > 0 else float(after)
 
 
 def _length(outlines: object, states: object) -> float:

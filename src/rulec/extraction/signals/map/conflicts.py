@@ -8,6 +8,7 @@ for one that runs into it.
 
 from __future__ import annotations
 
+from math import ceil
 from typing import TypeAlias
 
 import numpy as np
@@ -25,8 +26,8 @@ _DRIVES_MPS = 3.0
 _BEHIND_S = 0.3
 """Who gets to a place so short a time before another one has left it passes behind it."""
 
-Passing: TypeAlias = tuple[Passage, int | None, int | None]
-"""A passage, with the columns in which it enters and leaves where ways meet."""
+Passing: TypeAlias = tuple[Passage, float | None, float | None]
+"""A passage, with when, in columns, it enters and leaves where ways meet."""
 
 
 def first_column(context: DriveContext) -> int:
@@ -39,15 +40,15 @@ def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int,
 
     None: it is not.
     """
-    own, enters, leaves = ego
-    other, comes, passed = foe
+    own, other = ego[0], foe[0]
+    (enters, leaves), (comes, passed) = (tuple(map(_column, when[1:])) for when in (ego, foe))
     if enters is None:
         return None
     if comes is not None and comes < enters:
-        return _runs_into(context, (own, enters), foe)
+        return _runs_into(context, (own, enters), (other, passed))
     speed = context.surroundings.passages.tracks.speed[own.row, enters:passed]
     waits = speed.min(initial=np.inf) < SLOWEST_MPS
-    held_up = _held_up(context, (own, enters, leaves), other, comes)
+    held_up = _held_up(context, (own, enters, ego[2]), other, foe[1])
     if passed is not None and (leaves is None or passed < leaves) and waits:
         # Who waits a little too far ahead lets others pass all the same
         collide = held_up and _collide(context, own, other, slice(enters, passed))
@@ -69,14 +70,14 @@ def _collide(context: DriveContext, own: Passage, other: Passage, columns: slice
 
 
 def _runs_into(
-    context: DriveContext, ego: tuple[Passage, int], foe: Passing
+    context: DriveContext, ego: tuple[Passage, int], foe: tuple[Passage, int | None]
 ) -> tuple[int, bool] | None:
     """The same of one that got there first: ego drives into its side while it drives on.
 
     Those who join its way drive in behind it.
     """
     passages = context.surroundings.passages
-    (own, enters), (other, _, passed) = ego, foe
+    (own, enters), (other, passed) = ego, foe
     ways = passages.way(own), passages.way(other)
     if ways[0].names & ways[1].names or ways[0].exits & ways[1].exits:
         return None
@@ -88,10 +89,15 @@ def _runs_into(
     return (max(int(present[0]), first_column(context)), True) if drive and inside else None
 
 
+def _column(when: float | None) -> int | None:
+    """The first column that is not before."""
+    return None if when is None else ceil(when)
+
+
 def _held_up(
-    context: DriveContext, ego: tuple[Passage, int, int | None], other: Passage, comes: int | None
+    context: DriveContext, ego: tuple[Passage, int, float | None], other: Passage, at: float | None
 ) -> tuple[int, bool] | None:
-    """The same of one that does not get there first, in the column ``comes`` if it does."""
+    """The same of one that does not get there first, but then, in columns, if it does."""
     limits, step_s = context.thresholds, context.recording.step_s
     passages = context.surroundings.passages
     own, enters, leaves = ego
@@ -100,14 +106,15 @@ def _held_up(
     first, last = max(int(present[0]), first_column(context)), min(enters, int(present[-1]))
     if last < first:
         return None
-    columns = np.arange(first, last + 1)
-    if comes is None:
+    columns, comes = np.arange(first, last + 1), _column(at)
+    if at is None or comes is None:
         return (first, False) if int(present[-1]) < until else None
-    if (comes - until) * step_s < limits.yielding_s:
+    if (at - until) * step_s < limits.yielding_s:
         return first, leaves is not None or _drives_on(context, own, comes)
-    if (comes - until) * step_s >= limits.held_up_s:
+    if (at - until) * step_s >= limits.held_up_s:
         return None
-    way = passages.travelled[other.row, comes] - passages.travelled[other.row, columns]
+    travelled = passages.travelled[other.row]
+    way = np.interp(at, np.arange(len(travelled)), travelled) - travelled[columns]
     speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
     soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
     decides = min(max(_decides(context, own, enters) - first, 0), len(soon) - 1)

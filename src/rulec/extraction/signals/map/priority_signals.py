@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 import shapely
@@ -173,7 +174,7 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
         if verdict is None:
             continue
         begins, known = verdict
-        enters, leaves = ego
+        enters, leaves = (None if when is None else ceil(when) for when in ego)
         last = (leaves if leaves is not None else shift + context.states - 1) - shift
         first = max(span.start, begins - shift)
         if not (kinds := _kinds(context, own, other)):
