@@ -1,5 +1,6 @@
 """``rulec compile`` as its user meets it."""
 
+import pytest
 import spot
 
 from rulec.cli.main import main
@@ -46,11 +47,17 @@ def test_an_example_that_comes_out_otherwise_is_a_warning(tmp_path, capsys):
     assert err.count("warning[R0406]") == 2
 
 
-def test_a_rule_that_explodes(tmp_path, capsys):
-    atoms = ", ".join(f"s{i}" for i in range(16))
-    untils = " xor ".join(f"(s{i} until s{i + 1})" for i in range(0, 16, 2))
+UNTILS = " xor ".join(f"(s{i} until s{i + 1})" for i in range(0, 16, 2))
+WIDE = " or ".join(f"s{i}" for i in range(17))  # refused without trying
+
+
+@pytest.mark.parametrize(
+    "formula", [WIDE, pytest.param(UNTILS, marks=pytest.mark.long)], ids=["letters", "time"]
+)
+def test_a_rule_that_explodes(formula, tmp_path, capsys):
+    atoms = ", ".join(f"s{i}" for i in range(17))
     source = tmp_path / "boom.rules"
-    source.write_text(f"rulebook boom\nsignal {atoms}\nhard rule Boom {{ require {untils} }}\n")
+    source.write_text(f"rulebook boom\nsignal {atoms}\nhard rule Boom {{ require {formula} }}\n")
     assert main(["compile", str(source), "-o", str(tmp_path / "out")]) == 2
     assert not (tmp_path / "out").exists()
     assert "rule `Boom` would be too large" in capsys.readouterr().err
