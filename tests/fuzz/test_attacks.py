@@ -1,0 +1,185 @@
+"""Small inputs that once took minutes or gigabytes, each in a process of its own."""
+
+import json
+
+import pyarrow
+import pyarrow.parquet
+import pytest
+
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.rulebook.loader import parse_rulebook
+from support.builders.recorded_cars import car
+from support.builders.recordings import ROAD_XML
+from support.builders.rulebooks import compile_here
+from support.own_process import cost_of
+
+MOST_MIB = 500
+
+SOON = """rulebook soon
+signal p, q default false
+hard rule soon { require always (p implies eventually[<= 1 s] q) }
+"""
+CROWD = """rulebook crowd
+type car
+signal beside(a: car), stopped(a: car) default false
+hard rule six (a: car, b: car, c: car, d: car, e: car, f: car) {
+  require always not (beside(a) and beside(b) and beside(c)
+                      and stopped(d) and stopped(e) and stopped(f))
+}
+"""
+
+
+def traces(*lines):
+    return "".join(f"{json.dumps(line)}\n" for line in lines)
+
+
+def of_states(states, **more):
+    return {"step_s": 1, "states": states, **more}
+
+
+def saved(step):
+    """A saved monitor of ``SOON``, with this for its step."""
+    monitor = Monitor(compile_here(parse_rulebook(SOON), 1), 1)
+    monitor.step({"p": True}, {})
+    return json.dumps({**monitor.snapshot(), "step_s": step})
+
+
+def recorded(last):
+    """A recording of one car whose last state is at this step."""
+    cars = car(7, 10, 0, 12).replace("<exact>29</exact>", f"<exact>{last}</exact>")
+    head, tail = ROAD_XML.index("  <obstacle"), ROAD_XML.index("  <planning")
+    return ROAD_XML[:head] + cars + ROAD_XML[tail:]
+
+
+def parquet_of_no_text():
+    table = pyarrow.table({"trace": ["tQQ"], "step": [0], "p": [True]})
+    sink = pyarrow.BufferOutputStream()
+    pyarrow.parquet.write_table(table, sink, compression="none")
+    return sink.getvalue().to_pybytes().replace(b"tQQ", b"t\xff\xff")
+
+
+THIRTY = {f"o{number}": "car" for number in range(30)}
+FEW = {"beside": {"o1": True, "o2": True, "o3": True}}
+PARITY = " xor ".join(f"p{number}" for number in range(12))
+SIGNALS = ", ".join(f"p{number}" for number in range(12))
+CHAIN = "type t0\n" + "".join(f"type t{n} is t{n - 1}\n" for n in range(1, 5000))
+SURFACES = "".join(
+    f'[[road.surface]]\ntype = "crossing"\ns = [{n}.0, {n}.5]\n' for n in range(30_000)
+)
+ROAD = "[road]\ns = [0.0, 90000.0]\nlanes = [-1.75, 1.75]\n[ego]\ns = 0.0\nd = 0.0\n"
+RESTORE = ["monitor", "./soon.rules", "--restore", "m.json"]
+
+COSTLY = {
+    "a saved monitor with a step of 1e9999999": (
+        {"m.json": lambda: saved("1e9999999")},
+        RESTORE,
+        2,
+        "R0510",
+    ),
+    "a saved monitor with an infinite step": (
+        {"m.json": lambda: saved(float("inf"))},
+        RESTORE,
+        2,
+        "R0510",
+    ),
+    "a past with a step of 1e9999999": (
+        {"m.json": lambda: saved("1e9999999")},
+        ["maneuvers", "s1", "-r", "esterle2019", "--after", "m.json"],
+        2,
+        "R0510",
+    ),
+    "a recording of one state at step 20,000,000": (
+        {"ZAM_Road-1_1_T-1.xml": lambda: recorded(20_000_000)},
+        ["verify", "ZAM_Road-1_1_T-1.xml", "-r", "esterle2019"],
+        2,
+        "R0610",
+    ),
+    "a recording of one state at step 10^300": (
+        {"ZAM_Road-1_1_T-1.xml": lambda: recorded(10**300)},
+        ["verify", "ZAM_Road-1_1_T-1.xml", "-r", "esterle2019"],
+        2,
+        "R0610",
+    ),
+    "427 million choices of objects, in a trace": (
+        {"t.jsonl": lambda: traces(of_states([FEW] * 3, objects=THIRTY))},
+        ["verify", "t.jsonl", "-r", "./crowd.rules"],
+        0,
+        "1 satisfied",
+    ),
+    "427 million choices of objects, state by state": (
+        {"-": lambda: traces(*[{"objects": THIRTY, "state": FEW}] * 3)},
+        ["monitor", "./crowd.rules"],
+        0,
+        "holds so far",
+    ),
+    "200 traces of as many steps": (
+        {
+            "t.jsonl": lambda: traces(
+                *({"step_s": 1 / (n + 1), "states": [{"p": True}]} for n in range(200))
+            )
+        },
+        ["--limit", "steps=5", "verify", "t.jsonl", "-r", "./soon.rules"],
+        2,
+        "R0718",
+    ),
+    "a parity of 12 signals, drawn": (
+        {
+            "wide.rules": lambda: (
+                f"rulebook wide\nsignal {SIGNALS}\nhard rule r {{ require always ({PARITY}) }}\n"
+            )
+        },
+        ["show", "./wide.rules"],
+        2,
+        "R0718",
+    ),
+    "a violation at the end of 300,000 states": (
+        {"t.jsonl": lambda: traces(of_states([{"p": False}] * 300_000 + [{"p": True}] * 3))},
+        ["verify", "t.jsonl", "-r", "./soon.rules"],
+        1,
+        "1 violated",
+    ),
+    "5,000 types, each of the one before": (
+        {"deep.rules": lambda: f"rulebook deep\n{CHAIN}signal p\nhard rule r {{ require p }}\n"},
+        ["check", "./deep.rules"],
+        1,
+        "R0718",
+    ),
+    "30,000 surfaces of a road": (
+        {"s.toml": lambda: ROAD + SURFACES},
+        ["maneuvers", "s.toml", "-r", "esterle2019"],
+        2,
+        "R0604",
+    ),
+    "Parquet with a text that is none": (
+        {"t.parquet": parquet_of_no_text},
+        ["verify", "t.parquet", "-r", "./soon.rules"],
+        2,
+        "R0509",
+    ),
+    "a threshold of 1e308": (
+        {"ZAM_Road-1_1_T-1.xml": lambda: recorded(29)},
+        ["verify", "ZAM_Road-1_1_T-1.xml", "-r", "de", "--threshold", "smoothing_s=1e308"],
+        2,
+        "smoothing_s",
+    ),
+    "settings with a folder's name of 300 characters": (
+        {"rulec.toml": lambda: f'search_path = ["{"a" * 300}"]\n'},
+        ["check", "./soon.rules"],
+        2,
+        "R0704",
+    ),
+}
+
+
+@pytest.mark.parametrize("attack", COSTLY)
+def test_what_is_small_takes_little(attack, tmp_path, record_property):
+    """In a process of its own, so that its memory is its own; without a traceback."""
+    files, arguments, status, says = COSTLY[attack]
+    made = {name: make() for name, make in files.items()}
+    standard_input = made.pop("-", "")
+    for name, data in {"soon.rules": SOON, "crowd.rules": CROWD, **made}.items():
+        (tmp_path / name).write_bytes(data if isinstance(data, bytes) else data.encode())
+    cost = cost_of(arguments, tmp_path, standard_input)
+    record_property("processor seconds", cost.cpu_s)
+    assert (cost.status, says in cost.said, "Traceback" in cost.said) == (status, True, False), cost
+    assert cost.peak_mib < MOST_MIB
