@@ -94,6 +94,10 @@ def repeated(copy):
     return judge_all
 
 
+def together(rulebook, compiled, traces):
+    return [told(one) for one in verify_many(traces, compiled)]
+
+
 def stacked(rulebook, compiled, traces):
     """In arrays, whatever their objects; what these cannot say is judged one by one."""
     answers, arrays = {}, {}
