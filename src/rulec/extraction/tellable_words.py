@@ -10,6 +10,8 @@ from rulec.extraction.to_trace import Drive
 _EITHER = frozenset(
     (
         *("acceleration", "distance_to_junction", "distance_to_stop_line", "hazard_lights"),
+        *("cause_to_brake", "driving_side", "impedes_traffic", "joins_road", "nearest_to_crossing"),
+        *("on_shoulder", "reversing", "turns_in_way_of", "u_turn"),
         *("lane_number", "other_arrived_first", "time_to_collision", "time_to_stop_line"),
         *("CONGESTED", "about_to_overtake", "abreast_at_narrowing", "accelerating", "ahead_for"),
         *("arrived_together", "being_overtaken", "braking_hard", "broken_on_own_side"),

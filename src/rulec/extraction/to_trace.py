@@ -20,6 +20,9 @@ from rulec.extraction.signal_arrays import (
     written,
 )
 from rulec.extraction.signals.clearance_signals import clearance_signals
+from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
+from rulec.extraction.signals.conduct.reason_signals import reason_signals
+from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
@@ -103,6 +106,9 @@ _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     flow_signals,
     lane_change_signals,
     lane_mark_signals,
+    manoeuvre_signals,
+    reason_signals,
+    turning_conflicts,
 )
 """The signal passes, in the order in which traces name their signals."""
 

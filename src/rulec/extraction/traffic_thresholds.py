@@ -135,6 +135,7 @@ LEAST_S: Mapping[str, float] = MappingProxyType(
         ),
         0.3,
     )
+    | {"driving_side": 1.0, "reversing": 1.0}
 )
 """Word -> how long (s) a value of it lasts at least; a shorter one is noise.
 

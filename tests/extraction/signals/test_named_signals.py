@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.clearance_signals import clearance_signals
+from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
+from rulec.extraction.signals.conduct.reason_signals import reason_signals
+from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
 from rulec.extraction.signals.following_signals import following_signals
@@ -35,6 +38,7 @@ GROUPS = (
     zone_signals,
     *(intention_signals, merge_signals, clearance_signals, flow_signals),
     *(lane_change_signals, lane_mark_signals),
+    *(manoeuvre_signals, reason_signals, turning_conflicts),
 )
 LAMPS = frozenset({"left_indicator", "right_indicator", "hazard_lights"})
 COMPLETE = (

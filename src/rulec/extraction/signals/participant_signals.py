@@ -36,6 +36,9 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
 from rulec.trace.plain_arrays import distinct
 
+_ALONG = 0.5
+"""The sine of the angle to the road up to which one heads along it."""
+
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
 
@@ -287,6 +290,30 @@ def _stays_aside(context: DriveContext) -> Flags:
     return aside
 
 
+def _on_shoulder(context: DriveContext) -> SignalColumns:
+    """Whether vehicles that head along the road stand beside its lanes, or are on a hard shoulder.
+
+    At the near side: what is at the far one may be on lanes of the other direction. What moves
+    beside the lanes may be on one that the road does not have.
+    """
+    others, there = context.extents, context.there
+    if context.side == "right":
+        beyond = -others.middle_from(there.argmax(axis=2))
+    else:
+        beyond = others.middle_from(there.shape[2] - there[..., ::-1].argmax(axis=2))
+    shoulders = np.array(
+        [[x is not None and "shoulder" in x.types for x in row] for row in context.road.rows]
+    )
+    inside = shoulders[context.road.piece(np.nan_to_num(others.s)), others.lane]
+    vehicles = context.tracks.of_type("vehicle")[:, None] & there.any(axis=2)
+    along = vehicles & ~context.elsewhere & (np.abs(np.sin(others.turned)) < _ALONG)
+    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    loose = context.tolerances.place_m + np.abs(context.map_offset_m)
+    beside = along & (inside | (stands & (beyond > 0)))
+    unsure = along & ~inside & ((np.abs(beyond) < loose) | (~stands & (beyond > 0)))
+    return SignalColumns(about={"on_shoulder": beside}, unknown={"on_shoulder": unsure})
+
+
 def _leads_elsewhere(context: DriveContext) -> SignalColumns:
     """Whether the lane of those before a junction does not go on along ego's road beyond it.
 
@@ -363,6 +390,7 @@ _PASSES: Passes = {
     ("goes_across",): _goes_across,
     ("stopped",): _stopped,
     ("parked",): _parked,
+    ("on_shoulder",): _on_shoulder,
     ("leads_elsewhere",): _leads_elsewhere,
     ("two_wheeled",): _two_wheeled,
     ("in_the_road",): _in_the_road,

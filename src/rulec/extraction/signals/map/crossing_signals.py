@@ -56,6 +56,20 @@ def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
     )
 
 
+def _nearest_to_crossing(context: DriveContext) -> SignalColumns:
+    start, _ = next_crossing(context)
+    way = np.where(context.going_along, start - context.extents.s_max, np.inf)
+    ahead = np.where((way >= 0) & (way <= context.thresholds.approach_m), way, np.inf)
+    nearest = ahead.min(axis=0, initial=np.inf)
+    near = np.isfinite(ahead) & (ahead == nearest)
+    place = context.tolerances.place_m
+    unsure = np.isfinite(ahead) & ~near & (ahead < nearest + 2 * place)
+    unsure |= near & ((np.isfinite(ahead) & (ahead < nearest + 2 * place)).sum(axis=0) > 1)
+    return SignalColumns(
+        about={"nearest_to_crossing": near}, unknown={"nearest_to_crossing": unsure}
+    )
+
+
 def _crosses_side_road(context: DriveContext) -> SignalColumns:
     rows, crosses = _pedestrians(context), np.zeros_like(context.relevant)
     start, end = _side_road(context)
@@ -199,5 +213,6 @@ def _stopped(context: DriveContext) -> Flags:
 _PASSES: Passes = {
     ("crossing_use",): _crossing_use,
     ("stopped_for_pedestrian",): _stopped_for_pedestrian,
+    ("nearest_to_crossing",): _nearest_to_crossing,
     ("crosses_side_road",): _crosses_side_road,
 }

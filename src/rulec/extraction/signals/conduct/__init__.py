@@ -1,0 +1,1 @@
+"""Signals of what ego does beyond following its lane, and of whether something makes it."""

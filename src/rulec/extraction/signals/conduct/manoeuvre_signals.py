@@ -1,0 +1,222 @@
+"""Signals of ego's manoeuvres: driving backwards, turning round, setting off, the side it is on."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+
+from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, latest
+from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.tracks import Flags, Floats
+
+_SIDES = ("own_side", "oncoming_side", "wrong_way")
+
+_DERIVED_RAD = 1e-3
+"""Headings that never differ from the way moved by more have been made of it."""
+
+_ALONG_RAD = np.pi / 4
+"""Who is turned farther from the road does not drive along it."""
+
+_ROUND_RAD, _ROUND_M, _JUMP_RAD = np.radians(150.0), 60.0, np.radians(60.0)
+"""Who has turned round has turned by so much on so short a way, and never by the last in a step."""
+
+_ACROSS_RAD = np.radians(30.0)
+_LEAST_M = 2.0
+
+_DRIFT_M = 3.0
+"""Boxes of vehicles that stand drift by less: up to 2.5 m to and fro in Argoverse 2."""
+
+
+def manoeuvre_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of ego's manoeuvres, those of the names."""
+    return signals_by(_PASSES, context, names)
+
+
+def _reversing(context: DriveContext) -> SignalColumns:
+    """Whether ego moves against its heading; unknown where headings follow from places."""
+    heading = context.ego.heading[0]
+    forward = context.ego.vx[0] * np.cos(heading) + context.ego.vy[0] * np.sin(heading)
+    error, least = context.ego.speed_error[0], context.thresholds.standing_kmh / KMH
+    backs = forward < -least
+    unknown = np.abs(forward + least) < error
+    unknown |= backs & ~_for_long(context, backs)
+    if _jumps(heading) or (not backs.any() and not _tells_headings(context)):
+        unknown = np.ones_like(backs)
+    return SignalColumns({"reversing": backs}, unknown={"reversing": unknown})
+
+
+def _for_long(context: DriveContext, flags: Flags) -> Flags:
+    """Flags in runs over which ego moves farther than boxes of those who stand drift.
+
+    Where the file says that it stood meanwhile its box drifts however far.
+    """
+    states = context.ego.participants[0].states
+    found, edges = np.zeros_like(flags), np.flatnonzero(np.diff(flags, prepend=False, append=False))
+    x, y = context.ego.x[0], context.ego.y[0]
+    for first, end in edges.reshape(-1, 2).tolist():
+        moved = np.hypot(x[end - 1] - x[first], y[end - 1] - y[first])
+        steps = range(context.first_step + first, context.first_step + end)
+        stated = np.array([abs(states[step].speed) for step in steps if step in states])
+        drives = bool((stated * KMH >= context.thresholds.standing_kmh).any())
+        found[first:end] = drives and moved >= _DRIFT_M
+    return found
+
+
+def _jumps(heading: Floats) -> bool:
+    """True if a heading turns round from one state to the next, as a box that is taken amiss."""
+    steps = np.angle(np.exp(1j * np.diff(heading)))
+    return bool((np.abs(steps) > np.pi / 2).any())
+
+
+def _tells_headings(context: DriveContext) -> bool:
+    """False if ego's headings are no more than the directions in which it moved."""
+    if "arrivals" in context.recording.complete:
+        return True
+    x, y, heading = context.ego.x[0], context.ego.y[0], context.ego.heading[0]
+    steps = np.hypot(np.diff(x), np.diff(y))
+    moved = steps > context.tolerances.place_m
+    way = np.arctan2(np.diff(y), np.diff(x))[moved]
+    apart = [
+        np.abs(np.angle(np.exp(1j * (way - own[moved])))) for own in (heading[:-1], heading[1:])
+    ]
+    return bool((np.minimum(*apart) > _DERIVED_RAD).any())
+
+
+def _driving_side(context: DriveContext) -> SignalColumns:
+    """Whether ego is on the other half of a two-way road, along which it drives.
+
+    Beyond the far edge of the lanes of its direction; nowhere in junctions, nor beyond the map.
+    """
+    beyond, loose = _beyond_far_edge(context), _loose(context)
+    directions = context.surroundings.directions
+    one_way = own_lanelets(context).values(lambda lanelet: directions(lanelet)[0])
+    two_way = np.array([way is False for way in one_way], dtype=bool)
+    not_told = np.array([way is None for way in one_way], dtype=bool)
+    drives = _along_road(context) & ~_at_junctions(context) & _on_map(context)
+    there = drives & two_way & (beyond > loose)
+    perhaps = drives & (beyond > 0) & ((two_way & (beyond <= loose)) | not_told)
+    return SignalColumns(
+        {"driving_side": there.astype(int)},
+        unknown={"driving_side": perhaps},
+        texts={"driving_side": _SIDES},
+    )
+
+
+def _loose(context: DriveContext) -> Floats:
+    """How far (m) beyond a bound ego's middle may be and still be on its own side of it."""
+    error: Floats = context.tolerances.place_m + np.abs(context.map_offset_m)
+    return np.maximum(context.thresholds.changed_m, error)
+
+
+def _beyond_far_edge(context: DriveContext) -> Floats:
+    """How far (m) ego's middle is beyond the far edge of the lanes that lead its way."""
+    right, left = _beyond_edges(context)
+    return left if context.side == "right" else right
+
+
+def _beyond_near_edge(context: DriveContext) -> Floats:
+    right, left = _beyond_edges(context)
+    return right if context.side == "right" else left
+
+
+@once
+def _beyond_edges(context: DriveContext) -> tuple[Floats, Floats]:
+    lanes, own = context.existing_lanes, context.ego_extents
+    first, end = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
+    return -own.middle_from(first)[0], own.middle_from(end)[0]
+
+
+def _along_road(context: DriveContext) -> Flags:
+    drives = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
+    along: Flags = drives & (np.abs(context.ego_extents.turned[0]) <= _ALONG_RAD)
+    return along
+
+
+def _at_junctions(context: DriveContext) -> Flags:
+    """Flags of states in a junction, or so near that ego turns there already or still."""
+    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    near, reach = np.zeros(context.states, dtype=bool), context.thresholds.side_road_m
+    for start, end in context.road.junctions:
+        near |= (front >= start - reach) & (rear <= end + reach)
+    return near
+
+
+def _on_map(context: DriveContext) -> Flags:
+    middle, borders = context.ego_extents.s[0], context.road.borders
+    on_map: Flags = (middle >= borders[0]) & (middle <= borders[-1])
+    return on_map
+
+
+def _u_turn(context: DriveContext) -> SignalColumns:
+    """Whether ego turns round on a short way, while it is across; unknown where the map decides.
+
+    By the whole track: where it has turned round it is on another road. In a junction, and where
+    the road itself turns, that is none.
+    """
+    turns = _turning_round(context)
+    if turns.any():
+        leaves_road = np.abs(context.ego_extents.turned[0]) >= 2 * _ACROSS_RAD
+        turns &= bool((turns & leaves_road).any())
+        turns &= not _touches_junction(context, turns)
+        ring = context.surroundings.ring(context.side)
+        turns &= ~own_lanelets(context).flags(lambda lanelet: lanelet.id in ring)
+    return SignalColumns({"u_turn": turns})
+
+
+def _turning_round(context: DriveContext) -> Flags:
+    """Flags of states of the drive in which ego's heading is on its way round."""
+    tracks, row = context.surroundings.tracks, int(context.ego.rows[0])
+    columns = np.flatnonzero(tracks.present[row])
+    heading = np.unwrap(tracks.heading[row, columns])
+    flags = np.zeros(tracks.present.shape[1], dtype=bool)
+    if np.ptp(heading) >= _ROUND_RAD and np.abs(np.diff(heading)).max() < _JUMP_RAD:
+        x, y = tracks.x[row, columns], tracks.y[row, columns]
+        way = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
+        last = np.searchsorted(way, way + _ROUND_M, side="right")
+        for first, end in enumerate(last.tolist()):
+            turned = np.abs(heading[first:end] - heading[first])
+            if turned.max() >= _ROUND_RAD and way[end - 1] - way[first] >= _LEAST_M:
+                until = int((turned >= _ROUND_RAD).argmax())
+                across = turned[:until] >= _ACROSS_RAD
+                flags[columns[first : first + until][across]] = True
+    begins = context.first_step - tracks.first
+    return flags[begins : begins + context.states]
+
+
+def _touches_junction(context: DriveContext, states: Flags) -> bool:
+    places = shapely.points(context.ego.x[0, states], context.ego.y[0, states])
+    reach = context.thresholds.zone_m
+    return any(
+        bool(shapely.dwithin(junction.area, places, reach).any())
+        for junction in context.surroundings.passages.junctions
+    )
+
+
+def _joins_road(context: DriveContext) -> SignalColumns:
+    """Whether ego drives onto the road from where it stood beside it.
+
+    Of one that comes from beside the road at an angle, or is there when first seen, nobody knows
+    whether a road is there that the map leaves out.
+    """
+    outside = (_beyond_near_edge(context) > _loose(context)) & _on_map(context)
+    inside, joins = _beyond_near_edge(context) <= 0, np.zeros(context.states, dtype=bool)
+    perhaps = np.zeros(context.states, dtype=bool)
+    stands = outside & (context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
+    reach = round(context.thresholds.setting_off_s / context.recording.step_s)
+    for state in np.flatnonzero(inside[1:] & ~inside[:-1]).tolist():
+        (left,) = latest(inside[: state + 1])[-1:]
+        stood = int(latest(stands[: state + 1])[-1])
+        span = slice(max(stood, int(left), state - reach, -1) + 1, state + 2)
+        if outside[span].any() or stood >= 0:
+            (joins if stood > left and state - stood <= reach else perhaps)[span] = True
+    return SignalColumns({"joins_road": joins}, unknown={"joins_road": perhaps & ~joins})
+
+
+_PASSES: Passes = {
+    ("reversing",): _reversing,
+    ("driving_side",): _driving_side,
+    ("u_turn",): _u_turn,
+    ("joins_road",): _joins_road,
+}

@@ -1,0 +1,200 @@
+"""Signals of whether anything makes ego brake, stand or drive slowly, and whom it holds up.
+
+Reasons that nobody records, such as an animal, a defect or somebody to let out, cannot be excluded;
+those that can be seen are looked for as far ahead as ego might have to think of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.signals import relations
+from rulec.extraction.signals.map.map_signals import next_crossing
+from rulec.extraction.signals.measured_numbers import moves
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, next_state
+from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.scenario.recorded.reference_line import turn
+
+_REACH_S, _GENTLE_MPS2, _REACH_M = 3.0, 4.0, 20.0
+"""What makes ego brake is no farther ahead than it drives in so long, brakes so hard, and this."""
+
+_IN_WAY_M, _COMES_M, _ROAD_M, _CROSSES_M = 2.5, 6.0, 15.0, 30.0
+"""Sideways: who is in ego's way, may come into it, is on its road, comes on a road across."""
+
+_SIDEWAYS_MPS, _ACROSS_RAD, _BEND_RAD, _EVERY_M = 0.3, np.radians(30.0), np.radians(20.0), 10.0
+_SLOWER_KMH = 1.0
+_FAR_SLOWER, _SLOWER = 0.5, 0.75
+"""Parts of the limit: who is slower than the first holds others up, than the second perhaps."""
+
+
+def reason_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of reasons to brake and of holding up others, those of the names."""
+    return signals_by(_PASSES, context, names)
+
+
+def _cause_to_brake(context: DriveContext) -> SignalColumns:
+    caused, unknown = _causes(context)
+    return SignalColumns({"cause_to_brake": caused}, unknown={"cause_to_brake": unknown})
+
+
+@once
+def _causes(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of states with a reason to brake, stand or be slow, and of those perhaps with one.
+
+    Ego that stands has perhaps broken down, unless its hazard lights are known to be off; one that
+    stands soon, or whose drive ends, had perhaps something to do there. Where not all traffic is
+    recorded it is as far as somebody is recorded ahead.
+    """
+    caused = _by_map(context) | _by_others(context)
+    soon = round(context.thresholds.preparing_s / context.recording.step_s)
+    states = np.arange(context.states)
+    stands = ~moves(context)
+    perhaps = next_state(stands, context.states + soon) <= states + soon
+    perhaps &= ~(stands & _shows_no_hazard(context))
+    perhaps |= states + soon // 2 >= context.states
+    if "arrivals" not in context.recording.complete:
+        others = _others(context)
+        farther = (others.ahead > _reach(context)) & (np.abs(others.left) <= _ROAD_M)
+        perhaps |= ~farther.any(axis=0)
+    return caused, perhaps & ~caused
+
+
+def _shows_no_hazard(context: DriveContext) -> Flags:
+    (ego,) = context.ego.participants
+    steps = [ego.lamps.get(context.first_step + state) for state in range(context.states)]
+    told = "hazard_lights" in ego.shows
+    return np.array(
+        [told and x is not None and "hazard_lights" not in x for x in steps], dtype=bool
+    )
+
+
+def _reach(context: DriveContext) -> Floats:
+    speed = context.ego.speed[0]
+    reach: Floats = _REACH_S * speed + speed**2 / (2 * _GENTLE_MPS2) + _REACH_M
+    return reach
+
+
+def _by_map(context: DriveContext) -> Flags:
+    """Flags of states with a junction, crossing, bend, lower limit or an end of the lane ahead."""
+    road, front, reach = context.road, context.ego_extents.s_max[0], _reach(context)
+    rear, speed = context.ego_extents.s_min[0], context.ego.speed[0]
+    crossing, _ = next_crossing(context)
+    caused: Flags = crossing - front <= reach
+    for start, end in road.junctions:
+        caused |= (front >= start - reach) & (rear <= end)
+    # Beyond its map nobody knows the road
+    caused |= (front + reach > road.borders[-1]) | (rear < road.borders[0])
+    caused |= speed * KMH > context.limit_mps * KMH + _SLOWER_KMH
+    width = context.existing_lanes.shape[1]
+    lanes, turned = context.ego_lane, np.radians(context.thresholds.turned_deg)
+    before = road.line.headings_at(np.nan_to_num(context.ego_extents.s[0]))
+    for ahead in np.arange(0.0, float(np.nanmax(reach, initial=0.0)) + _EVERY_M, _EVERY_M).tolist():
+        counts, place = ahead <= reach, np.nan_to_num(front + ahead)
+        bends = np.abs(turn(before, road.line.headings_at(place))) > _BEND_RAD
+        there = road.lanes.existing_at(place)[np.arange(context.states), lanes]
+        caused |= counts & (bends | ~there)
+        codes, number = np.unique(road.piece(place) * width + lanes, return_inverse=True)
+        keys = [divmod(code, width) for code in codes.tolist()]
+        told = [road.limit_mps(piece, lane, turned) for piece, lane in keys]
+        limits = np.array([np.inf if limit is None else limit for limit in told])[number]
+        caused |= counts & ((limits < speed) | (limits < context.limit_mps))
+    return caused
+
+
+def _by_others(context: DriveContext) -> Flags:
+    """Flags of states with somebody ahead in ego's way, who comes into it, or drives across it."""
+    others, reach = _others(context), _reach(context)
+    near = (others.ahead > -_REACH_M / 4) & (others.ahead <= reach + _REACH_M)
+    away = np.abs(others.left)
+    comes = (away <= _COMES_M) & (-others.sideways * np.sign(others.left) > _SIDEWAYS_MPS)
+    angle = np.abs(others.turned)
+    across = (away <= _CROSSES_M) & (angle > _ACROSS_RAD) & (angle < np.pi - _ACROSS_RAD)
+    # Whom ego may not pass on the near side
+    to_far = others.left * (1 if context.side == "right" else -1)
+    slower = (angle < _ACROSS_RAD) & (others.along < context.ego.speed[0])
+    not_to_pass = slower & (to_far > 0) & (away <= _COMES_M)
+    behind = context.relevant & (relations.station(context) == relations.BEHIND)
+    same = context.touched[:, np.arange(context.states), context.ego_lane]
+    in_lane = behind & same & (relations.gap(context) <= reach)
+    in_way: Flags = near & ((away <= _IN_WAY_M) | comes | (across & others.moves) | not_to_pass)
+    found: Flags = in_way.any(axis=0) | in_lane.any(axis=0)
+    return found
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Others:
+    """Where others are, by row and state: ahead of ego and left of it (m), by its heading.
+
+    ``along`` and ``sideways`` are their speeds ahead and to its left (m/s), ``turned`` is their
+    heading from its own (rad).
+    """
+
+    ahead: Floats
+    left: Floats
+    along: Floats
+    sideways: Floats
+    turned: Floats
+    moves: Flags
+
+
+@once
+def _others(context: DriveContext) -> _Others:
+    """All others of the recording, also those that are not on ego's road."""
+    tracks, own = context.surroundings.tracks, context.ego
+    begins = context.first_step - tracks.first
+    columns = slice(begins, begins + context.states)
+    rows: Flags = np.any(tracks.present[:, columns], axis=1, keepdims=False)
+    rows[int(own.rows[0])] = False
+    x, y, heading, vx, vy = (
+        values[rows, columns]
+        for values in (tracks.x, tracks.y, tracks.heading, tracks.vx, tracks.vy)
+    )
+    cos, sin = np.cos(own.heading[0]), np.sin(own.heading[0])
+    x, y = x - own.x[0], y - own.y[0]
+    return _Others(
+        ahead=x * cos + y * sin,
+        left=y * cos - x * sin,
+        along=vx * cos + vy * sin,
+        sideways=vy * cos - vx * sin,
+        turned=np.angle(np.exp(1j * (heading - own.heading[0]))),
+        moves=np.hypot(vx, vy) * KMH >= context.thresholds.standing_kmh,
+    )
+
+
+def _impedes(context: DriveContext) -> SignalColumns:
+    """Whether somebody follows ego, far below the limit for long without a reason."""
+    limit, speed = context.limit_mps, context.ego.speed[0]
+    told = np.isfinite(limit)
+    followed = _followed(context)
+    caused, perhaps = _causes(context)
+    far_slower = told & (speed < _FAR_SLOWER * limit) & moves(context) & ~caused & ~perhaps
+    steps = round(context.thresholds.preparing_s / context.recording.step_s)
+    runs = np.arange(context.states) - np.maximum.accumulate(
+        np.where(far_slower, -1, np.arange(context.states))
+    )
+    impedes = followed & (runs > steps)
+    slower = ~told | (speed < _SLOWER * limit)
+    return SignalColumns(
+        {"impedes_traffic": impedes},
+        unknown={"impedes_traffic": followed & slower & ~caused & ~impedes},
+    )
+
+
+def _followed(context: DriveContext) -> Flags:
+    """Flags of states in which somebody is behind ego in its lane, near enough to be held up."""
+    station, speed = relations.station(context), context.extents.along
+    same = context.touched[:, np.arange(context.states), context.ego_lane]
+    behind = context.going_along & (station == relations.IN_FRONT_OF) & same
+    near = relations.gap(context) <= _REACH_S * np.maximum(speed, 0.0)
+    followed: Flags = (behind & near).any(axis=0)
+    return followed
+
+
+_PASSES: Passes = {
+    ("cause_to_brake",): _cause_to_brake,
+    ("impedes_traffic",): _impedes,
+}

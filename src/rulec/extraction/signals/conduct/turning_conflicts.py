@@ -1,0 +1,162 @@
+"""The signal of who goes straight on beside a turning ego, and is in conflict with it there.
+
+In the frame of the direction in which ego comes to the junction: ego's body is across the other
+one's line while it drives over it. That one is in conflict with ego if ego gets there first though
+the other one would be there, as fast as it was, less than ``yielding_s`` after ego has left, and
+does come less than ``held_up_s`` after it, as at junctions' crossing ways.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.map.conflicts import first_column
+from rulec.extraction.signals.map.priority_signals import own_passages
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.junction_passages import Passage
+from rulec.extraction.tracks.tracks import Floats
+
+_BEHIND_M, _ASIDE_M = 30.0, 8.0
+"""Who goes on beside ego is no farther behind it or aside when it begins to turn."""
+
+_BEFORE_M = 8.0
+_STRAIGHT_RAD = np.radians(30.0)
+_CREEPS_MPS = 0.5
+
+
+def turning_conflicts(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signal of conflicts with those beside a turning ego, if it is named."""
+    return signals_by(_PASSES, context, names)
+
+
+def _turns_in_way_of(context: DriveContext) -> SignalColumns:
+    met, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
+    least = np.radians(context.thresholds.turned_deg)
+    ring = context.surroundings.ring(context.side)
+    for passage in own_passages(context):
+        way = context.surroundings.passages.way(passage)
+        turned, at_ring = way.turned, (way.entries | way.exits | way.names) & ring
+        if least < abs(turned) < np.pi - least and not at_ring:
+            for row, whole in enumerate(context.tracks.rows.tolist()):
+                found = _conflict(context, passage, whole, np.sign(turned))
+                if found is not None:
+                    first, last, known = found
+                    (met if known and passage.sure else unsure)[row, first : last + 1] = True
+    return SignalColumns(about={"turns_in_way_of": met}, unknown={"turns_in_way_of": unsure & ~met})
+
+
+def _conflict(
+    context: DriveContext, own: Passage, row: int, towards: float
+) -> tuple[int, int, bool] | None:
+    """The states in which ego is in the way of a participant, and whether that is known.
+
+    ``towards``: 1 if ego turns left, -1 if right.
+    """
+    passages, shift = context.surroundings.passages, first_column(context)
+    tracks, step_s = passages.tracks, context.recording.step_s
+    place, limits = context.tolerances.place_m, context.thresholds
+    begin = max(own.first, shift)
+    if not tracks.present[row, begin] or "pedestrian" in tracks.participants[row].object_types:
+        return None
+    came = _came(context, own, begin)
+    origin = float(tracks.x[own.row, came]), float(tracks.y[own.row, came])
+    along, left = _in_frame(context, row, origin, own.heading)
+    angle = np.angle(np.exp(1j * (tracks.heading[row] - own.heading)))
+    # Clear of ego's way before it turned: who follows it is behind it
+    to_right, to_left = _clear(context, (own.row, came), (row, begin), origin, own.heading)
+    clear = to_left if towards > 0 else to_right
+    behind = float(_in_frame(context, own.row, origin, own.heading)[0][begin] - along[begin])
+    half = float(passages.lengths[own.row]) / 2
+    beside = place < clear <= _ASIDE_M and -half <= behind <= _BEHIND_M
+    if not beside or abs(float(angle[begin])) > _STRAIGHT_RAD:
+        return None
+    crosses = _crossed(context, own, begin, origin, float(left[begin]))
+    if crosses is None:
+        return None
+    enters, leaves, low, high = crosses
+    there = np.flatnonzero(tracks.present[row, begin:]) + begin
+    front = along + float(passages.lengths[row]) / 2
+    straight = np.abs(angle[there]) <= _STRAIGHT_RAD
+    if not straight.all() and not (along[there[~straight][0]] > high):
+        return None
+    arrived = there[front[there] >= low]
+    if len(arrived) and arrived[0] <= enters:
+        return None
+    speed = float(tracks.speed[row, begin])
+    if speed < _CREEPS_MPS:
+        return None
+    would = begin + max(low - float(front[begin]), 0.0) / speed / step_s
+    last = min(leaves - shift, context.states - 1)
+    if (would - leaves) * step_s >= limits.yielding_s:
+        return None
+    known = bool(len(arrived)) and leaves < tracks.present.shape[1] - 1
+    if known and (arrived[0] - leaves) * step_s >= limits.held_up_s:
+        return None
+    return max(enters - shift, 0), last, known
+
+
+def _came(context: DriveContext, own: Passage, begin: int) -> int:
+    """The column in which ego was so far before the junction that it did not turn yet."""
+    passages = context.surroundings.passages
+    way = passages.travelled[own.row]
+    there = np.flatnonzero(passages.tracks.present[own.row, : begin + 1])
+    before = there[way[begin] - way[there] >= _BEFORE_M]
+    return int(before[-1] if len(before) else there[0])
+
+
+def _clear(
+    context: DriveContext,
+    ego: tuple[int, int],
+    other: tuple[int, int],
+    origin: tuple[float, float],
+    heading: float,
+) -> tuple[float, float]:
+    """How far (m) another one is clear of ego to its right and left, each at a row and a column."""
+    tracks, ranges = context.surroundings.passages.tracks, []
+    for row, column in (ego, other):
+        corners = tracks.participants[row].outlines[column + tracks.first]
+        x, y = corners[:, 0] - origin[0], corners[:, 1] - origin[1]
+        left = y * np.cos(heading) - x * np.sin(heading)
+        ranges.append((float(left.min()), float(left.max())))
+    (low, high), (other_low, other_high) = ranges
+    return low - other_high, other_low - high
+
+
+def _crossed(
+    context: DriveContext, own: Passage, begin: int, origin: tuple[float, float], line: float
+) -> tuple[int, int, float, float] | None:
+    """From which column to which ego's body is across a line along its old way, and where (m)."""
+    tracks = context.surroundings.passages.tracks
+    cos, sin = np.cos(own.heading), np.sin(own.heading)
+    columns, lows, highs = [], [], []
+    outlines = tracks.participants[own.row].outlines
+    for column in np.flatnonzero(tracks.present[own.row, begin:]) + begin:
+        corners = outlines.get(int(column) + tracks.first)
+        if corners is None:
+            continue
+        x, y = corners[:, 0] - origin[0], corners[:, 1] - origin[1]
+        along, left = x * cos + y * sin, y * cos - x * sin
+        if left.min() <= line <= left.max():
+            columns.append(int(column))
+            lows.append(float(along.min()))
+            highs.append(float(along.max()))
+        elif columns:
+            break
+    if not columns:
+        return None
+    return columns[0], columns[-1], min(lows), max(highs)
+
+
+def _in_frame(
+    context: DriveContext, row: int, origin: tuple[float, float], heading: float
+) -> tuple[Floats, Floats]:
+    """How far (m) a participant is along a direction from a place, and to its left, by column."""
+    tracks = context.surroundings.passages.tracks
+    x, y = tracks.x[row] - origin[0], tracks.y[row] - origin[1]
+    cos, sin = np.cos(heading), np.sin(heading)
+    return x * cos + y * sin, y * cos - x * sin
+
+
+_PASSES: Passes = {("turns_in_way_of",): _turns_in_way_of}

@@ -1,0 +1,306 @@
+"""What ego does beyond following its lane, and whether anything makes it, on roads made by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
+from rulec.extraction.signals.conduct.reason_signals import reason_signals
+from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
+from rulec.extraction.signals.map.crossing_signals import crossing_signals
+from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.tracks.mirror import mirrored_recording
+from support.builders.drive_contexts import along, context_of, steady
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+SIMULATED = ("arrivals", "light", "YIELD")
+INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
+
+
+def told(group, word, road, *bodies, side="right", complete=(), route=("1",)):
+    """A word's first row, or its values, each as T or F, or ? where it is unknown."""
+    found = replace(recording(road, bodies), complete=frozenset(complete))
+    if side == "left":
+        found = mirrored_recording(found)
+    signals = group(context_of(found, route, side))
+    column = signals.values(word)
+    unknown = signals.unknown.get(word, np.zeros(column.shape, dtype=bool))
+    column, unknown = (x[0] if x.ndim == 2 else x for x in (column, unknown))
+    letters = {"True": "T", "False": "F", "own_side": "F", "oncoming_side": "T"}
+    return "".join(
+        "?" if dark else letters[str(value)] for value, dark in zip(column, unknown, strict=True)
+    )
+
+
+def two_way():
+    """Ego's lane along y = 0, and beside it one that leads the other way along y = 4."""
+    return [straight(1, 0, 300), lanelet(2, [(300, 4), (0, 4)])]
+
+
+def car(*places, **more):
+    return vehicle(7, dict(enumerate(places)), **more)
+
+
+def test_who_moves_against_its_heading_drives_backwards():
+    backs = car(*((100 - 2 * k, 0.0) for k in range(5)), speed=-4)
+    assert told(manoeuvre_signals, "reversing", two_way(), backs) == "TTTTT"
+    # 2 m in all, or what the file says has stood: a box drifts
+    drifts = car(*((100 - k / 2, 0.0) for k in range(5)), speed=-1)
+    assert told(manoeuvre_signals, "reversing", two_way(), drifts) == "?????"
+    stood = car(*((100 - 2 * k, 0.0) for k in range(5)), speed=0)
+    assert told(manoeuvre_signals, "reversing", two_way(), stood) == "?????"
+    # What counts is the mean over a second, which is 2 m/s backwards before it has begun
+    to_and_fro = car((100, 0), (102, 0), (104, 0), (104, 0), (102, 0), (100, 0), (98, 0), speed=4)
+    assert told(manoeuvre_signals, "reversing", two_way(), to_and_fro) == "FFFTTTT"
+
+
+def test_headings_that_are_made_of_places_never_tell_it():
+    on = steady(7, 50, 0)
+    assert told(manoeuvre_signals, "reversing", two_way(), on) == "????"
+    assert told(manoeuvre_signals, "reversing", two_way(), on, complete=SIMULATED) == "FFFF"
+    measured = car((50, 0), (55, 0.2), (60, 0.1), (65, 0))
+    assert told(manoeuvre_signals, "reversing", two_way(), measured) == "FFFF"
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize(
+    ("y", "expected"), [(0, "FFFF"), (1.9, "FFFF"), (2.1, "????"), (2.4, "TTTT"), (4, "TTTT")]
+)
+def test_whose_side_of_a_two_way_road(y, expected, side):
+    # The middle of the road is at y = 2 m, and a side has been left 0.3 m beyond it
+    ego = steady(7, 50, y)
+    assert told(manoeuvre_signals, "driving_side", two_way(), ego, side=side) == expected
+
+
+def test_sides_that_are_nobody_s():
+    # One way, not told, and where ego crosses the other half to somewhere
+    ego = steady(7, 50, 2.4)
+    alone = [straight(1, 0, 300)]
+    assert told(manoeuvre_signals, "driving_side", alone, ego, complete=SIMULATED) == "FFFF"
+    assert told(manoeuvre_signals, "driving_side", alone, ego) == "????"
+    off = car(*((50 + k, 1 + 2 * k) for k in range(4)), heading=np.arctan(2))
+    assert told(manoeuvre_signals, "driving_side", two_way(), off) == "FFFF"
+
+
+def test_the_other_side_of_a_junction_is_passed_by_who_turns():
+    road = [
+        straight(1, 0, 100, successors=(3,)),
+        lanelet(2, [(100, 4), (0, 4)]),
+        straight(3, 100, 120, predecessors=(1,), successors=(4,), **INSIDE),
+        straight(4, 120, 300, predecessors=(3,)),
+        lanelet(5, [(300, 4), (120, 4)]),
+    ]
+    ego = steady(7, 70, 3, steps=12)
+    found = told(manoeuvre_signals, "driving_side", road, ego, route=("1", "3", "4"))
+    # From 15 m before to 15 m behind it: fronts up to 85, rears from 135
+    assert found == "TTTFFFFFFFFF"
+
+
+def arc(x, y, radius, first, last, step=6):
+    angles = np.radians(np.arange(first, last + 1, step))
+    return [(x + radius * np.cos(a), y + radius * np.sin(a), a + np.pi / 2) for a in angles]
+
+
+def turning_round():
+    """From (20, 0) on to x = 50, round to y = 10 and back."""
+    there = [(20.0 + 3 * k, 0.0, 0.0) for k in range(10)]
+    back = [(47.0 - 3 * k, 10.0, np.pi) for k in range(10)]
+    poses = [*there, *arc(50, 5, 5, -90, 90), *back]
+    bodies = [vehicle(7, {k: (x, y)}, heading=way) for k, (x, y, way) in enumerate(poses)]
+    states = {k: body.states[k] for k, body in enumerate(bodies)}
+    outlines = {k: body.outlines[k] for k, body in enumerate(bodies)}
+    return replace(bodies[0], states=states, outlines=outlines)
+
+
+def test_who_turns_round_on_the_road():
+    found = told(manoeuvre_signals, "u_turn", [straight(1, 0, 300)], turning_round())
+    assert found[:10] == "F" * 10
+    # From 30° to 150° across, six degrees a state
+    assert found[16:34] == "T" * 18
+    assert found[-8:] == "F" * 8
+
+
+def test_who_turns_round_in_a_junction_or_where_the_road_does():
+    inside = [
+        straight(1, 0, 45, successors=(2,)),
+        straight(2, 45, 60, predecessors=(1,), successors=(3,), **INSIDE),
+        straight(3, 60, 300, predecessors=(2,)),
+        lanelet(4, [(52, -20), (52, 20)], **INSIDE),
+    ]
+    found = told(manoeuvre_signals, "u_turn", inside, turning_round(), route=("1", "2", "3"))
+    assert set(found) == {"F"}
+    line = [(x, y) for x, y, _ in [(0, 0, 0), *arc(50, 5, 5, -90, 90), (0, 10, 0)]]
+    assert set(told(manoeuvre_signals, "u_turn", [lanelet(1, line)], turning_round())) == {"F"}
+
+
+def beside_the_road(*more, waits=6):
+    """Ego stands 1 m off the lane, whose edge is at y = -2, and drives into it."""
+    return car(*([(50.0, -3.0)] * waits), (51, -2.7), (53, -2), (56, -1), (60, 0), *more)
+
+
+def test_who_sets_off_from_beside_the_road():
+    found = told(manoeuvre_signals, "joins_road", two_way(), beside_the_road((65, 0), (70, 0)))
+    # From when it moves until its middle is across the edge
+    assert found == "FFFFFTTTFFFF"
+    assert set(told(manoeuvre_signals, "joins_road", two_way(), steady(7, 50, 0))) == {"F"}
+    # It came from beside the road, perhaps from one that the map leaves out
+    comes = car((44, -8), (46, -6), (48, -4), (50, -2.5), (53, -1), (57, 0), (62, 0))
+    assert "?" in told(manoeuvre_signals, "joins_road", two_way(), comes)
+    assert "T" not in told(manoeuvre_signals, "joins_road", two_way(), comes)
+
+
+BRAKES = [
+    (50, 0),
+    (60, 0),
+    (69, 0),
+    (77, 0),
+    (84, 0),
+    (90, 0),
+    *((95 + 5 * k, 0) for k in range(60)),
+]
+LONG = [straight(1, 0, 900)]
+
+
+def cause(*others, road=LONG, complete=SIMULATED):
+    return told(reason_signals, "cause_to_brake", road, car(*BRAKES), *others, complete=complete)
+
+
+def test_nothing_makes_ego_brake():
+    assert cause()[:10] == "F" * 10
+    # What a file has not recorded may: nobody is recorded ahead, or somebody farther than that
+    assert cause(complete=("light",))[:10] == "?" * 10
+    seen = steady(8, 330, 0, 20, 70)
+    assert cause(seen, complete=("light",))[:10] == "F" * 10
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        steady(8, 90, 0, 8, 70),
+        vehicle(8, {k: (100, -15 + 2.0 * k) for k in range(15)}, "bicycle", heading=np.pi / 2),
+        vehicle(8, {k: (90 + 5.0 * k, 4 - 0.2 * k) for k in range(20)}),
+    ],
+    ids=["ahead", "across", "comes over"],
+)
+def test_somebody_makes_ego_brake(other):
+    assert cause(other)[1:4] == "TTT"
+
+
+def test_who_is_behind_or_stays_beside_makes_nobody_brake():
+    assert cause(steady(8, 20, 0, 15, 70), steady(9, 90, 4.5, 20, 70))[:10] == "F" * 10
+
+
+@pytest.mark.parametrize(
+    "road",
+    [
+        [straight(1, 0, 110, successors=(2,)), straight(2, 110, 900, predecessors=(1,), **INSIDE)],
+        [straight(1, 0, 130)],
+        [
+            straight(1, 0, 110, successors=(2,), limit_mps=30.0),
+            straight(2, 110, 900, predecessors=(1,), limit_mps=14.0),
+        ],
+        [lanelet(1, [(0, 0), (120, 0), (200, 60), (400, 400)])],
+    ],
+    ids=["a junction", "an end", "a lower limit", "a bend"],
+)
+def test_the_map_makes_ego_brake(road):
+    route = tuple(x.id for x in road)
+    found = told(
+        reason_signals, "cause_to_brake", road, car(*BRAKES), complete=SIMULATED, route=route
+    )
+    assert found[:6] == "TTTTTT"
+
+
+def test_who_holds_up_others():
+    road = [straight(1, 0, 2500, limit_mps=30.0)]
+    slow, follower = steady(7, 100, 0, 10, 100), steady(8, 85, 0, 10, 100)
+    found = told(reason_signals, "impedes_traffic", road, slow, follower, complete=SIMULATED)
+    # After ten seconds, of half a second each; how it goes on at the end nobody knows
+    assert found[:21] == "?" * 20 + "T"
+    assert found[40] == "T"
+    assert set(told(reason_signals, "impedes_traffic", road, slow, complete=SIMULATED)) == {"F"}
+    leader = steady(9, 115, 0, 10, 100)
+    queue = told(
+        reason_signals, "impedes_traffic", road, slow, follower, leader, complete=SIMULATED
+    )
+    assert set(queue) == {"F"}
+
+
+def crossroads():
+    turn = [(x, y) for x, y, _ in arc(100, -14, 14, 0, 90)][::-1]
+    return [
+        straight(1, 0, 100, successors=(2, 3)),
+        straight(2, 100, 120, predecessors=(1,), successors=(4,), **INSIDE),
+        lanelet(3, turn, predecessors=(1,), successors=(5,), **INSIDE),
+        straight(4, 120, 300, predecessors=(2,)),
+        lanelet(5, [(114, -14), (114, -200)], predecessors=(3,)),
+    ]
+
+
+def turns_before(start, mps, steps=40, kind="bicycle", y=-2.5):
+    """Ego turns right at 5 m/s, its middle at the junction at 4 s; a rider goes straight on."""
+    turn = [(x, y) for x, y, _ in arc(100, -14, 14, 0, 90)][::-1]
+    ego = along(7, np.array([(0, 0), *turn, (114, -200)]), 80 + 2.5 * np.arange(steps))
+    rider = vehicle(8, {k: (start + mps * k / 2, y) for k in range(steps)}, kind, length=2, width=1)
+    return told(
+        turning_conflicts, "turns_in_way_of", crossroads(), ego, rider, route=("1", "3", "5")
+    )
+
+
+def test_who_turns_across_the_way_of_a_rider_beside_it():
+    # The rider is 5 m behind ego's middle when ego gets to the junction, as fast as ego
+    assert "T" in turns_before(75, 5)
+    assert "?" not in turns_before(75, 5)
+
+
+@pytest.mark.parametrize(
+    ("start", "mps", "more"),
+    [
+        (40, 3, {}),
+        (95, 5, {}),
+        (75, 5, {"y": 3.0}),
+        (75, 5, {"kind": "pedestrian"}),
+        (75, 5, {"y": -1.2}),
+    ],
+    ids=["far behind", "ahead", "on the other side", "on foot", "behind it"],
+)
+def test_who_is_in_nobody_s_way_when_turning(start, mps, more):
+    assert set(turns_before(start, mps, **more)) == {"F"}
+
+
+def test_a_rider_who_is_lost_from_sight_before_it_gets_there():
+    found = turns_before(75, 5, steps=40)
+    assert found == turns_before(75, 5)
+    turn = [(x, y) for x, y, _ in arc(100, -14, 14, 0, 90)][::-1]
+    ego = along(7, np.array([(0, 0), *turn, (114, -200)]), 80 + 2.5 * np.arange(40))
+    rider = vehicle(8, {k: (75 + 2.5 * k, -2.5) for k in range(9)}, "bicycle", length=2, width=1)
+    lost = told(
+        turning_conflicts, "turns_in_way_of", crossroads(), ego, rider, route=("1", "3", "5")
+    )
+    assert "?" in lost
+    assert "T" not in lost
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize(("y", "expected"), [(-2.6, "T"), (-2.02, "?"), (-1.5, "F"), (1.5, "F")])
+def test_who_is_beside_the_road_is_on_its_shoulder(y, expected, side):
+    stands = steady(8, 80, y, speed=0)
+    found = told(participant_signals, "on_shoulder", two_way(), steady(7, 50, 0), stands, side=side)
+    assert set(found) == {expected}
+
+
+def test_who_waits_in_a_side_road_is_not_on_the_shoulder():
+    waits = steady(8, 80, -3, speed=0, heading=np.pi / 2)
+    found = told(participant_signals, "on_shoulder", two_way(), steady(7, 50, 0), waits)
+    assert set(found) == {"F"}
+
+
+def test_the_nearest_to_the_crossing():
+    zebra = lanelet(9, [(150, -5), (150, 5)], types=frozenset({"crosswalk"}))
+    road, ego = [*two_way(), zebra], steady(7, 80, 0)
+    near, far = steady(8, 125, 0, speed=5), steady(8, 115, 0, speed=5)
+    ahead = steady(9, 120, 0, speed=5)
+    nearest = "nearest_to_crossing"
+    assert told(crossing_signals, nearest, road, ego, near, ahead) == "TTTT"
+    assert told(crossing_signals, nearest, road, ego, far, ahead) == "FFFF"
