@@ -221,11 +221,21 @@ class RulebookVerbs(SessionSettings):
             spread,
         )
 
-    def audit(self, reference: str | Path, *, run_examples: bool = False) -> Audit:
+    def audit(
+        self,
+        reference: str | Path,
+        *,
+        run_examples: bool = False,
+        law: str | Path | None = None,
+        law_now: str | Path | None = None,
+    ) -> Audit:
         """Say what a rulebook rests on: citations, examples, certainty. Raises RulecError.
 
-        ``run_examples``: compile it, too, and find out which of its examples fail.
+        ``run_examples``: compile it, too, and find out which of its examples fail. ``law`` is a
+        file with the text of its law, in which what rules cite is looked for; ``law_now`` the same
+        law as it has become, where what rules rest on may have changed.
         """
+        from rulec.analysis.audit.law_text import read_law_text
         from rulec.analysis.audit.rulebook_audit import audit
         from rulec.analysis.lineage.book_lineage import read_with_lineage
 
@@ -233,7 +243,8 @@ class RulebookVerbs(SessionSettings):
         self._warn(loaded.warnings)
         outcomes = self.test(reference).outcomes if run_examples else ()
         failing = [(outcome.rule.name, outcome.name) for outcome in outcomes if not outcome.passed]
-        return audit(loaded.rulebook, inherited, failing)
+        texts = (None if path is None else read_law_text(Path(path)) for path in (law, law_now))
+        return audit(loaded.rulebook, inherited, failing, *texts)
 
     def audit_source(
         self, reference: str | Path, source: str | Path, where: RecordingSource | None = None

@@ -18,6 +18,11 @@ KINDS: Final = {
     "silent": "what the rulebook says nothing about",
     "dated": "in force for a time only",
     "out-of-force": "not in force on the day in question, and left out",
+    "to-do": "an article that no rule cites, and of which nothing is said",
+    "unlisted": "a rule cites an article that the rulebook does not list",
+    "not-found": "what a rule cites is not in the text of the law",
+    "unread": "what a rule cites names no article that could be looked for",
+    "law-changed": "the text of the law has changed where a rule rests on it",
     "unused": "a word that no rule speaks of",
 }
 """Kind of finding -> what it means."""

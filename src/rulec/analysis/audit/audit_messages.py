@@ -1,4 +1,4 @@
-"""Messages about saved audits."""
+"""Messages about saved audits, and texts of laws."""
 
 from __future__ import annotations
 
@@ -12,5 +12,17 @@ NOT_AN_AUDIT = Code(
     bad="echo '{}' > old.json\nrulec audit esterle2019 --compare old.json",
     good="rulec audit esterle2019 --output-format json > old.json\n"
     "rulec audit esterle2019 --compare old.json",
+    kind="command",
+)
+
+NO_ARTICLES = Code(
+    "R0714",
+    title="a law's text has no articles",
+    why="What rules cite is looked for in the text of their law, whose articles begin on lines of "
+    "their own: Markdown headings such as `### § 5 Overtaking`, or lines such as `Article 5`, each "
+    "behind an empty line.",
+    bad="echo 'Drive with care.' > act.md\nrulec audit de --law act.md",
+    good="printf '### § 5 Overtaking\\n\\n(1) Overtake on the left.\\n' > act.md\n"
+    "rulec audit de --law act.md",
     kind="command",
 )

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from rulec.analysis.audit.audit_kinds import KINDS
+from rulec.analysis.audit.law_check import check_cites
+from rulec.analysis.audit.law_text import LawText
+from rulec.analysis.audit.provision_coverage import ListedProvision, provisions_of, unlisted
 from rulec.analysis.lineage.book_lineage import HARDNESS
 from rulec.analysis.lineage.rule_lineage import BookLineage
 from rulec.logic.free_names import names_in
@@ -58,11 +61,21 @@ class AuditCounts:
     words: int = 0
     words_used: int = 0
     confirmed: int = 0
+    provisions_listed: int = 0
+    provisions_covered: int = 0
+    provisions_silent: int = 0
+    provisions_not_machine_readable: int = 0
+    cites_looked_for: int = 0
+    cites_found: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Audit(Rows):
-    """All findings about a rulebook by the law of the day ``at``."""
+    """All findings about a rulebook by the law of the day ``at``.
+
+    ``provisions`` are the articles that it lists; ``law_text`` names the file with its law's text
+    that its cites were looked for in, if there was one.
+    """
 
     __repr__ = short_repr
 
@@ -74,6 +87,8 @@ class Audit(Rows):
     counts: AuditCounts
     articles: tuple[CitedArticle, ...]
     findings: tuple[AuditFinding, ...]
+    provisions: tuple[ListedProvision, ...] = ()
+    law_text: str = ""
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a finding."""
@@ -89,12 +104,19 @@ class AuditChanges:
 
 
 def audit(
-    rulebook: Rulebook, inherited: BookLineage, failing: Sequence[tuple[str, str]] = ()
+    rulebook: Rulebook,
+    inherited: BookLineage,
+    failing: Sequence[tuple[str, str]] = (),
+    law: LawText | None = None,
+    law_now: LawText | None = None,
 ) -> Audit:
     """The audit of a rulebook, with what became of everything in its chain on the same day.
 
-    ``failing`` are the examples that fail, if they were run: rule and label or number.
+    ``failing`` are the examples that fail, if they were run: rule and label or number. ``law`` is
+    the text that cites are looked for in, ``law_now`` what it has become.
     """
+    provisions = provisions_of(rulebook)
+    checks = () if law is None else check_cites(rulebook, law, law_now)
     articles = articles_of(rulebook.rules, inherited)
     used = used_declarations(rulebook)
     words = tuple(rulebook.vocabulary.declarations)
@@ -114,6 +136,17 @@ def audit(
             for value in constant.settings
             if value.current and (value.since or value.until)
         ),
+        *(
+            AuditFinding("to-do", article.number, article.heading)
+            for article in provisions
+            if article.state == "to do"
+        ),
+        *(AuditFinding("unlisted", rule, place) for rule, place in unlisted(rulebook)),
+        *(
+            AuditFinding(check.result, check.rule, f"{check.place}: {check.note}")
+            for check in checks
+            if check.result != "found"
+        ),
         *(AuditFinding("unused", name) for name in words if name not in used),
     ]
     order = list(KINDS)
@@ -123,10 +156,24 @@ def audit(
         law=rulebook.law,
         as_of=rulebook.as_of,
         at=rulebook.at,
-        counts=_counts(rulebook, articles, sum(name in used for name in words)),
+        counts=replace(
+            _counts(rulebook, articles, sum(name in used for name in words)),
+            provisions_listed=len(provisions),
+            **{f"provisions_{name}": number for name, number in _states(provisions)},
+            cites_looked_for=sum(check.result != "unread" for check in checks),
+            cites_found=sum(check.result in ("found", "law-changed") for check in checks),
+        ),
         articles=articles,
         findings=tuple(sorted(findings, key=lambda finding: order.index(finding.kind))),
+        provisions=provisions,
+        law_text="" if law is None else law.name,
     )
+
+
+def _states(provisions: Sequence[ListedProvision]) -> Iterator[tuple[str, int]]:
+    for state in ("covered", "silent", "not machine-readable"):
+        number = sum(article.state == state for article in provisions)
+        yield state.replace(" ", "_").replace("-", "_"), number
 
 
 def audit_changes(now: Audit, before: Audit) -> AuditChanges:

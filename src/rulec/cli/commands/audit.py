@@ -45,6 +45,16 @@ if TYPE_CHECKING:
     help="Say which rules can be judged on what a recording tells, or files of a format, one of "
     "`rulec formats`, and which words the others lack.",
 )
+@click.option(
+    "--law",
+    type=click.Path(exists=True, dir_okay=False),
+    help="Look for what the rules of one RULEBOOK cite in the text of its law (Markdown or plain).",
+)
+@click.option(
+    "--law-now",
+    type=click.Path(exists=True, dir_okay=False),
+    help="With --law: name the rules that rest on what has changed since in this text.",
+)
 @recording_options
 @shared.at_option
 def command(
@@ -54,6 +64,8 @@ def command(
     run: bool,
     compare: str | None,
     source: str | None,
+    law: str | None,
+    law_now: str | None,
     at: str,
     **options: Any,
 ) -> int:
@@ -70,6 +82,10 @@ def command(
     from rulec.report.rulebooks.audit_report import render
 
     shared.only_sources(rulebooks, "cannot be audited")
+    if law_now is not None and law is None:
+        raise click.UsageError("--law-now needs --law, the text that it is compared with")
+    if law is not None and len(rulebooks) > 1:
+        raise click.UsageError("--law is the law of one rulebook; audit the others by themselves")
     where = recording_source(source or "", options)
     older = None
     if compare is not None:
@@ -81,7 +97,7 @@ def command(
     sources: list[SourceAudit] = []
     for rulebook in rulebooks:
         with errors_told():
-            done = open_session(at).audit(rulebook, run_examples=run)
+            done = open_session(at).audit(rulebook, run_examples=run, law=law, law_now=law_now)
             if source is not None:
                 sources.append(open_session(at).audit_source(rulebook, source, where))
             audits.append(done)

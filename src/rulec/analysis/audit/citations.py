@@ -1,0 +1,171 @@
+"""Which articles a rule's ``cite`` names: `§ 5(4) s. 2, 7a` is sentence 2 of § 5(4), and § 7a."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Final, Literal, TypeAlias
+
+ReferenceKind: TypeAlias = Literal["article", "annex", "sign"]
+
+PartKind: TypeAlias = Literal["mark", "sentence", "item"]
+"""`(4)`; `s. 2`, counted; `no. 2`, `lit. c`, `II`, as they stand at the beginning of a line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A place in a law: an article, an annex or a traffic sign, and the part of it that is meant.
+
+    ``label`` is the word before it. A ``number`` such as `20-22` may also mean several.
+    """
+
+    kind: ReferenceKind
+    number: str
+    parts: tuple[tuple[PartKind, str], ...] = ()
+    label: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.label}{self.number}{''.join(_shown(*part) for part in self.parts)}"
+
+    def several(self) -> tuple[Reference, ...]:
+        """The articles of a range such as `20-22`; itself alone if it is none."""
+        ends = re.fullmatch(r"(\d+)-(\d+)", self.number)
+        if ends is None or not 0 < int(ends[2]) - int(ends[1]) <= _LONGEST_RANGE:
+            return (self,)
+        numbers = map(str, range(int(ends[1]), int(ends[2]) + 1))
+        return tuple(Reference(self.kind, number, (), self.label) for number in numbers)
+
+
+_LONGEST_RANGE: Final = 50
+_MOST_PARTS: Final = 30
+"""A larger number behind `no. 2` is an article."""
+_LABELS: Final[dict[ReferenceKind, str]] = {
+    "article": r"§§?|[Aa]rt(?:ic(?:le|olo|ulo)|ikel|ículo)?s?\.?|[Rr](?:ule|egel)s?|rr?\."
+    r"|[Rr]eg(?:ulation)?s?\.?|ss?\.|[Ss]ec(?:tion)?s?\.?",
+    "annex": r"[Aa]nnexe?|[Aa]nlage|[Aa]ppendix|[Ss]chedule|[Bb]ijlage",
+    "sign": r"[Ss]igns?|Z(?:eichen)?",
+}
+_LABEL: Final = "|".join(f"(?P<{kind}>{words})" for kind, words in _LABELS.items())
+_NUMBER: Final = r"(?P<number>[A-Z]{0,3}[-.]?\d+[a-z]?(?![a-z])(?:[-.:]\d+[a-z]?(?![a-z]))*)"
+_HEAD: Final = re.compile(rf"(?:(?:{_LABEL})\s*)?{_NUMBER}")
+_SENTENCE: Final = r"(?:ss?\.|sentences?|Satz|Sätze|S\.)"
+_ITEM: Final = (
+    r"(?:nos?\.?|Nrn?\.?|Nummern?|lit\.?|letters?|Buchst\.?|items?|points?|p\.|pkt\.?|c\.|comma)"
+)
+_PART: Final = re.compile(
+    rf"\s*(?:\((?P<mark>\w{{1,4}})\)|(?:Abs\.?|Absatz|al\.)\s*(?P<paragraph>\d+[a-z]?)\b"
+    rf"|{_SENTENCE}\s*(?P<sentence>\d+)"
+    rf"|{_ITEM}\s*(?P<item>\d+(?:-(?:bis|ter|quater)\b)?|[a-z]\b)(?:\s?(?P<letter>[a-z])\b)?"
+    r"|(?P<roman>[IVX]+\b))"
+)
+_FURTHER: Final = re.compile(r"(?P<plain>\d+|[a-z]|[IVX]+)(?![\w(])")
+_BETWEEN: Final = re.compile(r"\s*(?:,|;|\band\b|\bund\b|\bet\b|&)\s*")
+_UP_TO: Final = re.compile(r"\s*[-–]\s*(?:\(\w{1,4}\)|\d+\b)")
+_YEAR: Final = re.compile(r"\s*\((?:19|20)\d\d\)")
+
+
+def _shown(kind: PartKind, name: str) -> str:
+    if kind == "mark":
+        return f"({name})"
+    if kind == "sentence":
+        return f" s. {name}"
+    return f" no. {name}" if name[0].isdigit() else name if name.islower() else f" {name}"
+
+
+def references_in(cite: str) -> tuple[tuple[Reference, ...], tuple[str, ...]]:
+    """The places that a ``cite`` names, in order, and what of it names none.
+
+    A number without a word before it is an article of the kind before; behind `s. 3`, `no. 2` or
+    `II` another of these: `§ 5(4) s. 3, 4` is two sentences, `§ 46(6), 47` two articles.
+    """
+    found: list[Reference] = []
+    unread: list[str] = []
+    kind: ReferenceKind | None = None
+    label = ""
+    for piece in filter(None, _BETWEEN.split(cite.strip())):
+        text = _YEAR.sub("", piece).strip()
+        further = _further(text, found)
+        if further is not None:
+            found.append(further)
+            continue
+        match = _HEAD.match(text)
+        labelled = match is not None and match.lastgroup is not None
+        if match is not None and labelled:
+            said = [name for name in _LABELS if match[name]]
+            kind, label = (said[0], f"{match[said[0]]} ") if said else (kind, label)
+        if match is None or (kind is None and not match.group(0)[:1].isalnum()):
+            unread.append(piece)
+            continue
+        parts, end = _parts(text, match.end())
+        if text[end:].strip():
+            unread.append(piece)
+            continue
+        of = kind or "article"
+        found.append(Reference(of, match["number"], parts, label))
+    return tuple(found), tuple(unread)
+
+
+def _further(text: str, found: list[Reference]) -> Reference | None:
+    """Another part of the article before: `(d)`, or a number behind `s. 3`."""
+    if not found:
+        return None
+    before = found[-1]
+    parts, end = _parts(text, 0)
+    if parts and end == len(text):
+        kinds = [kind for kind, _ in before.parts]
+        depth = max(0, len(before.parts) - len(parts))
+        if parts[0][0] != "mark" and parts[0][0] in kinds:
+            depth = kinds.index(parts[0][0])
+        if parts[0][0] != "mark" or before.parts:
+            whole = (*before.parts[:depth], *parts)
+            return replace(before, parts=whole)
+    match = _FURTHER.fullmatch(text)
+    far = match is not None and text.isdigit() and int(text) > _MOST_PARTS
+    if match and not far and before.parts and before.parts[-1][0] != "mark":
+        last = (before.parts[-1][0], text)
+        whole = (*before.parts[:-1], last)
+        return replace(before, parts=whole)
+    return None
+
+
+def _parts(text: str, start: int) -> tuple[tuple[tuple[PartKind, str], ...], int]:
+    parts: list[tuple[PartKind, str]] = []
+    while (match := _PART.match(text, start)) is not None:
+        start = match.end()
+        if match["mark"] or match["paragraph"]:
+            parts.append(("mark", match["mark"] or match["paragraph"]))
+        elif match["sentence"]:
+            parts.append(("sentence", match["sentence"]))
+        else:
+            parts.append(("item", match["item"] or match["roman"]))
+            if match["letter"]:
+                parts.append(("item", match["letter"]))
+        # Of `s. 2-3` and `(1)-(4)` the first is looked at.
+        if (more := _UP_TO.match(text, start)) is not None:
+            start = more.end()
+    if parts and (match := re.compile(r"\s+\d+\b").match(text, start)):
+        parts.append(("item", match[0].strip()))
+        start = match.end()
+    return tuple(parts), start
+
+
+def article_listed(number: str) -> Reference | None:
+    """The place that an entry of `provisions` names, None if its text is a name of its own."""
+    found, unread = references_in(number)
+    return found[0] if len(found) == 1 and not unread else None
+
+
+def covers(listed: Reference, cited: Reference) -> bool:
+    """Tell whether a listed article, or the part of one, has a cited place in it."""
+    same = (listed.kind, listed.number) == (cited.kind, cited.number)
+    return same and cited.parts[: len(listed.parts)] == listed.parts
+
+
+def each_reference(cite: str, known: frozenset[tuple[str, str]]) -> Iterator[Reference]:
+    """The places that a ``cite`` names; a range that is no article of a law, one by one."""
+    for reference in references_in(cite)[0]:
+        if (reference.kind, reference.number) in known:
+            yield reference
+        else:
+            yield from reference.several()

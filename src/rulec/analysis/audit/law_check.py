@@ -1,0 +1,84 @@
+"""A rulebook held against the text of its law, and against that text as it has become."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import zip_longest
+from typing import Literal
+
+from rulec.analysis.audit.citations import Reference, each_reference, references_in
+from rulec.analysis.audit.law_text import LawText
+from rulec.rulebook.rulebook_model import Rulebook
+
+CiteResult = Literal["found", "not-found", "unread", "law-changed"]
+
+
+@dataclass(frozen=True, slots=True)
+class CiteCheck:
+    """What was found of a place that a rule cites.
+
+    ``unread`` is what names no article, such as a custom or another law; ``law-changed`` is a place
+    whose text is another one now, or is gone. ``note`` says more.
+    """
+
+    rule: str
+    place: str
+    result: CiteResult
+    note: str = ""
+
+
+def check_cites(
+    rulebook: Rulebook, law: LawText, law_now: LawText | None = None
+) -> tuple[CiteCheck, ...]:
+    """Look up what the rules that are the rulebook's own law cite, in the order of the rules.
+
+    With ``law_now``, places whose text is not the same there, white space aside, have changed.
+    """
+    return tuple(
+        check
+        for rule in rulebook.rules
+        if not rule.inherited_from
+        for check in _of_rule(rule.name, rule.cite, law, law_now)
+    )
+
+
+def _of_rule(rule: str, cite: str, law: LawText, law_now: LawText | None) -> Iterator[CiteCheck]:
+    for reference in _looked_for(cite, law):
+        text, place = law.find(reference), str(reference)
+        if text is None:
+            yield CiteCheck(rule, place, "not-found", law.missing(reference))
+        elif law_now is None:
+            yield CiteCheck(rule, place, "found")
+        else:
+            now = law_now.find(reference)
+            if now is None:
+                yield CiteCheck(rule, place, "law-changed", law_now.missing(reference))
+            elif now != text:
+                yield CiteCheck(rule, place, "law-changed", _difference(text, now))
+            else:
+                yield CiteCheck(rule, place, "found")
+    for piece in references_in(cite)[1]:
+        yield CiteCheck(rule, piece, "unread", "it names no article to look for")
+
+
+def _looked_for(cite: str, law: LawText) -> Iterator[Reference]:
+    """The places that a ``cite`` names; an annex before signs only says where these stand."""
+    places = tuple(each_reference(cite, frozenset(law.articles)))
+    for place, following in zip_longest(places, places[1:]):
+        if place.kind != "annex" or following is None or following.kind != "sign":
+            yield place
+
+
+_SHOWN = 60
+"""So many characters of a change are shown, from where the texts part."""
+
+
+def _difference(before: str, after: str) -> str:
+    """The beginning of what is different, from a word's beginning on."""
+    pairs = zip(before, after, strict=False)
+    same = next((at for at, (one, other) in enumerate(pairs) if one != other), None)
+    start = min(len(before), len(after)) if same is None else same
+    start = before.rfind(" ", 0, start) + 1
+    was, now = (text[start : start + _SHOWN] for text in (before, after))
+    return f"was “{was}”, is “{now}”"

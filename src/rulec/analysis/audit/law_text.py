@@ -1,0 +1,178 @@
+"""The text of a law, plain or as Markdown, and the places of it that rules cite."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+from rulec.analysis.audit.audit_messages import NO_ARTICLES
+from rulec.analysis.audit.citations import PartKind, Reference, references_in
+from rulec.diagnostics import Source, SourceLocation
+from rulec.files import decoded, opened
+
+
+@dataclass(frozen=True, slots=True)
+class LawText:
+    """The articles and annexes of a law, by kind and number, each with its text."""
+
+    name: str
+    articles: Mapping[tuple[str, str], str]
+
+    def find(self, reference: Reference) -> str | None:
+        """The text of a place, white space aside; None where there is none.
+
+        A sign is looked for in the whole text, an article's paragraphs, items and sentences in
+        turn.
+        """
+        if reference.kind == "sign":
+            return self._sign(reference.number)
+        text = self.articles.get((reference.kind, reference.number))
+        for kind, name in reference.parts:
+            text = None if text is None else _part(text, kind, name)
+        return None if text is None else " ".join(text.split())
+
+    def missing(self, reference: Reference) -> str:
+        """Why a place is not found: the first part of it that is not there."""
+        if (reference.kind, reference.number) not in self.articles or reference.kind == "sign":
+            return f"{self.name} has no {replace(reference, parts=())}"
+        whole = replace(reference, parts=())
+        for length in range(1, len(reference.parts) + 1):
+            some = replace(reference, parts=reference.parts[:length])
+            if self.find(some) is None:
+                return f"{self.name} has {whole}, but no {some}"
+            whole = some
+        return ""
+
+    def _sign(self, number: str) -> str | None:
+        """What an entry on a sign says, up to the next sign's; or the part that mentions it."""
+        mention = rf"(?:[Zz]eichen|[Ss]igns?)[ \t]*{re.escape(number)}(?![\w-]|\.\d)"
+        for line in (rf"^\W*{mention}", mention):
+            for text in self.articles.values():
+                match = re.search(line, text, re.MULTILINE)
+                if match is not None:
+                    following = _ANY_SIGN.search(text, match.end())
+                    entry = text[match.start() : following.start() if following else None]
+                    # The next row of a table begins with its number.
+                    return " ".join(re.sub(r"[\s*|]+\d*[\s*|]*$", "", entry).split())
+        return None
+
+
+_ANY_SIGN: Final = re.compile(r"^\W*(?:[Zz]eichen|[Ss]ign)\s*\d+", re.MULTILINE)
+_MARKDOWN: Final = re.compile(r"^#{1,6}\s+(?P<head>.*)$", re.MULTILINE)
+_PLAIN: Final = re.compile(
+    r"^[ \t*_]*(?P<head>(?:§|[Aa]rt(?:ic(?:le|olo|ulo)|ikel|ículo)?\b\.?|[Ss]ection\b|[Ss]ec\.|"
+    r"[Rr](?:ule|egel)\b|[Rr]eg(?:ulation)?\b\.?|[Aa]nnexe?\b|[Aa]nlage\b|[Aa]ppendix\b|[Ss]chedule\b|"
+    r"(?=[A-Z]?\d+[\d.:-]*[a-z]?[.:]?[ \t]+[A-ZÄÖÜ]))[^\n]{0,200})$",
+    re.MULTILINE,
+)
+"""A line that begins as an article's heading does, in a text without marks for headings."""
+_CONTINUED: Final = re.compile(
+    r"\s*(?:(?:Abs|Absatz|Nr|Nummer|Satz|Buchst)\b|and\b|und\b|or\b|oder\b|,|;|\()"
+)
+
+
+def read_law_text(path: Path) -> LawText:
+    """Read a law's text. Raises RulecError: unreadable (R0701), or without articles (R0714)."""
+    with opened(path) as stream:
+        source = decoded(str(path), stream.read())
+    return law_text(source)
+
+
+def law_text(source: Source) -> LawText:
+    """The articles of a text by its headings. Raises RulecError R0714 if there are none."""
+    articles = dict(_articles(source.text))
+    if not articles:
+        raise NO_ARTICLES.error(
+            SourceLocation(source.name),
+            "no article was found in this text",
+            help="articles begin on lines such as `### § 5 Overtaking` or `Article 5`",
+        )
+    return LawText(Path(source.name).name, articles)
+
+
+def _articles(text: str) -> Iterator[tuple[tuple[str, str], str]]:
+    marked = [
+        (match.start(), match.end(), _named(match["head"])) for match in _MARKDOWN.finditer(text)
+    ]
+    heads = [head for head in marked if head[2] is not None]
+    if heads:
+        # Every heading ends the article before it, also one that begins none.
+        heads = marked
+    else:
+        plain = ((match.start(), match.end(), match["head"]) for match in _PLAIN.finditer(text))
+        heads = [
+            (start, end, named)
+            for start, end, head in plain
+            if (named := _named(head)) is not None and _after_blank(text, start)
+        ]
+    seen: set[tuple[str, str]] = set()
+    for number, (_, end, named) in enumerate(heads):
+        if named is None or named in seen:
+            continue
+        seen.add(named)
+        yield named, text[end : heads[number + 1][0] if number + 1 < len(heads) else None]
+
+
+def _named(head: str) -> tuple[str, str] | None:
+    """The article or annex that a heading begins with."""
+    plain = head.strip().strip("*_ ")
+    begins = re.match(
+        r"\S*?[§.]?\s*[A-Z]{0,3}\.?\d+[a-z]?(?:[-.:]\d+[a-z]?)*|\w+\.?\s+[A-Z]?\d+[a-z]?", plain
+    )
+    if begins is None or _CONTINUED.match(plain[begins.end() :]):
+        return None
+    found, _ = references_in(begins[0].rstrip(".:"))
+    one = found[0] if len(found) == 1 and not found[0].parts else None
+    return None if one is None or one.kind == "sign" else (one.kind, one.number)
+
+
+def _after_blank(text: str, start: int) -> bool:
+    return not text[:start].rstrip(" \t") or text[:start].rstrip(" \t").endswith("\n\n")
+
+
+def _part(text: str, kind: PartKind, name: str) -> str | None:
+    if kind == "sentence":
+        sentences = _sentences(text)
+        return sentences[int(name) - 1] if 0 < int(name) <= len(sentences) else None
+    own = _marker(kind, re.escape(name)).search(text)
+    if own is None:
+        return None
+    following = _marker(kind, _like(name)).search(text, own.end())
+    return text[own.end() : following.start() if following else None]
+
+
+def _like(name: str) -> str:
+    """The pattern of names of the same kind, at one of which the part ends."""
+    if name[0].isdigit():
+        return r"\d+(?:[a-z]|-[a-z]+)?"
+    return "[IVX]+" if name.isupper() else "[a-z]{1,2}"
+
+
+def _marker(kind: PartKind, name: str) -> re.Pattern[str]:
+    """`(4)` where a line begins; of an item `2.`, `2)`, `(2)` or `II.`."""
+    shape = rf"\((?:{name})\)" if kind == "mark" else rf"\(?(?:{name})(?:[.)°]|[ \t]*[-–—])"
+    return re.compile(rf"^[ \t*_-]*{shape}", re.MULTILINE)
+
+
+_SHORT: Final = re.compile(
+    r"(?:\b(?:Nr|Nrn|Abs|Art|Buchst|bzw|usw|vgl|ggf|no|nos|para|paras|al|lit|St|Dr|s|ss|[A-Z])|^\s*\d+[a-z]?)$",
+    re.MULTILINE,
+)
+"""What a full stop that ends no sentence stands behind: `Nr.`, `z. B.`, the number of an item."""
+_ONE_LETTER: Final = re.compile(r"\s+[A-Z]\.")
+_END: Final = re.compile(r"[.!?][)“\"»]?(?=\s+[A-ZÄÖÜÉÀ§(„“\"«]|\s*\Z)")
+
+
+def _sentences(text: str) -> list[str]:
+    body = re.sub(r"^[ \t]*\(\w{1,4}\)[ \t]*", "", text.lstrip("\n"))
+    sentences: list[str] = []
+    begin = 0
+    for match in _END.finditer(body):
+        short = _SHORT.search(body, begin, match.start()) or _ONE_LETTER.match(body, match.end())
+        if short is None or not body[match.end() :].strip():
+            sentences.append(body[begin : match.end()])
+            begin = match.end()
+    return [*sentences, *([body[begin:]] if body[begin:].strip() else [])]

@@ -1,0 +1,92 @@
+"""What has become of each article of a rulebook's law: the lawyer's progress bar."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from rulec.analysis.audit.citations import Reference, article_listed, covers, each_reference
+from rulec.rulebook.rulebook_model import Provision, Rule, Rulebook
+
+ProvisionState = Literal["covered", "silent", "not machine-readable", "to do"]
+
+
+@dataclass(frozen=True, slots=True)
+class ListedProvision:
+    """An article of the rulebook's law, and the rules that cite it.
+
+    It is ``covered`` if a rule does that is the rulebook's own law; else ``state`` is what the
+    rulebook says of it, ``because`` why.
+    """
+
+    number: str
+    heading: str
+    state: ProvisionState
+    rules: tuple[str, ...] = ()
+    because: str = ""
+    link: str = ""
+    as_of: str = ""
+
+
+def provisions_of(rulebook: Rulebook) -> tuple[ListedProvision, ...]:
+    """The articles that a rulebook lists, in their order."""
+    citing: dict[str, list[str]] = {}
+    listed = _listed(rulebook.provisions)
+    for rule in _own(rulebook):
+        for number in dict.fromkeys(_cited(rule, listed)):
+            citing.setdefault(number, []).append(rule.name)
+    return tuple(
+        ListedProvision(
+            article.number,
+            article.heading,
+            "covered" if article.number in citing else article.treatment,
+            tuple(citing.get(article.number, ())),
+            "" if article.number in citing else article.because,
+            link=article.link,
+            as_of=article.as_of,
+        )
+        for article in rulebook.provisions
+    )
+
+
+def unlisted(rulebook: Rulebook) -> Iterator[tuple[str, str]]:
+    """Rules and what they cite that no list has, if the rulebook lists articles at all."""
+    listed = _listed(rulebook.provisions)
+    articles = {reference.kind for _, reference in listed if reference is not None}
+    for rule in _own(rulebook) if listed else ():
+        if any(number in rule.cite for number, reference in listed if reference is None):
+            continue
+        for reference in each_reference(rule.cite, _known(listed)):
+            if reference.kind in articles and not _covering(reference, listed):
+                yield rule.name, str(reference)
+
+
+def _own(rulebook: Rulebook) -> list[Rule]:
+    return [rule for rule in rulebook.rules if not rule.inherited_from]
+
+
+Listed = Sequence[tuple[str, Reference | None]]
+"""The articles as listed, with what their texts name; None for a name of its own."""
+
+
+def _listed(provisions: Sequence[Provision]) -> Listed:
+    return [(article.number, article_listed(article.number)) for article in provisions]
+
+
+def _known(listed: Listed) -> frozenset[tuple[str, str]]:
+    return frozenset((one.kind, one.number) for _, one in listed if one is not None)
+
+
+def _cited(rule: Rule, listed: Listed) -> Iterator[str]:
+    yield from (number for number, reference in listed if reference is None and number in rule.cite)
+    for reference in each_reference(rule.cite, _known(listed)):
+        yield from _covering(reference, listed)[:1]
+
+
+def _covering(cited: Reference, listed: Listed) -> list[str]:
+    """The listed articles that a cited place is in, the closest first."""
+    fitting = [
+        (len(one.parts), number) for number, one in listed if one is not None and covers(one, cited)
+    ]
+    return [number for _, number in sorted(fitting, key=lambda entry: -entry[0])]
