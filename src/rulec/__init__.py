@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
 
+    from rulec.analysis.audit.provision_coverage import ListedProvision as ListedProvision
     from rulec.analysis.audit.rulebook_audit import Audit as Audit
     from rulec.analysis.audit.rulebook_audit import AuditCounts as AuditCounts
     from rulec.analysis.audit.rulebook_audit import AuditFinding as AuditFinding
@@ -127,6 +128,7 @@ if TYPE_CHECKING:
     from rulec.vocabulary.partial_values import Interval as Interval
 
 _HOME = {
+    "rulec.analysis.audit.provision_coverage": "ListedProvision",
     "rulec.analysis.audit.rulebook_audit": "Audit AuditCounts AuditFinding CitedArticle",
     "rulec.analysis.audit.source_audit": "RuleBasis SourceAudit",
     "rulec.analysis.diff.rule_comparison": "RuleComparison",

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.analysis.audit.audit_kinds import KINDS
+from rulec.analysis.audit.law_text import law_text
 from rulec.analysis.audit.rulebook_audit import (
     Audit,
     AuditCounts,
@@ -19,6 +20,7 @@ from rulec.analysis.audit.rulebook_audit import (
 )
 from rulec.analysis.lineage.book_lineage import book_lineage_of
 from rulec.analysis.lineage.rule_lineage import BookHeader, BookLineage, LineageStep, RuleHistory
+from rulec.diagnostics import Source
 from rulec.logic.formula import Constant
 from rulec.rulebook.loader import read_rulebook
 from rulec.rulebook.rulebook_model import Rule
@@ -30,9 +32,9 @@ def path(tmp_path_factory):
     return island.write(tmp_path_factory.mktemp("books"))
 
 
-def audited(path, at, failing=()):
+def audited(path, at, failing=(), **laws):
     loaded = read_rulebook(path, at=at)
-    return audit(loaded.rulebook, book_lineage_of(loaded.books, at), failing)
+    return audit(loaded.rulebook, book_lineage_of(loaded.books, at), failing, **laws)
 
 
 def found(one, kind):
@@ -62,11 +64,22 @@ def found(one, kind):
         ("silent", [("left_open", "nobody knows"), ("parking", "left to the villages")]),
         ("dated", [("own", "in force from 2024-06-01")]),
         ("out-of-force", [("expired", "in force until 2000-01-01")]),
+        ("to-do", [("§ 12", "Fees")]),
+        ("unlisted", [("agreed", "§ 11")]),
+        ("not-found", [("agreed", "§ 11: act.md has no § 11")]),
+        ("unread", [("agreed", "custom: it names no article to look for")]),
+        ("law-changed", [("changed", "§ 10a: was “slow.”, is “slower.”")]),
         ("unused", [("unused_word", "")]),
     ],
 )
 def test_every_kind(path, kind, expected):
-    assert found(audited(path, "2024-06-01", [("own", "1")]), kind) == expected
+    law, law_now = (
+        law_text(Source("act.md", f"### § 10a Slowness\n\nBe {how}.\n"))
+        for how in ("slow", "slower")
+    )
+    one = audited(path, "2024-06-01", [("own", "1")], law=law, law_now=law_now)
+    assert found(one, kind) == expected
+    assert (one.counts.cites_found, one.counts.cites_looked_for) == (1, 2)
 
 
 def test_every_kind_is_tested():
@@ -84,7 +97,7 @@ def test_what_is_there(path):
     # The nearest law first, in each the smallest number.
     assert one.articles == (
         CitedArticle("island", "§ 10a", ("changed",)),
-        CitedArticle("island", "§ 11", ("agreed",)),
+        CitedArticle("island", "§ 11, custom", ("agreed",)),
         CitedArticle("mainland", "§ 2", ("softer",)),
         CitedArticle("mainland", "§ 9", ("kept",)),
     )

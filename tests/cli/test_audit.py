@@ -88,6 +88,37 @@ def test_an_example_that_fails(folder, capsys):
     assert "failing: an example comes out otherwise than it says\n  changed  example 1\n" in out
 
 
+def test_a_law_s_text_that_has_changed_since(folder, capsys):
+    for name, how in (("old.md", "slow"), ("new.md", "slower")):
+        text = f"### § 10a Slowness\n\nBe {how}.\n\n### § 11 Horns\n\nBe quiet.\n"
+        (folder / name).write_text(text, encoding="utf-8")
+    laws = ("--law", "old.md", "--law-now", "new.md", "--fail-on", "law-changed")
+    status, out, _ = run(capsys, "island.rules", *laws)
+    assert status == 1
+    assert "\n  cites found in old.md            2 of 2\n" in out
+    assert "\n  articles dealt with              50 % ██████████░░░░░░░░░░ 1 of 2: " in out
+    assert "\n  § 10a  Slowness: covered by changed\n  § 12   Fees: to do\n" in out
+    assert run(capsys, "island.rules", "--law", "old.md", *laws[4:])[0] == 0
+    data = json.loads(run(capsys, "island.rules", *laws, "--output-format", "json")[1])["audits"][0]
+    assert (data["law_text"], data["counts"]["cites_found"]) == ("old.md", 2)
+    assert [article["state"] for article in data["provisions"]] == ["covered", "to do"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "why"),
+    [
+        (["island.rules", "--law-now", "odd.md"], "--law-now needs --law"),
+        (["island.rules", "clean.rules", "--law", "odd.md"], "--law is the law of one rulebook"),
+        (["island.rules", "--law", "odd.md"], "no article was found in this text"),
+    ],
+)
+def test_laws_that_cannot_be_looked_into(folder, capsys, arguments, why):
+    (folder / "odd.md").write_text("Drive with care.\n")
+    status, _, err = run(capsys, *arguments)
+    assert status == 2
+    assert why in err
+
+
 def test_markdown_is_a_table(folder, capsys):
     (folder / "odd.rules").write_text(
         CLEAN.replace("§ 1", "a|b *c*").replace("verified", "secondary")

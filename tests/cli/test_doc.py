@@ -94,11 +94,17 @@ def test_inherited_and_softened(page):
 
 
 def test_confirmed(page):
-    agreed = section(page, "### agreed (§ 11)")
-    assert "\n- **Provision:** § 11\n" in agreed
+    agreed = section(page, "### agreed (§ 11, custom)")
+    assert "\n- **Provision:** § 11, custom\n" in agreed
     assert "\n- **Certainty:** ✔ verified in the law itself\n" in agreed
     assert "\n- **Origin:** confirms mainland: cite, source, certainty, examples\n" in agreed
     assert '-cite "§ 3"\n' in agreed
+
+
+def test_the_articles_of_its_law(page):
+    articles = section(page, "## Articles of the law")
+    assert "Dealt with: 50 % ██████████░░░░░░░░░░ 1 of 2: 1 covered, 0 silent, " in articles
+    assert "\n| § 10a | Slowness | covered by changed |\n| § 12 | Fees | to do |\n" in articles
 
 
 def test_exceptions_are_said_one_by_one(folder, capsys):

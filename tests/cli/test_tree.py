@@ -124,12 +124,13 @@ def test_json(folder, capsys):
         "name": "taken_out",
         "gone": True,
         "steps": [
-            {"book": "mainland", "deed": "declared", "clauses": [], "because": ""},
+            {"book": "mainland", "deed": "declared", "clauses": [], "because": "", "lost": []},
             {
                 "book": "island",
                 "deed": "dropped",
                 "clauses": [],
                 "because": "there are no sirens",
+                "lost": [],
             },
         ],
         "inherited_from": "",

@@ -46,6 +46,8 @@ extends mainland
 title "Rules of the island"
 law "Island Act" as of 2024-01-01
 
+provisions "https://example.org/island" { "§ 10a" "Slowness"; "§ 12" "Fees" }
+
 set pace = 20 km/h
 redefine slow = speed < pace
 
@@ -55,7 +57,7 @@ override rule changed {
   require always[<= 3 s] slow
 }
 
-confirm rule agreed { cite "§ 11" source "the Act" certainty verified accept { not horn } }
+confirm rule agreed { cite "§ 11, custom" source "the Act" certainty verified accept { not horn } }
 soften rule softer weight 2 because "only recommended"
 drop rule taken_out because "there are no sirens"
 silent on left_open because "nobody knows"

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeAlias
 
 from rulec.analysis.audit.audit_messages import NO_ARTICLES
 from rulec.analysis.audit.citations import PartKind, Reference, references_in
@@ -62,13 +62,17 @@ class LawText:
 
 _ANY_SIGN: Final = re.compile(r"^\W*(?:[Zz]eichen|[Ss]ign)\s*\d+", re.MULTILINE)
 _MARKDOWN: Final = re.compile(r"^#{1,6}\s+(?P<head>.*)$", re.MULTILINE)
-_PLAIN: Final = re.compile(
+_LABELLED: Final = re.compile(
     r"^[ \t*_]*(?P<head>(?:§|[Aa]rt(?:ic(?:le|olo|ulo)|ikel|ículo)?\b\.?|[Ss]ection\b|[Ss]ec\.|"
-    r"[Rr](?:ule|egel)\b|[Rr]eg(?:ulation)?\b\.?|[Aa]nnexe?\b|[Aa]nlage\b|[Aa]ppendix\b|[Ss]chedule\b|"
-    r"(?=[A-Z]?\d+[\d.:-]*[a-z]?[.:]?[ \t]+[A-ZÄÖÜ]))[^\n]{0,200})$",
+    r"[Rr](?:ule|egel)\b|[Rr]eg(?:ulation)?\b\.?|[Aa]nnexe?\b|[Aa]nlage\b|[Aa]ppendix\b|"
+    r"[Ss]chedule\b)[^\n]{0,200})$",
     re.MULTILINE,
 )
 """A line that begins as an article's heading does, in a text without marks for headings."""
+_NUMBERED: Final = re.compile(
+    r"^[ \t*_]*(?P<head>[A-Z]?\d+[\d.:-]*[a-z]?[.:]?[ \t]+[A-ZÄÖÜ][^\n]{0,200})$", re.MULTILINE
+)
+"""The same where articles have only numbers."""
 _CONTINUED: Final = re.compile(
     r"\s*(?:(?:Abs|Absatz|Nr|Nummer|Satz|Buchst)\b|and\b|und\b|or\b|oder\b|,|;|\()"
 )
@@ -97,23 +101,28 @@ def _articles(text: str) -> Iterator[tuple[tuple[str, str], str]]:
     marked = [
         (match.start(), match.end(), _named(match["head"])) for match in _MARKDOWN.finditer(text)
     ]
-    heads = [head for head in marked if head[2] is not None]
-    if heads:
-        # Every heading ends the article before it, also one that begins none.
-        heads = marked
-    else:
-        plain = ((match.start(), match.end(), match["head"]) for match in _PLAIN.finditer(text))
-        heads = [
-            (start, end, named)
-            for start, end, head in plain
-            if (named := _named(head)) is not None and _after_blank(text, start)
-        ]
+    # Every marked heading ends the article before it, also one that begins none.
+    heads = marked if any(named for _, _, named in marked) else []
+    heads = heads or _plain_heads(text, _LABELLED) or _plain_heads(text, _NUMBERED)
     seen: set[tuple[str, str]] = set()
     for number, (_, end, named) in enumerate(heads):
         if named is None or named in seen:
             continue
         seen.add(named)
         yield named, text[end : heads[number + 1][0] if number + 1 < len(heads) else None]
+
+
+_Head: TypeAlias = "tuple[int, int, tuple[str, str] | None]"
+"""Where a heading begins and ends, and the article that it names."""
+
+
+def _plain_heads(text: str, shape: re.Pattern[str]) -> list[_Head]:
+    found = ((match.start(), match.end(), match["head"]) for match in shape.finditer(text))
+    return [
+        (start, end, named)
+        for start, end, head in found
+        if (named := _named(head)) is not None and _after_blank(text, start)
+    ]
 
 
 def _named(head: str) -> tuple[str, str] | None:

@@ -61,10 +61,6 @@ class AuditCounts:
     words: int = 0
     words_used: int = 0
     confirmed: int = 0
-    provisions_listed: int = 0
-    provisions_covered: int = 0
-    provisions_silent: int = 0
-    provisions_not_machine_readable: int = 0
     cites_looked_for: int = 0
     cites_found: int = 0
 
@@ -158,8 +154,6 @@ def audit(
         at=rulebook.at,
         counts=replace(
             _counts(rulebook, articles, sum(name in used for name in words)),
-            provisions_listed=len(provisions),
-            **{f"provisions_{name}": number for name, number in _states(provisions)},
             cites_looked_for=sum(check.result != "unread" for check in checks),
             cites_found=sum(check.result in ("found", "law-changed") for check in checks),
         ),
@@ -168,12 +162,6 @@ def audit(
         provisions=provisions,
         law_text="" if law is None else law.name,
     )
-
-
-def _states(provisions: Sequence[ListedProvision]) -> Iterator[tuple[str, int]]:
-    for state in ("covered", "silent", "not machine-readable"):
-        number = sum(article.state == state for article in provisions)
-        yield state.replace(" ", "_").replace("-", "_"), number
 
 
 def audit_changes(now: Audit, before: Audit) -> AuditChanges:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import groupby
 from textwrap import fill
+from typing import get_args
 
 from rulec.analysis.audit.audit_kinds import KINDS
-from rulec.analysis.audit.rulebook_audit import Audit, AuditChanges, AuditCounts, AuditFinding
+from rulec.analysis.audit.provision_coverage import ListedProvision, ProvisionState
+from rulec.analysis.audit.rulebook_audit import Audit, AuditChanges, AuditFinding
 from rulec.analysis.audit.source_audit import SourceAudit
 from rulec.report.json_document import JsonDocument, as_indented
 from rulec.report.rulebooks import source_report
@@ -72,36 +75,38 @@ def counts(audit: Audit) -> Iterator[tuple[str, str]]:
     yield "verified in the law itself", f"{n.verified:,} of {n.confirmed:,}"
     yield "examples", f"{n.examples:,}"
     yield "provisions of the law", f"{n.articles:,}"
-    if n.provisions_listed:
-        yield "articles dealt with", _progress(n)
+    if audit.provisions:
+        yield "articles dealt with", progress(audit.provisions)
     if audit.law_text:
         yield f"cites found in {audit.law_text}", f"{n.cites_found:,} of {n.cites_looked_for:,}"
     yield "words of the vocabulary in use", f"{n.words_used:,} of {n.words:,}"
 
 
-def _progress(n: AuditCounts) -> str:
+def progress(provisions: Sequence[ListedProvision]) -> str:
     """How much of the listed articles is dealt with, in percent, as a bar, and how."""
-    done = n.provisions_covered + n.provisions_silent + n.provisions_not_machine_readable
-    filled = _BAR * done // n.provisions_listed
+    states = Counter(article.state for article in provisions)
+    done = len(provisions) - states["to do"]
+    filled = _BAR * done // len(provisions)
     bar = "█" * filled + "░" * (_BAR - filled)
-    return (
-        f"{100 * done // n.provisions_listed} % {bar} {done:,} of {n.provisions_listed:,}: "
-        f"{n.provisions_covered:,} covered, {n.provisions_silent:,} silent, "
-        f"{n.provisions_not_machine_readable:,} not machine-readable, "
-        f"{n.provisions_listed - done:,} to do"
-    )
+    numbers = ", ".join(f"{states[state]:,} {state}" for state in get_args(ProvisionState))
+    return f"{100 * done // len(provisions)} % {bar} {done:,} of {len(provisions):,}: {numbers}"
 
 
 _BAR = 20
 """Characters of a progress bar."""
 
 
-def provision_rows(audit: Audit) -> Iterator[tuple[str, str]]:
-    """Each listed article with its heading, and what has become of it."""
-    for article in audit.provisions:
-        rules = f": {', '.join(article.rules)}" if article.rules else ""
-        because = f", because {article.because}" if article.because else ""
-        yield f"{article.number} {article.heading}", f"{article.state}{rules}{because}"
+def provision_row(article: ListedProvision) -> tuple[str, str, str]:
+    """Number, heading, and what has become of a listed article."""
+    rules = f" by {', '.join(article.rules)}" if article.rules else ""
+    because = f", because {article.because}" if article.because else ""
+    return article.number, article.heading, f"{article.state}{rules}{because}"
+
+
+def provision_table(provisions: Sequence[ListedProvision]) -> str:
+    """The listed articles as a Markdown table."""
+    rows = [[*map(escaped, provision_row(article))] for article in provisions]
+    return table(["article", "heading", "what has become of it"], rows)
 
 
 def law_of(audit: Audit) -> str:
@@ -120,7 +125,11 @@ def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
         blocks.append(f"{title}\n{_lines(list(findings), width)}")
     if audit.provisions:
         title = f"{styled('articles', 'bold')} of the law, and the rules that rest on them"
-        blocks.append("\n".join([title, *fact_lines(list(provision_rows(audit)), width)]))
+        rows = [
+            (number, f"{heading}: {state}")
+            for number, heading, state in map(provision_row, audit.provisions)
+        ]
+        blocks.append("\n".join([title, *fact_lines(rows, width)]))
     for book, articles in groupby(audit.articles, key=lambda article: article.book):
         title = f"{styled('provisions', 'bold')} cited in {book}, and the rules they are in"
         rows = [(article.cite, ", ".join(article.rules)) for article in articles]
@@ -166,8 +175,7 @@ def _as_markdown(audit: Audit, compared: AuditChanges | None) -> str:
         kinds = dict.fromkeys(kind for kind, _, _ in findings)
         blocks.append("\n".join(f"- *{kind}*: {KINDS[kind]}" for kind in kinds))
     if audit.provisions:
-        listed = [[escaped(name), escaped(state)] for name, state in provision_rows(audit)]
-        blocks += ["## Articles of the law", table(["article", "state"], listed)]
+        blocks += ["## Articles of the law", provision_table(audit.provisions)]
     if audit.articles:
         rows = [
             [escaped(article.cite), code(article.book), ", ".join(map(code, article.rules))]

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import groupby
 
+from rulec.analysis.audit.provision_coverage import provisions_of
 from rulec.analysis.audit.rulebook_audit import articles_of, used_declarations
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
 from rulec.logic.english.wording import listed, spoken
 from rulec.logic.printing import formula_text
+from rulec.report.rulebooks.audit_report import progress, provision_table
 from rulec.report.rulebooks.book_rule import WIDTH, rule_heading, rule_section
 from rulec.report.text import markdown
 from rulec.report.text.formula_lines import formula_lines
-from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, table
+from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
 from rulec.rulebook.loader import Loaded
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.overlay.rulebook_overlay import in_force
@@ -96,6 +98,18 @@ def _body(loaded: Loaded, inherited: BookLineage) -> Iterator[Block]:
     yield from _definitions_section(inherited)
     yield from _left_out_section(inherited, rulebook.at)
     yield from _words_section(loaded)
+    yield from _articles_section(rulebook)
+
+
+def _articles_section(rulebook: Rulebook) -> Iterator[Block]:
+    provisions = provisions_of(rulebook)
+    if provisions:
+        yield Heading(2, "Articles of the law")
+        pages = dict.fromkeys((article.link, article.as_of) for article in provisions)
+        for link, as_of in pages:
+            yield linked(f"{link} , as of {as_of}" if as_of else link)
+        yield f"Dealt with: {progress(provisions)}."
+        yield provision_table(provisions)
 
 
 def _index(

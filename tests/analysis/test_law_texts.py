@@ -1,0 +1,183 @@
+"""What rules cite, looked for in a law's text, in two states of it, and among listed articles."""
+
+import pytest
+
+from rulec.analysis.audit.citations import references_in
+from rulec.analysis.audit.law_check import check_cites
+from rulec.analysis.audit.law_text import law_text
+from rulec.analysis.audit.provision_coverage import provisions_of, unlisted
+from rulec.diagnostics import RulecError, Source
+from rulec.rulebook.loader import parse_rulebook
+
+MARKDOWN = """\
+# Road Traffic Act
+
+## Part I
+
+### § 4 Distance
+
+(1) Keep a distance. Brake not without need, z. B. Birds.
+
+### § 5 Overtaking
+
+(1) Overtake on the left.
+
+(2) Overtake if
+
+1.  you can see,
+
+2.  you are
+
+    a)  faster by 20 km/h. That is little.
+
+    b)  alone.
+
+(2a) Keep 1.5 m away. Lorries keep 2 m.
+
+### § 5a Zones
+
+Zones are signed, see § 5 paragraph 1.
+
+### Final words
+
+These are not of § 5a.
+
+### Annex 2 Signs
+
+    *   Sign 205
+
+    *   Give way.
+
+*   *   4
+
+    *   Sign 206
+
+    *   Stop. Sign 205 may announce it.
+"""
+
+PLAIN = """\
+Article 4
+Distance
+
+1. Keep a distance.
+
+Article 5. Overtaking
+
+I. Overtake on the left.
+
+II. Not at
+Article 4 crossings.
+"""
+
+
+@pytest.mark.parametrize(
+    ("cite", "expected", "unread"),
+    [
+        ("§ 5(4) s. 3, 4", ["§ 5(4) s. 3", "§ 5(4) s. 4"], ()),
+        ("§ 46(6), 47", ["§ 46(6)", "§ 47"], ()),
+        ("§ 21760(c), (d)", ["§ 21760(c)", "§ 21760(d)"], ()),
+        ("§ 3(3) no. 2c s. 2", ["§ 3(3) no. 2c s. 2"], ()),
+        ("R412-12 I, II", ["R412-12 I", "R412-12 II"], ()),
+        ("Rules H2, 195", ["Rules H2", "Rules 195"], ()),
+        ("Annex 2, signs 295 and 296", ["Annex 2", "signs 295", "signs 296"], ()),
+        ("art. 145 c. 2, 154 c. 1 b", ["art. 145 no. 2", "art. 154 no. 1b"], ()),
+        ("3:31, 3:7 p. 4", ["3:31", "3:7 no. 4"], ()),
+        ("reg. 4, 5 (1989)", ["reg. 4", "reg. 5"], ()),
+        ("§ 4(1), case law", ["§ 4(1)"], ("case law",)),
+        ("Convention Art. 10(3); § 7(3a)", ["§ 7(3a)"], ("Convention Art. 10(3)",)),
+    ],
+)
+def test_what_a_cite_names(cite, expected, unread):
+    found, rest = references_in(cite)
+    assert ([str(one) for one in found], rest) == (expected, unread)
+
+
+@pytest.mark.parametrize(
+    ("text", "cite", "expected"),
+    [
+        (MARKDOWN, "§ 5(1)", "Overtake on the left."),
+        # An initial and its full stop end no sentence.
+        (MARKDOWN, "§ 4(1) s. 2", "Brake not without need, z. B. Birds."),
+        (MARKDOWN, "§ 5(2) no. 1", "you can see,"),
+        (MARKDOWN, "§ 5(2) no. 2a s. 2", "That is little."),
+        (MARKDOWN, "§ 5(2a) s. 2", "Lorries keep 2 m."),
+        (MARKDOWN, "§ 5a", "Zones are signed, see § 5 paragraph 1."),
+        (MARKDOWN, "Annex 2, sign 205", "* Sign 205 * Give way."),
+        (PLAIN, "Art. 4 no. 1", "Keep a distance."),
+        ("163 Overtake\n\n(a) Left.\n\n164 Lorries\n", "Rule 163(a)", "Left."),
+        (PLAIN, "Art. 5 II", "Not at Article 4 crossings."),
+    ],
+)
+def test_a_place_is_found(text, cite, expected):
+    *_, place = references_in(cite)[0]
+    assert law_text(Source("act.md", text)).find(place) == expected
+
+
+@pytest.mark.parametrize(
+    ("cite", "why"),
+    [
+        ("§ 6", "act.md has no § 6"),
+        ("§ 5(3)", "act.md has § 5, but no § 5(3)"),
+        ("§ 5(2a) s. 3", "act.md has § 5(2a), but no § 5(2a) s. 3"),
+        ("sign 207", "act.md has no sign 207"),
+    ],
+)
+def test_a_place_is_not_found(cite, why):
+    law = law_text(Source("act.md", MARKDOWN))
+    ((place,), _) = references_in(cite)
+    assert (law.find(place), law.missing(place)) == (None, why)
+
+
+def test_a_text_without_articles_is_refused():
+    with pytest.raises(RulecError) as caught:
+        law_text(Source("act.md", "Drive with care.\n"))
+    assert [one.code for one in caught.value.diagnostics] == ["R0714"]
+
+
+BOOK = parse_rulebook(
+    'rulebook country\nlaw "Act"\nsignal p\n'
+    'provisions "https://example.org" { "§ 4" "Distance"; "§ 5" "Overtaking" to do;\n'
+    '"§ 5(2a)" "Room" silent because "no"; "§ 5a" "Zones" not machine-readable because "vague";\n'
+    '"Annex 2" "Signs"; "Customs" "No article" }\n'
+    + "".join(
+        f'hard rule {name} {{ cite "{cite}" require p }}\n'
+        for name, cite in {
+            "left": "§ 5(1)",
+            "room": "§ 5(2a) s. 1",
+            "room_of_lorries": "§ 5(2a) s. 2, Customs",
+            "stop": "Annex 2, sign 206",
+            "gone": "§ 4(2)",
+            "other": "§ 7",
+        }.items()
+    )
+)
+
+
+def test_exactly_the_rules_that_rest_on_what_changed_are_named():
+    before = law_text(Source("old.md", MARKDOWN))
+    now = MARKDOWN.replace("Keep 1.5 m away.", "Keep  1.7 m\naway.").replace("Give way.", "Yield.")
+    checks = check_cites(BOOK, before, law_text(Source("new.md", now)))
+    assert [(one.rule, one.place, one.result) for one in checks] == [
+        ("left", "§ 5(1)", "found"),
+        ("room", "§ 5(2a) s. 1", "law-changed"),
+        ("room_of_lorries", "§ 5(2a) s. 2", "found"),
+        ("room_of_lorries", "Customs", "unread"),
+        ("stop", "sign 206", "found"),
+        ("gone", "§ 4(2)", "not-found"),
+        ("other", "§ 7", "not-found"),
+    ]
+    assert checks[1].note == "was “1.5 m away.”, is “1.7 m away.”"
+
+
+def test_articles_are_covered_by_the_rules_that_cite_them_or_a_part_of_them():
+    listed = {one.number: (one.state, one.rules, one.because) for one in provisions_of(BOOK)}
+    assert listed == {
+        "§ 4": ("covered", ("gone",), ""),
+        "§ 5": ("covered", ("left",), ""),
+        # The closest entry counts.
+        "§ 5(2a)": ("covered", ("room", "room_of_lorries"), ""),
+        "§ 5a": ("not machine-readable", (), "vague"),
+        "Annex 2": ("covered", ("stop",), ""),
+        "Customs": ("covered", ("room_of_lorries",), ""),
+    }
+    assert list(unlisted(BOOK)) == [("other", "§ 7")]
