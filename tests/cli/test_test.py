@@ -1,6 +1,7 @@
 """``rulec test`` as its user meets it."""
 
 import json
+from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
@@ -99,13 +100,26 @@ def test_patterns(odd, capsys, pattern, names):
     status, out, _ = run(capsys, odd, "--run", pattern)
     lines = [line for line in out.splitlines() if line.startswith(("pass", "FAIL"))]
     assert [line.split(" ", 3)[3] for line in lines] == names
-    assert status == (0 if names in ([], ["A/1"]) else 1)
+    assert status == (2 if not names else 0 if names == ["A/1"] else 1)
 
 
 def test_nothing_to_run_fails_only_if_asked_to(odd, capsys):
-    assert run(capsys, odd, "--run", "C") == (0, "0 examples: 0 passed, 0 failed\n", "")
-    status, _, err = run(capsys, odd, "--run", "C", "--fail-on-empty")
-    assert (status, err) == (1, "rulec: there is no example to run\n")
+    empty = "rulebook empty\nuse paper\nhard rule A (v: vehicle) { require always not r(v) }\n"
+    Path("empty.rules").write_text(empty)
+    warned = "warning[R0408]: rule `A` has no example\n"
+    status, out, err = run(capsys, "empty.rules", "--run", "A", "--coverage")
+    assert (status, err.startswith(warned)) == (0, True)
+    assert "coverage 0.0 %\n0 examples: 0 passed, 0 failed\n" in out
+    status, _, err = run(capsys, "empty.rules", "--run", "A", "--fail-on-empty")
+    assert (status, err.splitlines()[-1]) == (1, "rulec: there is no example to run")
+
+
+def test_a_pattern_that_matches_nothing_is_a_mistake(odd, capsys):
+    for pattern, help_text in (("a", "did you mean `A`?"), ("A/4", "RULE or RULE/LABEL")):
+        status, out, err = run(capsys, odd, "--run", pattern, "--coverage")
+        assert (status, out.splitlines()[-1]) == (2, "0 examples: 0 passed, 0 failed")
+        assert f"error[R0460]: no rule and no example matches `{pattern}`\n" in err
+        assert help_text in err
 
 
 def test_json(odd, capsys):

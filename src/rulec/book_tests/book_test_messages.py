@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from rulec.diagnostics import Diagnostic
+from collections.abc import Sequence
+
+from rulec.diagnostics import Diagnostic, did_you_mean, named
 from rulec.diagnostics.code import Code
 from rulec.rulebook.rulebook_model import Rule
 
@@ -17,6 +19,17 @@ EXAMPLE_FAILED = Code(
     good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
     "  require always not r(v)\n  reject { b(v); r(v); f(v) }\n}\n",
     kind="compiled",
+)
+
+NOTHING_TO_RUN = Code(
+    "R0460",
+    title="`--run` matches no rule and no example",
+    why="`rulec test --run PATTERN` runs the examples whose `RULE` or `RULE/LABEL` the pattern "
+    "matches. If it matches none, nothing was tested and nothing is covered, which says as little "
+    "about the rulebook as a test that was never written.",
+    bad="rulec test esterle2019 --run R7",
+    good="rulec test esterle2019 --run R1",
+    kind="command",
 )
 
 RULE_NOT_EXERCISED = Code(
@@ -54,4 +67,16 @@ def unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagno
         "whether the law agrees, you know",
         notes=notes,
         severity="warning",
+    )
+
+
+def nothing_to_run(pattern: str, rules: Sequence[str]) -> Diagnostic:
+    """R0460: a pattern that matches none of these rules, nor an example of theirs."""
+    name = pattern.partition("/")[0]
+    known = f"rules are {named(rules)}" if rules else "there is no rule"
+    return NOTHING_TO_RUN.at(
+        None,
+        f"no rule and no example matches `{pattern}`",
+        help=did_you_mean(name, [rule for rule in rules if rule != name])
+        or f"write RULE or RULE/LABEL, with `*` for anything: {known}",
     )

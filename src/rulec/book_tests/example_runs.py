@@ -66,6 +66,10 @@ class ExampleRun(Rows):
     warnings: tuple[Diagnostic, ...] = ()
     pattern: str | None = None
 
+    def names(self, rule: Rule) -> bool:
+        """Tell whether the rule itself was asked for, rather than some examples of it."""
+        return self.pattern is None or fnmatchcase(rule.name, self.pattern)
+
     def rows(self) -> list[dict[str, Any]]:
         """One row an example."""
         return [

@@ -72,10 +72,11 @@ def command(
     """Run the accept and reject examples of every RULEBOOK: a name, or the path of a source.
 
     Exit status: 0 all pass, 1 one fails, or --fail-on-empty or --threshold says so, 2 a rulebook
-    could not be read or compiled.
+    could not be read or compiled, or --run matches nothing.
     """
     # Rulebooks and their automata, 130 ms: not for --help.
     from rulec.batch.example_batch import ExampleRequest, measured_runs
+    from rulec.book_tests.book_test_messages import nothing_to_run
     from rulec.book_tests.example_coverage import uncovered_verdicts
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import shortcomings
@@ -99,5 +100,15 @@ def command(
     short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)
     for sentence in short:
         print_remark(f"rulec: {sentence}")
+    rules = [rule for run in runs for rule in run.rulebook.rules]
+    answered = len(runs) == len(rulebooks)
+    if (
+        pattern is not None
+        and answered
+        and not any(run.outcomes or any(map(run.names, run.rulebook.rules)) for run in runs)
+    ):
+        names = list(dict.fromkeys(rule.name for rule in rules))
+        print_diagnostics([nothing_to_run(pattern, names)])
+        answered = False
     failed = any(not outcome.passed for run in runs for outcome in run.outcomes)
-    return ExitStatus.after(answered=len(runs) == len(rulebooks), failed=failed or bool(short))
+    return ExitStatus.after(answered=answered, failed=failed or bool(short))
