@@ -262,3 +262,25 @@ def test_two_sides_of_the_road(tmp_path, capsys):
     assert f"\n{remark}.\n" in capsys.readouterr().out
     main(["diff", "./one.rules", "./one.rules"])
     assert "near and far" not in capsys.readouterr().out
+
+
+def test_rules_of_other_names_are_offered_and_paired(tmp_path, capsys):
+    keeps = "hard rule keep_gap (v: vehicle) { require never (behind(v) and gap(v) < 9 m) }"
+    follows = "hard rule following (c: vehicle) { require never (behind(c) and gap(c) < 5 m) }"
+    for name, rule in (("one", keeps), ("two", follows)):
+        text = f"rulebook {name}\nuse road\n{rule}\nhard rule at_{name} {{ require never wet }}\n"
+        (tmp_path / f"{name}.rules").write_text(text)
+    books = (str(tmp_path / "one.rules"), str(tmp_path / "two.rules"))
+    assert main(["diff", *books, "--rule", "[kf]*"]) == 1
+    offer = "    reads the same words as following: --pair keep_gap=following\n"
+    assert offer in capsys.readouterr().out
+    pairs = ("--pair", "keep_gap=following", "--pair", "at_one=at_two")
+    assert main(["diff", *books, *pairs, "--output-format", "json"]) == 1
+    document = json.loads(capsys.readouterr().out)
+    assert [
+        (pair["rule"], pair["second_rule"], pair["relation"]) for pair in document["rules"]
+    ] == [("keep_gap", "following", "stricter"), ("at_one", "at_two", "equal")]
+    assert document["only_first"] == document["only_second"] == []
+    for wrong, why in (("keep_gap", "no pair"), ("keep_gap=folowing", "did you mean `following`?")):
+        assert main(["diff", *books, "--pair", wrong]) == 2
+        assert why in capsys.readouterr().err

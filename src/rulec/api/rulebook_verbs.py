@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from fractions import Fraction
 from pathlib import Path
@@ -164,6 +164,7 @@ class RulebookVerbs(SessionSettings):
         patterns: Sequence[str] = (),
         step_s: Fraction | float | None = None,
         witnesses: int = 1,
+        paired: Mapping[str, str] | None = None,
         on_progress: Callable[[float], object] = ignore,
     ) -> RulebookDiff:
         """Compare the rules of two rulebooks, with witnesses for each difference.
@@ -171,7 +172,9 @@ class RulebookVerbs(SessionSettings):
         Both are names or paths of sources. With ``patterns`` only rules are compared whose name one
         of these matches; ``*`` and ``?`` are wild. ``step_s`` is the step of the traces that rules
         with bounds in seconds are compared on, ``witnesses`` the number of traces to find for each
-        difference; ``on_progress`` is called with the number of rules compared. Raises RulecError.
+        difference; ``paired`` are rules of the first with rules of the second of another name that
+        they are compared with; ``on_progress`` is called with the number of rules compared. Raises
+        RulecError.
         """
         from dataclasses import replace
 
@@ -189,6 +192,7 @@ class RulebookVerbs(SessionSettings):
             step_s=None if step_s is None else exact_step(step_s),
             tell=on_progress,
             most=witnesses,
+            paired=paired or {},
         )
         # What rules that were not asked for depend on is not asked for either.
         return diff if patterns else replace(diff, settings=setting_pairs(lineage, second_lineage))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Any
 
 from rulec.analysis.counterexample import declarations_read, shared_vocabulary
@@ -14,9 +15,15 @@ from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory, Co
 from rulec.analysis.shared_compilation import at_one_step, compile_shared
 from rulec.analysis.trace_display import TraceTable, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.logic.free_names import names_in
 from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook
 from rulec.trace import Trace
 from rulec.value_display import Rows, short_repr
+
+ALIKE = Fraction(1, 2)
+"""The least share of words in common for a rule of another name to be offered."""
+
+MOST_ALIKE = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +39,9 @@ class RulePair:
 
     @property
     def name(self) -> str:
-        """The name that both go by."""
-        return self.first.name
+        """The name that both go by, or both names."""
+        first, second = self.first.name, self.second.name
+        return first if first == second else f"{first} = {second}"
 
     @property
     def relation(self) -> RuleRelation:
@@ -52,10 +60,14 @@ class RulePair:
 
 @dataclass(frozen=True, slots=True)
 class OneSided:
-    """A rule of only one rulebook, with the other's ``remark`` about it."""
+    """A rule of only one rulebook, with the other's ``remark`` about it.
+
+    ``alike`` are rules of the other one alone that read most of the same words, the nearest first.
+    """
 
     rule: Rule
     remark: Remark | None
+    alike: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,9 +166,11 @@ def diff_rulebooks(
     patterns: Sequence[str] = (),
     step_s: Fraction | None = None,
     tell: Callable[[float], object] = lambda _: None,
+    *,
     most: int = 1,
+    paired: Mapping[str, str] = MappingProxyType({}),
 ) -> RulebookDiff:
-    """Compare the rules that two rulebooks share by name.
+    """Compare the rules that two rulebooks share by name, or that are ``paired``.
 
     Args:
         first: a rulebook.
@@ -166,12 +180,18 @@ def diff_rulebooks(
             that divides the steps of their examples.
         tell: is told how many rules have been compared.
         most: how many traces to look for, each for another reason, either way.
+        paired: rules of the first with rules of the second that have another name.
 
     Raises RulecError if a rule cannot be compiled.
     """
     ours, theirs = (rules_matching(book, patterns) for book in (first, second))
-    shared = [name for name in ours if name in theirs]
-    pairs = {name: at_one_step((ours[name], theirs[name]), step_s) for name in shared}
+    others = {rule.name: rule for rule in second.rules}
+    partners = {name: theirs[name] for name in theirs if name in ours and name not in paired}
+    partners = {name: rule for name, rule in partners.items() if name not in {*paired.values()}} | {
+        name: others[paired[name]] for name in ours if name in paired
+    }
+    shared = [name for name in ours if name in partners]
+    pairs = {name: at_one_step((ours[name], partners[name]), step_s) for name in shared}
     sides = compile_shared(
         (first, second), [{name: pairs[name][which] for name in shared} for which in (0, 1)]
     )
@@ -181,18 +201,21 @@ def diff_rulebooks(
         compared.append(
             RulePair(
                 ours[name],
-                theirs[name],
+                partners[name],
                 (left.rule, right.rule),
                 _labelled(compare(left, right, most), first.name, second.name, name),
             )
         )
         tell(number)
+    met = {rule.name for rule in partners.values()}
+    alone = [rule for name, rule in ours.items() if name not in partners]
+    others_alone = [rule for name, rule in theirs.items() if name not in met]
     return RulebookDiff(
         first,
         second,
         tuple(compared),
-        _only(ours, theirs, second.remarks),
-        _only(theirs, ours, first.remarks),
+        _only(alone, others_alone, second.remarks),
+        _only(others_alone, alone, first.remarks),
     )
 
 
@@ -206,12 +229,22 @@ def rules_matching(book: Rulebook, patterns: Sequence[str]) -> dict[str, Rule]:
 
 
 def _only(
-    ours: dict[str, Rule], theirs: dict[str, Rule], remarks: Sequence[Remark]
+    ours: Sequence[Rule], theirs: Sequence[Rule], remarks: Sequence[Remark]
 ) -> tuple[OneSided, ...]:
     remark_on = {remark.name: remark for remark in remarks if remark.kind != "softened"}
-    return tuple(
-        OneSided(rule, remark_on.get(name)) for name, rule in ours.items() if name not in theirs
-    )
+    return tuple(OneSided(rule, remark_on.get(rule.name), _alike(rule, theirs)) for rule in ours)
+
+
+def _alike(rule: Rule, others: Sequence[Rule]) -> tuple[str, ...]:
+    """The names of rules that share at least half of the words that one or the other reads."""
+    words = set(names_in(rule.formula))
+    shares = {}
+    for other in others:
+        theirs = set(names_in(other.formula))
+        share = Fraction(len(words & theirs), max(1, len(words | theirs)))
+        if share >= ALIKE:
+            shares[other.name] = share
+    return tuple(sorted(shares, key=lambda name: -shares[name])[:MOST_ALIKE])
 
 
 def _labelled(comparison: RuleComparison, first: str, second: str, rule: str) -> RuleComparison:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import click
 
@@ -12,8 +14,12 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import counted, errors_told, open_session, output_stream, put_answer
+from rulec.diagnostics import did_you_mean
 from rulec.report.text.console import print_remark, progress
 from rulec.settings import search_path
+
+if TYPE_CHECKING:
+    from rulec.rulebook.rulebook_model import Rulebook
 
 
 @click.command()
@@ -25,6 +31,13 @@ from rulec.settings import search_path
     help="Compare every two of the rulebooks named, or of all that there are.",
 )
 @shared.rules_option("Only rules like PATTERN; `*` and `?` are wild. May be given several times.")
+@click.option(
+    "--pair",
+    "paired",
+    multiple=True,
+    metavar="A=B",
+    help="Compare rule A of the first with rule B of the second. May be given several times.",
+)
 @shared.step_option(
     "The step of the traces that rules with bounds in seconds are compared on, in s.  "
     "[default: one that divides the steps of their examples]",
@@ -52,6 +65,7 @@ def command(
     rulebooks: tuple[str, ...],
     every: bool,
     patterns: tuple[str, ...],
+    paired: tuple[str, ...],
     step_s: Fraction | None,
     n_witnesses: int,
     to: Output,
@@ -70,11 +84,12 @@ def command(
     from rulec.report.rulebooks import diff_formats, matrix_report
     from rulec.rulebook.files.search_path import available_rulebooks
     from rulec.rulebook.loader import load_rulebook
-    from rulec.rulebook.rulebook_model import Rulebook
     from rulec.trace.formats.json_lines import write_traces
 
     shared.only_sources(rulebooks, "cannot be compared")
     if every:
+        if paired:
+            raise click.UsageError("--pair is for two rulebooks, not for --all")
         if witness is not None:
             raise click.UsageError("--witness is for two rulebooks, not for --all")
         folders = search_path()
@@ -105,9 +120,16 @@ def command(
         return ExitStatus.after(answered=answered, failed=not matrix.is_uniform)
     if len(rulebooks) != 2:
         raise click.UsageError("name the two rulebooks that are to be compared, or say --all")
+    named = [load_rulebook(name, search_path(), at) for name in rulebooks] if paired else []
+    pairs = _pairs(paired, named)
     with progress("comparing", None) as tell:
         difference = open_session(at).diff(
-            *rulebooks, patterns=patterns, step_s=step_s, witnesses=n_witnesses, on_progress=tell
+            *rulebooks,
+            patterns=patterns,
+            step_s=step_s,
+            witnesses=n_witnesses,
+            paired=pairs,
+            on_progress=tell,
         )
     if witness is not None:
         with output_stream(Output(witness, "jsonl")) as (stream, name):
@@ -115,3 +137,23 @@ def command(
         print_remark(f"wrote {counted(number, 'trace')} to {name}")
     put_answer(diff_formats.render(difference, to.form), to)
     return ExitStatus.after(answered=difference.is_complete, failed=not difference.is_none)
+
+
+def _pairs(texts: Sequence[str], books: Sequence[Rulebook]) -> dict[str, str]:
+    """Names of rules of the first by those of the second, from ``A=B``."""
+    pairs: dict[str, str] = {}
+    for text in texts:
+        names = tuple(name.strip() for name in text.split("="))
+        if len(names) != 2:
+            raise click.BadParameter(f"`{text}` is no pair such as `A=B`", param_hint="--pair")
+        for name, book in zip(names, books, strict=True):
+            known = [rule.name for rule in book.rules]
+            if name not in known:
+                near = did_you_mean(name, known)
+                raise click.BadParameter(
+                    f"{book.name} has no rule `{name}`{near and f'; {near}'}", param_hint="--pair"
+                )
+        if names[0] in pairs or names[1] in pairs.values():
+            raise click.BadParameter(f"a rule of `{text}` has a pair already", param_hint="--pair")
+        pairs[names[0]] = names[1]
+    return pairs

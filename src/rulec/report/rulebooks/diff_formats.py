@@ -62,7 +62,9 @@ def _as_markdown(rulebook_diff: RulebookDiff) -> str:
             only = (
                 f"- {one_sided.rule.strength} rule {code(one_sided.rule.name)}"
                 f"{escaped(diff_text.only_why(one_sided, lacks))}"
+                + (f"; {escaped(diff_text.offered(one_sided))}" if offers else "")
                 for one_sided in rules
+                for offers in (bool(one_sided.alike) and has == one,)
             )
             parts += [f"## Only in {code(has)}", "\n".join(only)]
     if rulebook_diff.settings:

@@ -56,6 +56,7 @@ class RulePairData(JsonPart, frozen=True, kw_only=True):
     """
 
     rule: str
+    second_rule: str
     relation: RuleRelation
     undecided: str | None
     first: RuleSide
@@ -80,6 +81,7 @@ class OneSidedRule(JsonPart, frozen=True, kw_only=True):
     book: str
     remark: Literal["dropped", "silent", "softened"] | None
     because: str | None
+    alike: Sequence[str]
 
 
 class DiffDocument(JsonDocument, frozen=True, kw_only=True):
@@ -113,7 +115,8 @@ def _pair(pair: RulePair) -> RulePairData:
     return filled(
         RulePairData,
         pair,
-        rule=pair.name,
+        rule=pair.first.name,
+        second_rule=pair.second.name,
         undecided=comparison.undecided or None,
         first=filled(RuleSide, pair.first, **_exactly(pair.first)),
         second=filled(RuleSide, pair.second, **_exactly(pair.second)),
@@ -131,7 +134,13 @@ def _exactly(rule: Rule) -> dict[str, str | None]:
 def _one_sided(one_sided: OneSided) -> OneSidedRule:
     rule, remark = one_sided.rule, one_sided.remark
     kind, because = (remark.kind, remark.because) if remark else (None, None)
-    own = {"rule": rule.name, "remark": kind, "because": because, **_exactly(rule)}
+    own = {
+        "rule": rule.name,
+        "remark": kind,
+        "because": because,
+        "alike": one_sided.alike,
+        **_exactly(rule),
+    }
     return filled(OneSidedRule, rule, **own)
 
 

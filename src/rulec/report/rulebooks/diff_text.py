@@ -36,8 +36,14 @@ def as_text(rulebook_diff: RulebookDiff) -> str:
         for pair in rulebook_diff.pairs
         if is_worth_a_block(pair)
     ]
-    blocks += [_only(rulebook_diff.only_first, one, other)] if rulebook_diff.only_first else []
-    blocks += [_only(rulebook_diff.only_second, other, one)] if rulebook_diff.only_second else []
+    blocks += [
+        _only(rules, has, lacks, from_first=rules is rulebook_diff.only_first)
+        for rules, has, lacks in (
+            (rulebook_diff.only_first, one, other),
+            (rulebook_diff.only_second, other, one),
+        )
+        if rules
+    ]
     if rulebook_diff.settings:
         written = [
             f"  {pair.kind} {pair.name}: {pair.first} in {one}, {pair.second} in {other}"
@@ -124,11 +130,15 @@ def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
             yield f"    any trace of {end - start + 1} states"
 
 
-def _only(rules: Sequence[OneSided], has: str, lacks: str) -> str:
-    lines = [
-        f"  {rule.rule.strength} rule {rule.rule.name}{visible(only_why(rule, lacks))}"
-        for rule in rules
-    ]
+def _only(rules: Sequence[OneSided], has: str, lacks: str, *, from_first: bool) -> str:
+    lines = []
+    for rule in rules:
+        lines.append(
+            f"  {rule.rule.strength} rule {rule.rule.name}{visible(only_why(rule, lacks))}"
+        )
+        # Once for both: the other one's offer is the same.
+        if from_first and rule.alike:
+            lines.append(f"    {visible(offered(rule))}")
     title = styled(f"only in {has}", "bold")
     return "\n".join([title, *lines])
 
@@ -140,6 +150,12 @@ def only_why(one_sided: OneSided, lacks: str) -> str:
     verb = "is silent on it" if one_sided.remark.kind == "silent" else "dropped it"
     because = f': "{one_sided.remark.because}"' if one_sided.remark.because else ""
     return f"; {lacks} {verb}{because}"
+
+
+def offered(one_sided: OneSided) -> str:
+    """How to compare a rule of the first with those of other names that read the same words."""
+    ways = [f"--pair {one_sided.rule.name}={name}" for name in one_sided.alike]
+    return f"reads the same words as {' and '.join(one_sided.alike)}: {' or '.join(ways)}"
 
 
 def summary(rulebook_diff: RulebookDiff) -> str:
