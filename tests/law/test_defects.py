@@ -65,6 +65,23 @@ SHOWN = [
     (8, "it", "amber_light", ["too near to stop"], ["there was time to stop"]),
     (25, "it", "stopping_on_motorways", ["in a queue"], [""]),
     (25, "it", "closed_lane", ["stopped before it"], [""]),
+    (4, "au-nsw", "speed_limit_by_class", ["4.5 t"], [""]),
+    (4, "jp", "speed_limit_by_class", ["a lighter lorry"], ["a lorry"]),
+    (4, "in", "speed_limit_by_class", ["a lorry"], ["a lorry"]),
+    (4, "ie", "speed_limit_by_class", ["a van"], ["a lorry"]),
+    (5, "jp", "give_way_sign", ["waits"], ["from the left"]),
+    (6, "au-nsw", "stop_sign", ["waits for the others"], ["stops, and goes before another one"]),
+    (6, "jp", "stop_sign", ["waits for the others"], ["stops, and goes before another one"]),
+    (6, "ie", "stop_sign", ["waits for the others"], ["stops, and goes before another one"]),
+    (6, "in", "stop_sign", ["waits for the others"], ["stops, and goes before another one"]),
+    (7, "au-nsw", "give_way_to_pedestrians_when_turning", [], ["at green, too"]),
+    (7, "jp", "give_way_to_pedestrians_when_turning", [], ["at green, too"]),
+    (8, "jp", "amber_light", ["too near to stop"], ["there was time to stop"]),
+    (22, "jp", "give_way_to_pedestrians", ["waits at a corner without marks"], []),
+    (22, "jp", "give_way_to_pedestrians", [], ["crosses at a corner without marks"]),
+    (22, "jp", "keep_near_side", ["in full queues"], []),
+    (22, "jp", "crossing_overtaking", ["green light"], []),
+    (25, "jp", "stopping_on_motorways", ["in a queue"], [""]),
 ]
 
 NO_LAW = [
