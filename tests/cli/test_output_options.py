@@ -141,12 +141,10 @@ class TestEveryVerb:
         (["monitor", "a.json", "--save", "./a.json"], "would be overwritten"),
         (["monitor", "de", "--save", "a.json", "-o", "./a.json"], "would be overwritten"),
         (["monitor", "de", "--save", "-"], "standard output takes one answer"),
-        (["monitor", "de", "--restore", "-"], "`-` is standard input"),
         (["maneuvers", "s1", "-r", "de", "--after", "-"], "`-` is standard input"),
         (["compile", "./a.json", "-o", "."], "would be overwritten"),
         (["compile", "de", "-o", "-"], "`-` is standard output, and no folder"),
         (["new", "depot", "-o", "-"], "`-` is standard output, and no folder"),
-        (["show", "-"], "standard input is no rulebook that can be found"),
         (
             ["diff", "de", "fr", "--witness", "a.json", "-o", "a.json"],
             "is named already, and would be overwritten",

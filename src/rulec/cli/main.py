@@ -129,10 +129,12 @@ def rulec(context: click.Context, limits: Sequence[str]) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and return its exit status."""
+    given = sys.argv[1:] if arguments is None else arguments
     try:
         outcome = rulec.main(
-            args=None if arguments is None else list(arguments),
+            args=list(given),
             prog_name="rulec",
+            obj=tuple(given),
             standalone_mode=False,
         )
         sys.stdout.flush()

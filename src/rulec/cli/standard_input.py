@@ -1,25 +1,90 @@
-"""Standard input where a file is read more than once, or from its middle."""
+"""Standard input where a file is meant, which may be read more than once, or from its middle."""
 
 from __future__ import annotations
 
+import os
 import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import click
 
+from rulec.files import STANDARD_INPUT_COPY, opened
+
 STANDARD_INPUT = "-"
+
+_OUTPUTS = frozenset({"-o", "--output", "--save", "--witness"})
+"""Options with which ``-`` is standard output."""
 
 
 def file_named(argument: str) -> str:
     """The path that an argument is; for ``-`` that of a copy, kept as long as the command runs."""
     if argument != STANDARD_INPUT:
         return argument
+    return str(click.get_current_context().with_resource(_copied("standard input")))
+
+
+def read_as_rulebook(context: click.Context, _: click.Parameter, value: Any) -> Any:
+    """A callback of click: rulebooks, of which ``-`` is a copy of standard input.
+
+    Files that it refers to are looked for in the working folder.
+
+    Raises:
+        click.UsageError: standard input is asked for twice.
+    """
+    several = value if isinstance(value, tuple) else (value,)
+    if STANDARD_INPUT not in several or context.resilient_parsing:
+        return value
+    refuse_twice(context)
+    name = context.with_resource(_in_place_of_a_file())
+    named = tuple([name if own == STANDARD_INPUT else own for own in several])
+    return named if isinstance(value, tuple) else named[0]
+
+
+def refuse_twice(context: click.Context) -> None:
+    """Refuse a command that would read standard input in two ways.
+
+    Raises:
+        click.UsageError: it would.
+    """
+    arguments: Sequence[str] = context.find_root().obj or ()
+    asked = [
+        own
+        for before, own in zip(("", *arguments), arguments, strict=False)
+        if (own == STANDARD_INPUT and before not in _OUTPUTS) or own in ("-r-", "--rulebook=-")
+    ]
+    if len(asked) > 1:
+        raise click.UsageError("`-` is standard input, which is one thing; give a file for another")
+
+
+@contextmanager
+def _in_place_of_a_file() -> Iterator[str]:
+    """The name of a file of the working folder that stands for a copy of standard input."""
+    with _copied("standard input") as copy:
+        with opened(copy) as stream:
+            ending = ".json" if stream.read(1 << 10).lstrip().startswith(b"{") else ".rules"
+        number = 1
+        while (
+            name := Path(f"standard input{'' if number == 1 else f' {number}'}{ending}")
+        ).exists():
+            number += 1
+        os.environ[STANDARD_INPUT_COPY] = str(copy.rename(copy.with_name(name.name)))
+        try:
+            yield str(name)
+        finally:
+            del os.environ[STANDARD_INPUT_COPY]
+
+
+@contextmanager
+def _copied(name: str) -> Iterator[Path]:
     # Archives and random names, 4 ms: not for files.
     import shutil
     from tempfile import TemporaryDirectory
 
-    folder = click.get_current_context().with_resource(TemporaryDirectory(prefix="rulec-"))
-    copy = Path(folder, "standard input")
-    with copy.open("wb") as stream:
-        shutil.copyfileobj(sys.stdin.buffer, stream)
-    return str(copy)
+    with TemporaryDirectory(prefix="rulec-") as folder:
+        copy = Path(folder, name)
+        with copy.open("wb") as stream:
+            shutil.copyfileobj(sys.stdin.buffer, stream)
+        yield copy

@@ -16,7 +16,7 @@ from rulec.report.text.console import progress
 
 
 @click.command()
-@shared.rulebooks_argument
+@shared.rulebooks_argument()
 @shared.findings_options
 @shared.jobs_option("Answer questions about rules side by side")
 @shared.at_option

@@ -14,6 +14,7 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.scenario_options import recording_options, recording_source
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import errors_told, open_session, put_answer, width_of
+from rulec.cli.standard_input import read_as_rulebook
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@shared.rulebooks_argument
+@shared.rulebooks_argument()
 @output_options(endings_of("text", "markdown", "json"), "the audit")
 @click.option(
     "--fail-on",
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 @click.option(
     "--compare",
     metavar="OLD",
+    callback=read_as_rulebook,
     shell_complete=complete_rulebooks,
     help="Say what has changed since an older audit (.json), or against another rulebook.",
 )

@@ -12,7 +12,6 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import counted, errors_told, open_session, output_stream, put_answer
 from rulec.diagnostics import did_you_mean
 from rulec.report.text.console import print_remark, progress
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("rulebooks", nargs=-1, metavar="RULEBOOK...", shell_complete=complete_rulebooks)
+@shared.rulebooks_argument(required=False)
 @click.option(
     "--all",
     "every",

@@ -6,6 +6,7 @@ import json
 import sys
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -17,19 +18,33 @@ from rulec.cli.options.output_options import (
     endings_of,
     output_options,
 )
+from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import answer_lines, open_session, print_written
+from rulec.cli.standard_input import STANDARD_INPUT
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_result
 
 
+def _no_states(_: click.Context, __: click.Parameter, value: str) -> str:
+    if value == STANDARD_INPUT:
+        raise click.BadParameter("the states come on standard input; give the rulebook as a file")
+    return value
+
+
 @click.command()
-@shared.rulebook_argument
+@click.argument("rulebook", callback=_no_states, shell_complete=complete_rulebooks)
 @shared.step_option(
     "Seconds from one state to the next: a decimal, or a fraction such as 1/3. It matters to "
     "rules with bounds in seconds.  [default: that of their examples, or of --restore]",
 )
-@shared.file_option("--restore", "Go on where the monitor stood that was saved in FILE.")
+@click.option(
+    "--restore",
+    metavar="FILE",
+    type=click.Path(dir_okay=False, allow_dash=True),
+    help="Go on where the monitor stood that was saved in FILE; `-` is the first line of standard "
+    "input, before the states.",
+)
 @click.option(
     "--save",
     metavar="FILE",
@@ -44,7 +59,7 @@ from rulec.report.text.console import print_result
 def command(
     rulebook: str,
     step_s: Fraction | None,
-    restore: Path | None,
+    restore: str | None,
     save: str | None,
     to: Output,
     at: str,
@@ -67,13 +82,14 @@ def command(
     is_shown = save == STANDARD_OUTPUT
     if is_shown and not to.is_file:
         raise click.UsageError("standard output takes one answer: give -o FILE, or --save FILE.")
-    saved = None if restore is None else monitor_sources.read_saved(restore)
+    saved = _saved(restore)
     step_s = step_s or monitor_sources.step_of(saved)
     rules = open_session(at).compile_rulebook(rulebook, step_s=step_s)
     if restore is None:
         monitor = Monitor(rules, step_s)
     else:
-        monitor = Monitor.restore(rules, saved, SourceLocation(str(restore)))
+        place = "standard input" if restore == STANDARD_INPUT else restore
+        monitor = Monitor.restore(rules, saved, SourceLocation(place))
     complaints, refused = Complaints(), False
     form = running_verdicts.as_json if to.form == "json" else running_verdicts.as_text
     file = None if save is None or is_shown else Path(save)
@@ -94,3 +110,17 @@ def command(
         print_written(to.path, to)
     violated = {"violated"} if save is not None else {"violated", "pending"}
     return ExitStatus.after(answered=not refused, failed=monitor.so_far.best in violated)
+
+
+def _saved(restore: str | None) -> Any:
+    """What a saved monitor's file holds, or the first line of standard input; None for none."""
+    # As above: not for --help.
+    from rulec.monitoring.online import monitor_sources
+    from rulec.trace.formats.json_line_problems import LONGEST_LINE_BYTES
+
+    if restore is None:
+        return None
+    if restore == STANDARD_INPUT:
+        line = sys.stdin.buffer.readline(LONGEST_LINE_BYTES + 1)
+        return monitor_sources.saved_from(line, "standard input")
+    return monitor_sources.read_saved(Path(restore))

@@ -33,7 +33,7 @@ def _number(
 
 
 @click.command()
-@shared.rulebooks_argument
+@shared.rulebooks_argument()
 @click.option(
     "--run",
     "pattern",

@@ -8,14 +8,13 @@ import click
 
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import open_session, put_answer, width_of
 from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
 
 @click.command()
-@click.argument("rulebooks", nargs=-1, metavar="[RULEBOOK...]", shell_complete=complete_rulebooks)
+@shared.rulebooks_argument("[RULEBOOK...]", required=False)
 @click.option(
     "--rule",
     "pattern",

@@ -14,11 +14,14 @@ from click.core import ParameterSource
 from rulec.batch.jobs import Jobs, chosen_jobs
 from rulec.cli.options.output_options import endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
+from rulec.cli.standard_input import read_as_rulebook
 from rulec.report.findings.finding_formats import FORMATS
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
-RULEBOOK_HELP = "A rulebook: its name, its source (.rules) or a compiled one (.json)."
+RULEBOOK_HELP = (
+    "A rulebook: its name, its source (.rules) or a compiled one (.json); `-` is standard input."
+)
 
 MOST_JOBS = 256
 
@@ -107,11 +110,23 @@ def only_sources(rulebooks: Iterable[str], lack: str) -> None:
         raise click.UsageError(f"`{compiled}` is compiled and {lack}; give its source")
 
 
-rulebook_argument = click.argument("rulebook", shell_complete=complete_rulebooks)
-
-rulebooks_argument = click.argument(
-    "rulebooks", nargs=-1, required=True, metavar="RULEBOOK...", shell_complete=complete_rulebooks
+rulebook_argument = click.argument(
+    "rulebook", callback=read_as_rulebook, shell_complete=complete_rulebooks
 )
+
+
+def rulebooks_argument(
+    metavar: str = "RULEBOOK...", *, required: bool = True
+) -> Callable[[Decorated], Decorated]:
+    """``RULEBOOK...``."""
+    return click.argument(
+        "rulebooks",
+        nargs=-1,
+        required=required,
+        metavar=metavar,
+        callback=read_as_rulebook,
+        shell_complete=complete_rulebooks,
+    )
 
 
 def rulebook_option(
@@ -124,6 +139,7 @@ def rulebook_option(
         required=required,
         metavar="R",
         help=help_text,
+        callback=read_as_rulebook,
         shell_complete=complete_rulebooks,
     )
 

@@ -66,7 +66,11 @@ def answer(monitor: Monitor, item: LiveState | RulecError) -> SoFar | RulecError
 def read_saved(path: Path) -> Any:
     """Read a file for ``Monitor.restore``. Raises RulecError R0701 or R0510."""
     with opened(path) as stream:
-        data = stream.read()
+        return saved_from(stream.read(), str(path))
+
+
+def saved_from(data: bytes, name: str) -> Any:
+    """What such a file of this name holds. Raises RulecError R0510."""
     try:
         # Unlike `json` it takes neither NaN nor half a character.
         return msgspec.json.decode(data)
@@ -74,9 +78,7 @@ def read_saved(path: Path) -> Any:
         why = "it has been cut short" if is_beginning(data) else "it is not JSON"
         message = f"this is not a saved monitor: {why}"
         help_text = "give a file that `rulec monitor --save` has written"
-        raise UNRESTORABLE_MONITOR.error(
-            SourceLocation(str(path)), message, help=help_text
-        ) from None
+        raise UNRESTORABLE_MONITOR.error(SourceLocation(name), message, help=help_text) from None
 
 
 def step_of(saved: Any) -> Fraction | None:

@@ -42,7 +42,7 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
         raise NAME_NOT_FOUND.error(
             None,
             "standard input is no rulebook that can be found",
-            help="write it to a file first; `rulec check -` and `rulec fmt -` read it as it is",
+            help="write it to a file, or give its text; `-` is for commands alone",
         )
     if "/" in text or text.endswith(SUFFIX):
         path = Path(text)
