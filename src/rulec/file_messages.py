@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import os
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation
@@ -61,6 +62,44 @@ WRONG_SETTINGS = Code(
     good="mkdir books\necho 'search_path = [\"books\"]' > rulec.toml\n"
     "rulec compile esterle2019 -o out",
     kind="command",
+)
+
+NO_OUTPUT = Code(
+    "R0720",
+    title="standard output cannot be written to",
+    why="The disk of the file is full to which the answer is sent, or its device does not take it; "
+    "the answer is not whole. Whoever leaves before the end, as `head` does, is no mistake.",
+    bad="rulec list > /dev/full",
+    good="rulec list > /dev/null",
+    kind="command",
+)
+
+NO_INPUT = Code(
+    "R0721",
+    title="standard input cannot be read",
+    why="The device that it comes from fails, or it is open for writing alone. `-` stands for it.",
+    bad="rulec check - 0> written",
+    good="echo 'rulebook a signal p hard rule r { require p }' | rulec check -",
+    kind="command",
+)
+
+NO_WORKING_FOLDER = Code(
+    "R0722",
+    title="there is no working folder any more",
+    why="The folder in which the command was started has been removed meanwhile, so that no path "
+    "leads anywhere. Change to one that there is.",
+    bad="mkdir gone\ncd gone\nrmdir ../gone\nrulec list",
+    good="mkdir there\ncd there\nrulec list",
+    kind="command",
+)
+
+REFUSED_BY_SYSTEM = Code(
+    "R0723",
+    title="the system does not give what rulec needs",
+    why="No further process can be started, no further file opened, or there is no room for "
+    "temporary files (in the folder that TMPDIR names); the message says for which file or program "
+    "and why. Nothing is wrong with the input.",
+    kind="circumstance",
 )
 
 LINK_OUT = Code(
@@ -176,4 +215,39 @@ def reason_in_words(problem: OSError | ValueError) -> str:
 def unwritable(path: Path, problem: OSError) -> Diagnostic:
     return UNWRITABLE_FILE.at(
         SourceLocation(str(path)), f"the file cannot be written: {reason_in_words(problem)}"
+    )
+
+
+def no_input(problem: OSError) -> RulecError:
+    """The error about standard input that cannot be read."""
+    return NO_INPUT.error(
+        SourceLocation("standard input"),
+        f"standard input cannot be read: {reason_in_words(problem)}",
+        help="give a file, or what a program writes",
+    )
+
+
+def refused(problem: OSError, *, is_gone: bool) -> Diagnostic:
+    """What is said of a refusal of the system that no other message speaks of.
+
+    Of an error with a name in it, it is that file or program, else the working folder if that
+    ``is_gone``, else standard output: whatever reads and whatever else writes says its name.
+    """
+    why = reason_in_words(problem)
+    if problem.filename is not None:
+        name = os.fsdecode(problem.filename) if not isinstance(problem.filename, int) else "a file"
+        help_text = "free what is lacking, and try again"
+        return REFUSED_BY_SYSTEM.at(
+            SourceLocation(name), f"it cannot be opened or started: {why}", help=help_text
+        )
+    if is_gone:
+        return NO_WORKING_FOLDER.at(
+            SourceLocation("."),
+            "the working folder is not there any more",
+            help="change to one that there is",
+        )
+    return NO_OUTPUT.at(
+        SourceLocation("standard output"),
+        f"standard output cannot be written to: {why}",
+        help="write to a file elsewhere, with -o FILE",
     )

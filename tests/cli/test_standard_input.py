@@ -70,8 +70,16 @@ def test_it_is_one_thing(given, arguments):
 
 
 def test_a_saved_monitor_may_be_its_first_line(given, folder):
-    assert given('{"p": true}\n', "monitor", "./other.rules", "--save", "saved.json")[0] == 1
+    assert (
+        given('{"state": {"p": true}}\n', "monitor", "./other.rules", "--save", "saved.json")[0]
+        == 1
+    )
     saved = (folder / "saved.json").read_text()
-    status, out, _ = given(f'{saved}{{"p": false}}\n', "monitor", "./other.rules", "--restore", "-")
+    status, out, _ = given(
+        f'{saved}{{"state": {{"p": false}}}}\n', "monitor", "./other.rules", "--restore", "-"
+    )
     assert (status, len(out.splitlines())) == (1, 1)
-    assert "R0510" in given('{"p": false}\n', "monitor", "./other.rules", "--restore", "-")[2]
+    assert (
+        "R0510"
+        in given('{"state": {"p": false}}\n', "monitor", "./other.rules", "--restore", "-")[2]
+    )

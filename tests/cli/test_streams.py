@@ -46,7 +46,7 @@ def test_a_reader_that_has_left_is_no_verdict(arguments):
 def test_a_full_disk_is_said(arguments):
     done = shell('"$@" >/dev/full', *arguments)
     assert done.returncode == 2
-    assert done.stderr == b"rulec: cannot write to standard output: no space left on device\n"
+    assert b"R0720]: standard output cannot be written to: no space left on device" in done.stderr
 
 
 def test_a_message_that_cannot_be_written_keeps_its_status():

@@ -162,7 +162,7 @@ def _status_after(problem: BaseException) -> int:
             # 1 is click's word for a reader that has left; signals bring their own status.
             return ExitStatus.READER_GONE if problem.code == 1 else int(problem.code or 0)
         case OSError():
-            return _unwritable(problem)
+            return _refused(problem)
         case Exception():
             return _bug(problem)
     raise problem
@@ -180,16 +180,25 @@ def _bug(problem: Exception) -> int:
     return ExitStatus.BUG
 
 
-def _unwritable(problem: OSError) -> int:
+def _refused(problem: OSError) -> int:
     # What is still buffered must not fail again when Python exits.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if isinstance(problem, BrokenPipeError):
         return ExitStatus.READER_GONE
-    # An error with a name in it is of that file, and of nothing else.
-    name = _visible(os.fsdecode(problem.filename)) if problem.filename else "standard output"
-    deed = "open" if problem.filename else "write to"
-    _say(f"cannot {deed} {name}: {(problem.strerror or str(problem)).lower()}")
+    # Messages, their text and colours, 7 ms: only where something went wrong.
+    from rulec.file_messages import refused
+    from rulec.report.findings.diagnostics_text import print_diagnostics
+
+    with suppress(OSError):
+        print_diagnostics([refused(problem, is_gone=not _has_working_folder())])
     return ExitStatus.NOT_ANSWERED
+
+
+def _has_working_folder() -> bool:
+    try:
+        return bool(os.getcwd())  # noqa: PTH109 - the cheapest
+    except OSError:
+        return False
 
 
 def _visible(text: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -18,6 +17,7 @@ from rulec.batch.recording_judge import (
     judge_aloud,
 )
 from rulec.cli.output import print_lost
+from rulec.cli.standard_input import standard_input
 from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
 from rulec.recordings.recording_inputs import STANDARD_INPUT
@@ -122,6 +122,6 @@ def _without_standard_input(
     with TemporaryDirectory(prefix="rulec-") as folder:
         file = Path(folder, "standard input")
         with file.open("wb") as copy:
-            shutil.copyfileobj(sys.stdin.buffer, copy)
+            shutil.copyfileobj(standard_input(), copy)
         names = [str(file) if path == STANDARD_INPUT else path for path in paths]
         yield names, {str(file): "standard input"}

@@ -2,21 +2,53 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any, cast
 
 import click
 
+from rulec.file_messages import no_input
 from rulec.files import STANDARD_INPUT_COPY, opened
 
 STANDARD_INPUT = "-"
 
 _OUTPUTS = frozenset({"-o", "--output", "--save", "--witness"})
 """Options with which ``-`` is standard output."""
+
+
+def standard_input() -> IO[bytes]:
+    """Standard input, of which it is said if it cannot be read.
+
+    Raises RulecError, while it is read: R0721.
+    """
+    return cast("IO[bytes]", io.BufferedReader(_StandardInput()))
+
+
+class _StandardInput(io.RawIOBase):
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return sys.stdin.buffer.seekable()
+
+    def seek(self, offset: int, whence: int = 0) -> int:
+        return sys.stdin.buffer.seek(offset, whence)
+
+    def tell(self) -> int:
+        return sys.stdin.buffer.tell()
+
+    def readinto(self, buffer: Any) -> int:
+        try:
+            data = cast("io.BufferedReader", sys.stdin.buffer).read1(len(buffer))
+        except OSError as problem:
+            raise no_input(problem) from None
+        buffer[: len(data)] = data
+        return len(data)
 
 
 def file_named(argument: str) -> str:
@@ -86,5 +118,5 @@ def _copied(name: str) -> Iterator[Path]:
     with TemporaryDirectory(prefix="rulec-") as folder:
         copy = Path(folder, name)
         with copy.open("wb") as stream:
-            shutil.copyfileobj(sys.stdin.buffer, stream)
+            shutil.copyfileobj(standard_input(), stream)
         yield copy

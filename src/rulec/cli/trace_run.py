@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import stat
-import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import IO, Any, cast
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.cli.standard_input import standard_input
 from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
 from rulec.files import opened
@@ -123,7 +123,7 @@ def _answers(
 ) -> Iterator[Answer]:
     try:
         if file == "-":
-            stream = sys.stdin.buffer
+            stream = standard_input()
             yield from _in_stream(stream, "standard input", form or "jsonl", rules, assumed)
             return
         with opened(Path(file)) as stream:
@@ -135,7 +135,7 @@ def _answers(
 def _in_stream(
     stream: IO[bytes], name: str, form: Format, rules: CompiledRulebook, assumed: Assumptions
 ) -> Iterator[Answer]:
-    size = _size(stream)
+    size = None if name == "standard input" else _size(stream)
     with progress(f"judging {name}", size) as tell:
         for chunk in read_chunks(stream, name, form):
             traces, answers = verify_items(assumed.of(chunk), rules)
@@ -146,9 +146,7 @@ def _in_stream(
 
 
 def _size(stream: IO[bytes]) -> int | None:
-    """Bytes of a file; None of a pipe, and of what is packed."""
-    if stream is sys.stdin.buffer:
-        return None
+    """Bytes of a file; None of what is packed."""
     try:
         about = os.fstat(stream.fileno())
     except UnsupportedOperation:

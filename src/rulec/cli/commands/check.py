@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
-
 import click
 
 from rulec.cli.options.output_options import Output
 from rulec.cli.options.shared_options import at_option, findings_options, verbose_option
 from rulec.cli.options.shell_completion import complete_sources
 from rulec.cli.output import counted, print_findings, print_left_alone
+from rulec.cli.standard_input import standard_input
 from rulec.files import MAX_SOURCE_BYTES
 from rulec.report.text.console import print_remark
 from rulec.settings import search_path
@@ -52,19 +51,19 @@ def command(
     # Rulebooks and what is remembered of them, 10 ms: not for --help.
     from rulec.rulebook.batch.batch_check import check
 
-    def standard_input() -> bytes:
-        return sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1)
+    def given() -> bytes:
+        return standard_input().read(MAX_SOURCE_BYTES + 1)
 
     if fix and "-" in sources:
         raise click.UsageError("`-` is standard input and cannot be written; write it to a file")
-    done = check(sources, standard_input, search_path(), at, recalls=not no_cache)
+    done = check(sources, given, search_path(), at, recalls=not no_cache)
     if fix and any(finding.fix for finding in done.findings):
         # The formatter, 20 ms: only where something is to be written.
         from rulec.rulebook.batch.batch_fix import write_fixes
 
         number, changed = write_fixes(done.files, done.findings)
         print_remark(f"{counted(number, 'fix', 'fixes')} written to {', '.join(changed)}")
-        done = check(sources, standard_input, search_path(), at, recalls=not no_cache)
+        done = check(sources, given, search_path(), at, recalls=not no_cache)
     status = print_findings(
         done.findings,
         done.unread,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain
@@ -23,6 +22,7 @@ from rulec.cli.options.output_options import (
     refuse_overwriting,
 )
 from rulec.cli.output import answer_lines, output_stream, print_written
+from rulec.cli.standard_input import standard_input
 from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.report.findings.diagnostics_text import Complaints
@@ -165,7 +165,7 @@ def _found(
                 yield from in_recordings(recordings, query, wanted, path)
                 continue
             if is_stream:
-                chunks = read_chunks(sys.stdin.buffer, "standard input", form or "jsonl")
+                chunks = read_chunks(standard_input(), "standard input", form or "jsonl")
                 yield from in_traces(chain.from_iterable(chunks), query, assumed, path)
                 continue
             with opened(Path(path)) as stream:

@@ -11,6 +11,7 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.shared_options import verbose_option
 from rulec.cli.output import counted, print_left_alone
+from rulec.cli.standard_input import standard_input
 from rulec.files import MAX_SOURCE_BYTES
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_line, print_remark, print_result
@@ -48,7 +49,7 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
     if "-" in paths:
         if len(paths) > 1:
             raise click.UsageError("`-` is standard input and stands alone")
-        file = formatted("standard input", None, sys.stdin.buffer.read(MAX_SOURCE_BYTES + 1))
+        file = formatted("standard input", None, standard_input().read(MAX_SOURCE_BYTES + 1))
         if writes:
             # Not as text: in the terminal's encoding it might be another one.
             sys.stdout.buffer.write(file.after)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-import sys
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import click
 
@@ -20,7 +19,7 @@ from rulec.cli.options.output_options import (
 )
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import answer_lines, open_session, print_written
-from rulec.cli.standard_input import STANDARD_INPUT
+from rulec.cli.standard_input import STANDARD_INPUT, standard_input
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_result
@@ -82,7 +81,8 @@ def command(
     is_shown = save == STANDARD_OUTPUT
     if is_shown and not to.is_file:
         raise click.UsageError("standard output takes one answer: give -o FILE, or --save FILE.")
-    saved = _saved(restore)
+    given = standard_input()
+    saved = _saved(restore, given)
     step_s = step_s or monitor_sources.step_of(saved)
     rules = open_session(at).compile_rulebook(rulebook, step_s=step_s)
     if restore is None:
@@ -94,7 +94,7 @@ def command(
     form = running_verdicts.as_json if to.form == "json" else running_verdicts.as_text
     file = None if save is None or is_shown else Path(save)
     with monitor_sources.saved_at_the_end(monitor, file), answer_lines(to) as write:
-        for live in read_live(sys.stdin.buffer, "standard input"):
+        for live in read_live(given, "standard input"):
             result = monitor_sources.answer(monitor, live)
             if isinstance(result, RulecError):
                 refused = True
@@ -112,7 +112,7 @@ def command(
     return ExitStatus.after(answered=not refused, failed=monitor.so_far.best in violated)
 
 
-def _saved(restore: str | None) -> Any:
+def _saved(restore: str | None, given: IO[bytes]) -> Any:
     """What a saved monitor's file holds, or the first line of standard input; None for none."""
     # As above: not for --help.
     from rulec.monitoring.online import monitor_sources
@@ -121,6 +121,6 @@ def _saved(restore: str | None) -> Any:
     if restore is None:
         return None
     if restore == STANDARD_INPUT:
-        line = sys.stdin.buffer.readline(LONGEST_LINE_BYTES + 1)
+        line = given.readline(LONGEST_LINE_BYTES + 1)
         return monitor_sources.saved_from(line, "standard input")
     return monitor_sources.read_saved(Path(restore))
