@@ -85,6 +85,13 @@ CUBES: Final = ResourceLimit(
     "`rulec compile` writes it to a file all the same; or say its demands in rules of their own",
 )
 
+PAIRS: Final = ResourceLimit(
+    "pairs",
+    100_000,
+    "pairs of rules that share a word, counted for each word",
+    "analyze its parts in rulebooks of their own",
+)
+
 TYPE_DEPTH: Final = ResourceLimit(
     "type_depth",
     100,
@@ -92,7 +99,7 @@ TYPE_DEPTH: Final = ResourceLimit(
     "leave out types that no rule tells apart",
 )
 
-LIMITS: Final = {limit.name: limit for limit in (CHOICES, STEPS, CUBES, TYPE_DEPTH)}
+LIMITS: Final = {limit.name: limit for limit in (CHOICES, STEPS, CUBES, PAIRS, TYPE_DEPTH)}
 """All limits that can be lifted."""
 
 

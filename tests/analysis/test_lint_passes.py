@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from rulec.analysis.lint.antecedents import antecedents, has_constant, occurrence
 from rulec.analysis.lint.conflict_findings import conflicts
-from rulec.analysis.lint.conflict_search import are_related, common_objects, conflict
+from rulec.analysis.lint.conflict_search import common_objects, conflict
 from rulec.analysis.lint.finding_messages import undecided_diagnostic
 from rulec.analysis.lint.questions import ComparedRules, RuleAnswers
 from rulec.analysis.lint.redundancy import (
@@ -18,9 +18,12 @@ from rulec.analysis.lint.redundancy import (
     implied_by,
     small_premises,
 )
+from rulec.analysis.lint.related_rules import RelatedRules
 from rulec.analysis.trace_display import trace_note
+from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant, Unary, UnaryOperator
 from rulec.logic.printing import formula_text
+from rulec.resource_limits import in_force
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Axiom, Rule, Variable
 from rulec.trace import Trace
@@ -105,6 +108,10 @@ def test_premises_speak_of_the_same_types_or_of_no_objects():
     assert len(small_premises(one, [alone] * (MOST_PREMISES + 2))) == MOST_PREMISES
 
 
+def are_related(one, other):
+    return RelatedRules("ab", {"a": one, "b": other}, "").of("a") == ["b"]
+
+
 def test_rules_are_related_by_what_they_read_and_by_axioms():
     about_p, about_near = sides([always(P), always(NEAR)], [X], ["stutter"] * 2)
     assert are_related(about_p, about_p)
@@ -113,6 +120,17 @@ def test_rules_are_related_by_what_they_read_and_by_axioms():
     chain = tuple(Axiom((X,), both(left, right)) for left, right in [(speed, NEAR), (P, speed)])
     about_p, about_near = sides([always(P), always(NEAR)], [X], ["stutter"] * 2, chain)
     assert are_related(about_p, about_near)
+
+
+def test_rules_that_share_words_are_counted_before_they_are_held_against_each_other():
+    rules = sides(
+        [always(P), always(NEAR), eventually(P), always(NEAR), always(P)], [X], ["stutter"] * 5
+    )
+    names = "abcde"
+    related = RelatedRules(names, dict(zip(names, rules, strict=True)), "")
+    assert list(related.pairs()) == [("a", "c"), ("a", "e"), ("b", "d"), ("c", "e")]
+    with in_force(["pairs=3"]), pytest.raises(RulecError, match="R0718"):
+        RelatedRules(names, dict(zip(names, rules, strict=True)), "")
 
 
 kinds = st.lists(st.sampled_from(["thing", "car"]), max_size=2)
@@ -189,7 +207,8 @@ def findings_of(formulas):
         for name, formula in zip(names, formulas, strict=True)
     }
     answers = RuleAnswers(ComparedRules(analyzed))
-    return [(one.code, one.message) for one in conflicts(names, analyzed, rules, answers)]
+    related = RelatedRules(names, analyzed, "")
+    return [(one.code, one.message) for one in conflicts(names, analyzed, rules, answers, related)]
 
 
 def renamed(rule, name):

@@ -206,8 +206,8 @@ class RulebookVerbs(SessionSettings):
     ) -> tuple[Diagnostic, ...]:
         """Find defects of a rulebook by its rules' automata. Raises RulecError.
 
-        ``on_progress`` is called with the number of rules that have been looked at. ``spread`` has
-        questions about rules answered ahead, as the command does in several processes.
+        ``on_progress`` is called with the number of questions about rules that have been answered.
+        ``spread`` has them answered ahead, as the command does in several processes.
         """
         from rulec.analysis.lint.rulebook_findings import rulebook_findings
         from rulec.rulebook.loader import read_rulebook

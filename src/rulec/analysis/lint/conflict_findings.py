@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import combinations
+from collections.abc import Iterator, Mapping, Sequence, Set
 
-from rulec.analysis.lint.conflict_search import Conflict, are_related
+from rulec.analysis.lint.conflict_search import Conflict
 from rulec.analysis.lint.finding_messages import CONFLICTING_RULES, undecided_diagnostic
 from rulec.analysis.lint.questions import Question, RuleAnswers
 from rulec.analysis.lint.redundancy import small_premises
+from rulec.analysis.lint.related_rules import RelatedRules
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.analysis.trace_display import trace_note
 from rulec.diagnostics import Diagnostic, Label
@@ -18,14 +18,15 @@ from rulec.witnesses.undecided import UndecidedError
 
 
 def conflict_questions(
-    names: Sequence[str], sides: Mapping[str, AnalyzedRule]
+    names: Sequence[str], sides: Mapping[str, AnalyzedRule], related: RelatedRules
 ) -> Iterator[Question]:
     """What ``conflicts`` asks where there is none."""
-    for pair in combinations(names, 2):
-        if are_related(*(sides[name] for name in pair)):
+    chosen = frozenset(names)
+    for pair in related.pairs():
+        if chosen.issuperset(pair):
             yield Question("conflict", pair)
     for name in names:
-        group = _group(name, names, sides)
+        group = _group(name, chosen, sides, related)
         if len(group) > 2:
             yield Question("conflict", group)
 
@@ -35,11 +36,13 @@ def conflicts(
     sides: Mapping[str, AnalyzedRule],
     rules: Mapping[str, Rule],
     answers: RuleAnswers,
+    related: RelatedRules,
 ) -> Iterator[Diagnostic]:
     """Pairs of hard rules in conflict, then groups without such a pair."""
     conflicting: list[frozenset[str]] = []
-    for first, second in combinations(names, 2):
-        if not are_related(sides[first], sides[second]):
+    hard = frozenset(names)
+    for first, second in related.pairs():
+        if not {first, second} <= hard:
             continue
         try:
             clash = answers.conflict([first, second])
@@ -51,7 +54,7 @@ def conflicts(
             conflicting.append(frozenset((first, second)))
             yield _cannot_be_kept((first, second), clash, sides, rules)
     for name in names:
-        group = _group(name, names, sides)
+        group = _group(name, hard, sides, related)
         if any(pair <= set(group) for pair in conflicting):
             continue
         clash = _clash(group, answers)
@@ -62,13 +65,11 @@ def conflicts(
             yield _cannot_be_kept(chosen, _clash(smaller, answers) or clash, sides, rules)
 
 
-def _group(name: str, names: Sequence[str], sides: Mapping[str, AnalyzedRule]) -> tuple[str, ...]:
+def _group(
+    name: str, names: Set[str], sides: Mapping[str, AnalyzedRule], related: RelatedRules
+) -> tuple[str, ...]:
     """A rule with others that speak of the same, as long as all stay small together."""
-    premises = [
-        sides[premise]
-        for premise in names
-        if premise != name and are_related(sides[name], sides[premise])
-    ]
+    premises = [sides[premise] for premise in related.of(name) if premise in names]
     return (name, *(one.rule.name for one in small_premises(sides[name], premises)))
 
 

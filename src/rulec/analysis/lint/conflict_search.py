@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rulec.analysis.counterexample import common_step, declarations_read
+from rulec.analysis.counterexample import common_step
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.mealy_monitor import MealyMonitor
-from rulec.logic.free_names import names_in
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
@@ -68,15 +67,6 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
 
     states = [alphabet.states[letter] for letter in word]
     return Conflict(synthesize_trace(states, universe, common_step(analyzed_rules), is_open))
-
-
-def are_related(first: AnalyzedRule, second: AnalyzedRule) -> bool:
-    """True if two rules share an input or are connected by axioms."""
-    reached = set(declarations_read(first.rule))
-    groups = [set(names_in(axiom.formula)) for axiom in first.axioms]
-    while joined := [group for group in groups if group & reached and not group <= reached]:
-        reached.update(*joined)
-    return bool(reached & declarations_read(second.rule))
 
 
 def common_objects(

@@ -63,19 +63,25 @@ def answers_to(rules: ComparedRules, question: Question) -> Iterator[object]:
 
 
 class RuleAnswers:
-    """Answers to questions about rules; each raises UndecidedError."""
+    """Answers to questions about rules; each raises UndecidedError.
 
-    def __init__(self, rules: ComparedRules) -> None:
+    ``tell`` is told how many have been answered.
+    """
+
+    def __init__(
+        self, rules: ComparedRules, tell: Callable[[float], object] = lambda _: None
+    ) -> None:
         self._rules = rules
+        self._tell = tell
         self._known: dict[Question, object] = {}
 
-    def ask_ahead(self, questions: Iterable[Question], spread: Spread) -> Iterator[int]:
-        """Have questions answered before they are asked; how many have been."""
+    def ask_ahead(self, questions: Iterable[Question], spread: Spread) -> None:
+        """Have questions answered before they are asked."""
         each = list(dict.fromkeys(questions))
         found = spread(partial(answers_to, self._rules), each)
-        for number, (question, answer) in enumerate(found, 1):
+        for question, answer in found:
             self._known[question] = answer
-            yield number
+            self._tell(len(self._known))
 
     def can_be_kept(self, name: str) -> bool:
         """True if some trace, with objects for the rule, keeps it."""
@@ -103,6 +109,7 @@ class RuleAnswers:
     def _to(self, question: Question) -> Any:
         if question not in self._known:
             self._known[question] = next(answers_to(self._rules, question))
+            self._tell(len(self._known))
         answer = self._known[question]
         if isinstance(answer, UndecidedError):
             raise answer

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from math import prod
 
 from rulec.analysis.counterexample import counterexample
-from rulec.analysis.lint.conflict_search import are_related
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.letter_functions import monitor_function
@@ -36,14 +35,13 @@ def can_be_kept(analyzed: AnalyzedRule) -> bool:
 def implied_by(analyzed: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[AnalyzedRule, ...]:
     """One or few other rules that forbid all that a rule forbids, if there are any.
 
-    The others are taken together as far as their automata stay small; so more of them together may
-    imply it without being found. Raises UndecidedError.
+    The others, which are related to it, are taken together as far as their automata stay small; so
+    more of them together may imply it without being found. Raises UndecidedError.
     """
-    related = [premise for premise in others if are_related(analyzed, premise)]
-    for premise in related:
+    for premise in others:
         if counterexample(analyzed, [premise]) is None:
             return (premise,)
-    premises = small_premises(analyzed, related)
+    premises = small_premises(analyzed, others)
     if len(premises) < 2 or counterexample(analyzed, premises) is not None:
         return ()
     for premise in premises:

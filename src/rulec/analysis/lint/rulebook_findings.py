@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 
 from rulec.analysis.diff.rule_comparison import RuleComparison
@@ -16,6 +16,7 @@ from rulec.analysis.lint.antecedents import (
 )
 from rulec.analysis.lint.conflict_findings import conflict_questions, conflicts
 from rulec.analysis.lint.questions import ComparedRules, Question, RuleAnswers, Spread
+from rulec.analysis.lint.related_rules import RelatedRules
 from rulec.analysis.shared_compilation import AnalyzedRule, compile_shared
 from rulec.analysis.trace_display import trace_note
 from rulec.diagnostics import Diagnostic, Label, Span
@@ -38,7 +39,7 @@ def rulebook_findings(
         book: the rulebook.
         bases: the rulebooks that it extends.
         extends: where it says so.
-        tell: is told how many rules have been looked at, or questions with ``spread``.
+        tell: is told how many questions about rules have been answered.
         spread: has questions answered ahead, such as in other processes.
 
     Raises RulecError if a rule cannot be compiled.
@@ -52,19 +53,17 @@ def rulebook_findings(
     asked = {name: occurrence(*condition, name) for name, condition in conditions.items()}
     inherited = [{rule.name: rule for rule in base.rules if rule.name in by_name} for base in bases]
     own, *of_bases = compile_shared([book, *bases], [{**by_name, **asked}, *inherited])
-    answers = RuleAnswers(ComparedRules(own, of_bases))
+    related = RelatedRules(list(by_name), own, book.name)
+    answers = RuleAnswers(ComparedRules(own, of_bases), tell)
     if spread is not None:
-        for number in answers.ask_ahead(_likely(by_name, list(asked), own, of_bases), spread):
-            tell(number)
+        answers.ask_ahead(_likely(by_name, asked, own, of_bases, related), spread)
     diagnostics: list[Diagnostic] = []
     good: list[str] = []
-    for number, (name, rule) in enumerate(by_name.items(), 1):
-        occurring = [
-            (antecedent, asked_name)
-            for asked_name, (conditioned, antecedent) in conditions.items()
-            if conditioned is rule
-        ]
-        idle = [*_idle(rule, occurring, answers)]
+    occurring: dict[str, list[tuple[Antecedent, str]]] = {name: [] for name in by_name}
+    for asked_name, (conditioned, antecedent) in conditions.items():
+        occurring[conditioned.name].append((antecedent, asked_name))
+    for name, rule in by_name.items():
+        idle = [*_idle(rule, occurring[name], answers)]
         diagnostics += [diagnostic for _, diagnostic in idle]
         # Without an exception that never holds a rule means what it means with it.
         if all(kind == "unless" for kind, _ in idle):
@@ -72,10 +71,9 @@ def rulebook_findings(
             diagnostics += alone
             if not alone:
                 good.append(name)
-        tell(number)
-    diagnostics += _needless(good, by_name, answers)
+    diagnostics += _needless(good, by_name, answers, related)
     hard = [name for name in good if by_name[name].strength == "hard"]
-    diagnostics += conflicts(hard, own, by_name, answers)
+    diagnostics += conflicts(hard, own, by_name, answers, related)
     for number, (base, sides) in enumerate(zip(bases, of_bases, strict=True)):
         for name, side in sides.items():
             comparison = answers.compared(name, number)
@@ -88,9 +86,10 @@ def rulebook_findings(
 
 def _likely(
     rules: Mapping[str, Rule],
-    asked: Sequence[str],
+    asked: Iterable[str],
     own: Mapping[str, AnalyzedRule],
     of_bases: Sequence[Mapping[str, AnalyzedRule]],
+    related: RelatedRules,
 ) -> Iterator[Question]:
     """What will be asked if nothing is found, which is as good as all that is."""
     for name in (*asked, *rules):
@@ -98,20 +97,22 @@ def _likely(
     for name in rules:
         yield Question("violated", (name,))
     for name in reversed(list(rules)):
-        yield Question("implied", (name, *_others(name, list(rules), rules)))
+        yield Question("implied", (name, *_others(name, rules.keys(), rules, related)))
     hard = [name for name, rule in rules.items() if rule.strength == "hard"]
-    yield from conflict_questions(hard, own)
+    yield from conflict_questions(hard, own, related)
     for number, sides in enumerate(of_bases):
         for name in sides:
             yield Question("compared", (name,), number)
 
 
-def _others(name: str, left: Sequence[str], rules: Mapping[str, Rule]) -> list[str]:
+def _others(
+    name: str, left: Set[str], rules: Mapping[str, Rule], related: RelatedRules
+) -> list[str]:
     """Those that might make a rule needless."""
     return [
         kept
-        for kept in left
-        if kept != name and (rules[kept].strength == "hard" or rules[name].strength == "soft")
+        for kept in related.of(name)
+        if kept in left and (rules[kept].strength == "hard" or rules[name].strength == "soft")
     ]
 
 
@@ -171,14 +172,17 @@ def _alone(rule: Rule, answers: RuleAnswers) -> Iterator[Diagnostic]:
 
 
 def _needless(
-    names: Sequence[str], rules: Mapping[str, Rule], answers: RuleAnswers
+    names: Sequence[str],
+    rules: Mapping[str, Rule],
+    answers: RuleAnswers,
+    related: RelatedRules,
 ) -> Iterator[Diagnostic]:
     """Rules that can all be left out together without loss."""
-    left = list(names)
+    left = set(names)
     diagnostics: list[Diagnostic] = []
     for name in reversed(names):
         try:
-            premises = answers.implied_by(name, _others(name, left, rules))
+            premises = answers.implied_by(name, _others(name, left, rules, related))
         except UndecidedError as problem:
             diagnostics.append(
                 finding_messages.undecided_diagnostic(rules[name], "others imply it", problem)

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Callable
 from functools import partial
+from math import inf
+from time import monotonic
 
 import click
 
@@ -12,7 +16,10 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output
 from rulec.cli.output import counted, errors_told, open_session, print_findings, print_lost
 from rulec.diagnostics import Diagnostic
-from rulec.report.text.console import progress
+from rulec.report.text.console import print_remark, progress
+
+_LONG_S = 20
+"""After so many seconds without a terminal it is said that the analysis goes on."""
 
 
 @click.command()
@@ -39,7 +46,8 @@ def command(rulebooks: tuple[str, ...], to: Output, fail_on: str, jobs: Jobs, at
     for rulebook in dict.fromkeys(rulebooks):
         with errors_told(unread.extend), progress(f"analyzing {rulebook}", None) as tell:
             spread = spreading(jobs, rulebook, partial(print_lost, "analyzed", rulebook))
-            findings += open_session(at).analyze(rulebook, on_progress=tell, spread=spread)
+            said = _patience(rulebook, tell)
+            findings += open_session(at).analyze(rulebook, on_progress=said, spread=spread)
     status = print_findings(
         list(dict.fromkeys(findings)),
         unread,
@@ -49,3 +57,18 @@ def command(rulebooks: tuple[str, ...], to: Output, fail_on: str, jobs: Jobs, at
     )
     undecided = any(finding.code == NOT_DECIDED.code for finding in findings)
     return ExitStatus.NOT_ANSWERED if undecided else status
+
+
+def _patience(rulebook: str, tell: Callable[[float], object]) -> Callable[[float], object]:
+    """Tell a terminal how far one is; elsewhere say it once, if it takes long."""
+    if sys.stderr.isatty():
+        return tell
+    until = monotonic() + _LONG_S
+
+    def say(done: float) -> None:
+        nonlocal until
+        if monotonic() > until:
+            until = inf
+            print_remark(f"analyzing {rulebook}: {done:,.0f} questions answered, and it goes on")
+
+    return say

@@ -101,7 +101,8 @@ _bar: _Bar | None = None
 def progress(what: str, total: float | None) -> Iterator[Callable[[float], None]]:
     """A progress bar on a terminal, nothing at all elsewhere.
 
-    ``total`` is None if it is not known. Yields a function that is told how much is done so far.
+    ``total`` is None if it is not known; then the bar has a count. Yields a function that is told
+    how much is done so far.
     """
     global _bar
     if not sys.stderr.isatty():
@@ -109,9 +110,12 @@ def progress(what: str, total: float | None) -> Iterator[Callable[[float], None]
         return
     # rich takes 40 ms, and is for terminals alone.
     from rich.console import Console
-    from rich.progress import Progress
+    from rich.progress import MofNCompleteColumn, Progress
 
-    with Progress(console=Console(stderr=True), transient=True) as live:
+    columns = Progress.get_default_columns()
+    if total is None:
+        columns = (*columns[:2], MofNCompleteColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as live:
         _bar = _Bar(live, live.add_task(what, total=total))
         try:
             yield _bar.tell

@@ -1,0 +1,60 @@
+"""Which rules of a rulebook can have to do with each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from rulec.analysis.counterexample import declarations_read
+from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.logic.free_names import names_in
+from rulec.resource_limits import PAIRS
+
+
+class RelatedRules:
+    """Rules of one rulebook that share an input or are connected by axioms.
+
+    What rules share is looked up, so rules that share nothing cost nothing together. ``names`` are
+    the rules in question, in the order in which findings are told.
+
+    Raises RulecError R0718 if more pairs than the limit `pairs` share something.
+    """
+
+    def __init__(self, names: Sequence[str], rules: Mapping[str, AnalyzedRule], book: str) -> None:
+        self._place = {name: place for place, name in enumerate(names)}
+        topics = _topics(rules[names[0]]) if names else {}
+        self._topics = {
+            name: {topics.get(word, word) for word in declarations_read(rules[name].rule)}
+            for name in names
+        }
+        self._about: dict[str, list[str]] = {}
+        for name, own in self._topics.items():
+            for topic in own:
+                self._about.setdefault(topic, []).append(name)
+        sharing = sum(len(own) * (len(own) - 1) // 2 for own in self._about.values())
+        PAIRS.within(sharing, None, f"rulebook `{book}`")
+
+    def of(self, name: str) -> list[str]:
+        """The others that a rule is related to, in order."""
+        found = {other for topic in self._topics[name] for other in self._about[topic]}
+        return sorted(found - {name}, key=self._place.__getitem__)
+
+    def pairs(self) -> Iterator[tuple[str, str]]:
+        """The pairs of related rules, in order."""
+        for name, place in self._place.items():
+            for other in self.of(name):
+                if self._place[other] > place:
+                    yield name, other
+
+
+def _topics(analyzed: AnalyzedRule) -> dict[str, str]:
+    """One word for all those that axioms connect."""
+    topic_of: dict[str, str] = {}
+    words_of: dict[str, list[str]] = {}
+    for axiom in analyzed.axioms:
+        words = list(dict.fromkeys(names_in(axiom.formula)))
+        topics = dict.fromkeys(topic_of.get(word, word) for word in words)
+        for topic in topics:
+            joined = words_of.pop(topic, [topic])
+            words_of.setdefault(words[0], []).extend(joined)
+            topic_of.update(dict.fromkeys(joined, words[0]))
+    return topic_of
