@@ -105,6 +105,8 @@ class _Covers:
         if onset not in self._known:
             chosen: dict[Cube, int] = {}
             remaining = onset
+            if self._lonely(onset).bit_count() > self._most:
+                raise CUBES.exceeded(None, self._whose)
             while remaining:
                 if len(chosen) == self._most:
                     raise CUBES.exceeded(None, self._whose)
@@ -115,6 +117,22 @@ class _Covers:
                 remaining &= ~chosen[best]
             self._known[onset] = _needed(chosen, onset)
         return self._known[onset]
+
+    def _lonely(self, onset: int) -> int:
+        """Those of some letters that no other of them differs from in one read alone.
+
+        Each takes a cube of its own; in a parity all do.
+        """
+        stride, cover, lonely = 1, onset | self._free, onset
+        for size, members in zip(self.sizes, self._digits, strict=True):
+            once = twice = 0
+            for digit, own in enumerate(members):
+                here = (cover & own) >> (digit * stride)
+                once, twice = once | here, twice | (once & here)
+            for digit in range(size):
+                lonely &= ~(twice << (digit * stride))
+            stride *= size
+        return lonely
 
     def _worth(self, cube: Cube, remaining: int) -> tuple[int, int, list[list[int]]]:
         covered = (self._letters(cube) & remaining).bit_count()
