@@ -3,6 +3,10 @@
 A list of what is to get which name (the manifest) is written once all new files are on the disk.
 From then on the new ones count: whoever writes to the folder next does what a killed program had
 left to do. Before, what it left behind is removed.
+
+A manifest that came with a stranger's files is not obeyed: it names, for itself and for each new
+file, the number (inode) that the system has given it, and for the latter the time of its last
+change (ctime). Nobody can choose these, nor does a checkout or an archive bring them along.
 """
 
 from __future__ import annotations
@@ -15,7 +19,16 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from rulec.files import as_before, is_replaced, put_folder_on_disk, put_on_disk, refusals
+import msgspec
+
+from rulec.files import (
+    as_before,
+    is_own,
+    is_replaced,
+    put_folder_on_disk,
+    put_on_disk,
+    refusals,
+)
 from rulec.work_trees import is_ordinary, refuse_no_source
 
 MANIFEST = ".rulec-writing.json"
@@ -73,7 +86,11 @@ def _commit(folder: Path, mark: str, names: Mapping[str, str]) -> None:
     """Let new files count from now on, in one step: the manifest gets its name."""
     part = f".rulec-{mark}-{len(names)}.part"
     try:
-        _write_new(folder / part, folder / MANIFEST, json.dumps(names).encode())
+        with open(folder / part, "xb", opener=_private) as stream:
+            known = {own: [name, *_identity(folder / own)] for own, name in names.items()}
+            manifest = {"inode": os.fstat(stream.fileno()).st_ino, "files": known}
+            stream.write(json.dumps(manifest).encode())
+            put_on_disk(stream)
         put_folder_on_disk(folder)
         os.replace(folder / part, folder / MANIFEST)  # noqa: PTH105 - one call for both steps
     except BaseException:
@@ -84,8 +101,8 @@ def _commit(folder: Path, mark: str, names: Mapping[str, str]) -> None:
 
 def _finish(folder: Path) -> None:
     """Give new files their names if they count, and remove what is left of them."""
-    for part, name in _left_to_do(folder / MANIFEST).items():
-        if is_part(folder / part):
+    for part, (name, *identity) in _left_to_do(folder / MANIFEST).items():
+        if is_part(folder / part) and _identity(folder / part) == identity:
             with refusals(folder / name):
                 os.replace(folder / part, folder / name)  # noqa: PTH105
     put_folder_on_disk(folder)
@@ -101,20 +118,37 @@ def is_part(path: Path) -> bool:
     return bool(_PART.fullmatch(path.name)) and not path.is_symlink() and is_ordinary(path)
 
 
-def _left_to_do(manifest: Path) -> Mapping[str, str]:
-    """New files and the names that they get; none without a manifest, or if it is not ours."""
+def _identity(path: Path) -> list[int]:
+    """What nobody can choose of a file: its number, and when it was last changed (ns)."""
+    status = path.stat()
+    return [status.st_ino, status.st_ctime_ns]
+
+
+def _private(name: str, flags: int) -> int:
+    return os.open(name, flags, 0o600)
+
+
+def _left_to_do(manifest: Path) -> Mapping[str, tuple[str, int, int]]:
+    """New files, the names that they get, and their identities.
+
+    None without a manifest, or if it was not written here by this user.
+    """
     if manifest.is_symlink() or not is_ordinary(manifest):
         return {}
     try:
         with manifest.open("rb") as stream:
-            names = json.loads(stream.read(_MOST_BYTES))
+            status = os.fstat(stream.fileno())
+            found = msgspec.json.decode(stream.read(_MOST_BYTES), type=_Manifest)
     except (OSError, ValueError, RecursionError):
         return {}
-    is_own = isinstance(names, dict) and all(
-        isinstance(name, str) and _is_name(name) and _PART.fullmatch(part)
-        for part, name in names.items()
-    )
-    return names if is_own else {}
+    names = [name for name, *_ in found.files.values()]
+    fits = all(map(_PART.fullmatch, found.files)) and all(map(_is_name, names))
+    return found.files if fits and is_own(status) and found.inode == status.st_ino else {}
+
+
+class _Manifest(msgspec.Struct, forbid_unknown_fields=True):
+    inode: int
+    files: dict[str, tuple[str, int, int]]
 
 
 def _is_name(name: str) -> bool:

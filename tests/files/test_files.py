@@ -4,6 +4,7 @@ import gzip
 import io
 import os
 import resource
+import shutil
 import unicodedata
 from functools import partial
 from pathlib import Path
@@ -170,9 +171,9 @@ def test_a_set_that_was_killed_is_finished_or_undone_by_the_next(tmp_path, monke
 @pytest.mark.parametrize(
     "planted",
     [
-        '{".rulec-0123456789abcdef-0.part": "../victim"}',
-        '{"../secret": "b"}',
-        '{".rulec-0123456789abcdef-0.part": 5}',
+        '{"inode": 5, "files": {".rulec-0123456789abcdef-0.part": ["../victim", 1, 1]}}',
+        '{"inode": 5, "files": {"../secret": ["b", 1, 1]}}',
+        '{"inode": 5, "files": {".rulec-0123456789abcdef-0.part": 5}}',
         "[" * 100_000,
         "[]",
     ],
@@ -188,6 +189,21 @@ def test_a_planted_manifest_reaches_nothing_elsewhere(planted, tmp_path):
     assert (tmp_path / "victim").read_text() == "victim"
     assert (tmp_path / "secret").read_text() == "secret"
     assert not (folder / MANIFEST).exists()
+
+
+def test_a_manifest_that_comes_with_a_checkout_is_not_obeyed(tmp_path, monkeypatch):
+    ours, theirs = tmp_path / "ours", tmp_path / "theirs"
+    ours.mkdir()
+    for n in range(100):
+        (ours / "a").write_bytes(b"old")
+        killed_after(n, lambda: write_together(ours, {"a": b"new"}), monkeypatch)
+        if (ours / MANIFEST).exists():
+            break
+    shutil.copytree(ours, theirs)
+    for folder, content in ((ours, b"new"), (theirs, b"old")):
+        write_together(folder, {"d": b""})
+        assert (folder / "a").read_bytes() == content
+        assert sorted(path.name for path in folder.iterdir()) == ["a", "d"]
 
 
 @pytest.mark.parametrize("code", ["R0730", "R0731"])
