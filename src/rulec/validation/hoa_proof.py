@@ -44,7 +44,7 @@ def prove_hoa(
 
     every = possible << size | possible if ends else possible
     automaton = read_hoa(text, letters_of, (1 << (size << ends)) - 1)
-    fits = len(unknown) == ends and all(map(_ALIVE.fullmatch, unknown))
+    fits = len(unknown) <= ends and all(map(_ALIVE.fullmatch, unknown))
     require(fits, "its HOA text speaks of other propositions than its formula")
     for row in automaton.edges:
         met = 0
