@@ -107,6 +107,31 @@ def test_ten_thousand_changed_tables():
     assert check_changed_tables(6, 20_000) > 10_000
 
 
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("State: 0 {0}", "State: 0"),
+        ("[t] ", "[0] "),
+        ("[t] ", "[t] 0 [t] "),
+        ("Inf(0)", "Fin(0)"),
+        ("Start: 0", "Start: 1"),
+        ('"p" "q"', '"q" "p"'),
+        ('"p" "q"', '"p" "r"'),
+        ("HOA: v1", "HOA: v2"),
+        ("--BODY--", "Alias: @a 0 --BODY--"),
+        ("--END--", ""),
+    ],
+)
+def test_a_changed_hoa_text_is_not_proved(before, after):
+    book = "rulebook b signal p, q hard rule r { require always (p implies next q) }"
+    data = json.loads(to_json(rulec.compile_rulebook(rulec.parse_rulebook(book))))
+    text = data["rules"][0]["hoa"]
+    assert reasons(sealed(data)) == {}
+    assert before in text, text
+    data["rules"][0]["hoa"] = text.replace(before, after)
+    assert "HOA" in reasons(sealed(data))["r"]
+
+
 def test_the_trace_that_is_given_is_judged_otherwise():
     compiled = rulec.compile_rulebook(
         rulec.parse_rulebook(
