@@ -42,7 +42,10 @@ _EITHER = frozenset(
     )
 )
 _COMMONROAD_ONLY = frozenset(
-    (*("icy", "no_overtaking_sign", "no_turn_on_red_sign", "visibility", "wet"),)
+    (
+        *("icy", "night", "no_overtaking_sign", "no_turn_on_red_sign", "raining", "visibility"),
+        "wet",
+    )
 )
 _SUMO_ONLY = frozenset(
     (
@@ -57,6 +60,7 @@ _SIGNED = frozenset(
     )
 )
 _LAMPS = frozenset(("hazard_lights", "indicator", "warning_lights"))
+_OWN_LAMPS = frozenset(("front_fog_lamps", "headlamps", "rear_fog_lamps"))
 _ROAD_KINDS = frozenset(("built_up", "lane_kind", "road_class"))
 _ARGOVERSE = _EITHER - _SIGNED - _LAMPS - _ROAD_KINDS
 """Its maps have lanes, marks and crossings; of its objects there are places, kinds and sizes."""
@@ -91,12 +95,14 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "sumo": _EITHER | _SUMO_ONLY,
     "waymo": _EITHER - _NOT_BY_LANE_CENTRES,
     "scenarionet": _EITHER - _NOT_BY_LANE_CENTRES,
-    "tracks": _EITHER | _ON_ANY_MAP | {"boarding", "leaving_stop"},
+    "tracks": _EITHER | _ON_ANY_MAP | _OWN_LAMPS | {"boarding", "leaving_stop"},
     **dict.fromkeys(
         ("levelx", "interaction", "ngsim", "omega-prime"), (_EITHER | _ON_ANY_MAP) - _BY_LAMPS
     ),
     "highd": _EITHER - _BY_LAMPS - _BY_SIGNS_AND_LINES,
-    "osi": _EITHER | {"icy", "no_overtaking_sign", "visibility", "wet"},
+    "osi": _EITHER
+    | _OWN_LAMPS
+    | {"icy", "night", "no_overtaking_sign", "raining", "visibility", "wet"},
     "argoverse-motion": _ARGOVERSE,
     "argoverse-sensor": _ARGOVERSE,
     "123d": _ARGOVERSE

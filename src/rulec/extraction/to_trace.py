@@ -20,6 +20,7 @@ from rulec.extraction.signal_arrays import (
     written,
 )
 from rulec.extraction.signals.clearance_signals import clearance_signals
+from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
@@ -107,6 +108,7 @@ _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     lane_change_signals,
     lane_mark_signals,
     manoeuvre_signals,
+    lamp_signals,
     reason_signals,
     turning_conflicts,
 )

@@ -37,6 +37,10 @@ Lamp = Literal[
     "blue_light",
     "horn",
     "doors",
+    "dipped_beam",
+    "main_beam",
+    "front_fog_lamp",
+    "rear_fog_lamp",
 ]
 """What a vehicle shows others: its lamps, its horn, and open doors."""
 
@@ -208,11 +212,16 @@ class PlanningProblem:
 
 @dataclass(frozen=True, slots=True)
 class Weather:
-    """The weather of a recording; None where the file does not say."""
+    """The weather of a recording, and whether it is night; None where the file does not say.
+
+    ``raining``: something falls, be it snow or hail.
+    """
 
     wet: bool | None = None
     icy: bool | None = None
     visibility_m: float | None = None
+    raining: bool | None = None
+    night: bool | None = None
 
 
 class StatedError(NamedTuple):

@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.recordings.recording import Weather
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
@@ -304,3 +306,27 @@ def test_the_nearest_to_the_crossing():
     nearest = "nearest_to_crossing"
     assert told(crossing_signals, nearest, road, ego, near, ahead) == "TTTT"
     assert told(crossing_signals, nearest, road, ego, far, ahead) == "FFFF"
+
+
+BEAMS = frozenset({"dipped_beam", "main_beam", "rear_fog_lamp"})
+
+
+@pytest.mark.parametrize(
+    ("lit", "night", "expected"),
+    [
+        ({"main_beam", "dipped_beam"}, None, "main_beam"),
+        ({"dipped_beam", "brake_light"}, True, "dipped_beam"),
+        ({"rear_fog_lamp"}, True, "lamps_off"),
+        (set(), False, None),
+        (set(), None, None),
+    ],
+)
+def test_the_brightest_of_ego_s_lamps(lit, night, expected):
+    ego = replace(steady(7, 50, 0), shows=BEAMS, lamps={k: frozenset(lit) for k in range(3)})
+    found = replace(recording(two_way(), [ego]), weather=Weather(night=night))
+    signals = lamp_signals(context_of(found))
+    assert signals.unknown["headlamps"].tolist() == [*([expected is None] * 3), True]
+    assert expected in (None, signals.values("headlamps")[0])
+    assert signals.world["rear_fog_lamps"].tolist() == [*(["rear_fog_lamp" in lit] * 3), False]
+    # Of the others the file says nothing
+    assert signals.world.keys() == {"headlamps", "rear_fog_lamps"}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.clearance_signals import clearance_signals
+from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
@@ -38,9 +39,10 @@ GROUPS = (
     zone_signals,
     *(intention_signals, merge_signals, clearance_signals, flow_signals),
     *(lane_change_signals, lane_mark_signals),
-    *(manoeuvre_signals, reason_signals, turning_conflicts),
+    *(manoeuvre_signals, lamp_signals, reason_signals, turning_conflicts),
 )
-LAMPS = frozenset({"left_indicator", "right_indicator", "hazard_lights"})
+LAMPS = frozenset({"left_indicator", "right_indicator", "hazard_lights", "dipped_beam"})
+LAMPS |= frozenset({"main_beam", "front_fog_lamp", "rear_fog_lamp"})
 COMPLETE = (
     *("light", "rail", "officer", "YIELD", "STOP", "PRIORITY", "GREEN_ARROW"),
     *("NO_TURN_ON_RED", "NO_OVERTAKING_START"),
@@ -61,7 +63,7 @@ def everything():
         replace(one, shows=LAMPS, lamps={k: frozenset({"left_indicator"}) for k in range(4)})
         for one in (ego, car)
     )
-    weather = Weather(wet=True, icy=False, visibility_m=80.0)
+    weather = Weather(wet=True, icy=False, visibility_m=80.0, raining=True, night=True)
     found = recording(road, [ego, car, walker, rider])
     return replace(found, complete=frozenset(COMPLETE), weather=weather)
 

@@ -171,16 +171,27 @@ def test_the_lowest_limit_holds_and_none_may_be_infinite(read):
 @pytest.mark.parametrize(
     ("sky", "ground", "weather"),
     [
-        ("sunny", "clean", Weather(wet=False, icy=False, visibility_m=1000)),
-        ("clear", "ice", Weather(wet=None, icy=True, visibility_m=1000)),
-        ("hail", "snow", Weather(wet=True)),
-        ("fog", "wet", Weather(wet=True, icy=False)),
+        ("sunny", "clean", Weather(wet=False, icy=False, visibility_m=1000, raining=False)),
+        ("clear", "ice", Weather(wet=None, icy=True, visibility_m=1000, raining=False)),
+        ("hail", "snow", Weather(wet=True, raining=True)),
+        ("snow", "unknown", Weather(raining=True)),
+        ("unknown", "unknown", Weather()),
+        ("fog", "wet", Weather(wet=True, icy=False, raining=False)),
     ],
 )
 def test_the_weather(read, sky, ground, weather):
     said = f"<weather>{sky}</weather><underground>{ground}</underground>"
     place = f"<location><environment>{said}</environment></location>"
     assert read(("  <obstacle", f"{place}<obstacle")).weather == weather
+
+
+@pytest.mark.parametrize(
+    ("daytime", "night"), [("night", True), ("noon", False), ("sunset", None), ("12:00", None)]
+)
+def test_the_time_of_day(read, daytime, night):
+    said = f"<timeOfDay>{daytime}</timeOfDay>"
+    place = f"<location><environment>{said}</environment></location>"
+    assert read(("  <obstacle", f"{place}<obstacle")).weather.night is night
 
 
 def test_tiny_numbers_are_none(read):

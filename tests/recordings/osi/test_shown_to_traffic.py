@@ -178,10 +178,11 @@ def test_a_crossing_leads_across_its_lane(read, yaw):
 @pytest.mark.parametrize(
     ("rain", "fog", "water", "weather"),
     [
-        (5, 2, None, Weather(wet=True, visibility_m=1000.0)),
-        (2, 9, None, Weather()),
-        (3, 6, 0.0, Weather(wet=False, visibility_m=1000.0)),
-        (2, 0, 0.4, Weather(wet=True)),
+        (5, 2, None, Weather(wet=True, visibility_m=1000.0, raining=True)),
+        (2, 9, None, Weather(raining=False)),
+        (1, 9, None, Weather()),
+        (3, 6, 0.0, Weather(wet=False, visibility_m=1000.0, raining=True)),
+        (2, 0, 0.4, Weather(wet=True, raining=False)),
     ],
 )
 def test_weather(read, rain, fog, water, weather):
@@ -191,3 +192,11 @@ def test_weather(read, rain, fog, water, weather):
     )
     said = counted(12, whole(6, rain), whole(7, fog))
     assert read(said, static=ROAD + lane).weather == weather
+
+
+@pytest.mark.parametrize(
+    ("level", "night"),
+    [(2, True), (5, True), (6, None), (8, None), (9, False), (10, False), (0, None)],
+)
+def test_it_is_night_below_ten_lux_and_not_from_a_thousand_on(read, level, night):
+    assert read(counted(12, whole(1, level)), static=ROAD).weather.night is night

@@ -29,8 +29,8 @@ LAMPS = {
 }
 WEATHERS = {
     (None, None): Weather(),
-    ("light_rain", "wet"): Weather(wet=True, icy=False),
-    ("clear", "clean"): Weather(wet=False, icy=False, visibility_m=1000.0),
+    ("light_rain", "wet"): Weather(wet=True, icy=False, raining=True, night=True),
+    ("clear", "clean"): Weather(wet=False, icy=False, visibility_m=1000.0, raining=False),
 }
 
 

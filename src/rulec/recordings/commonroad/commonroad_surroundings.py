@@ -16,6 +16,8 @@ _WET = frozenset({"light_rain", "mid_rain", "heavy_rain", "hail"})
 _DRY = frozenset({"clear", "sunny", "cloudy"})
 _WEATHERS = _WET | _DRY | {"fog", "snow", "unknown"}
 _GROUNDS = frozenset({"wet", "clean", "dirty", "damaged", "snow", "ice", "unknown"})
+_FALLS = _WET | {"snow"}
+_DAYTIMES = {"night": True, "day": False, "morning": False, "noon": False, "afternoon": False}
 _FAR_M = 1000.0
 _ACUTE = 0.5
 _WAYS = tuple(
@@ -119,4 +121,11 @@ def read_weather(location: Tree) -> recording.Weather:
     if ground in ("clean", "dirty", "damaged") and weather in _DRY:
         wet = False
     icy = {"ice": True, "clean": False, "wet": False}.get(str(ground))
-    return recording.Weather(wet, icy, _FAR_M if weather in _DRY else None)
+    daytime = environment.first("timeOfDay")
+    return recording.Weather(
+        wet,
+        icy,
+        _FAR_M if weather in _DRY else None,
+        raining=weather in _FALLS if weather in _FALLS | _DRY | {"fog"} else None,
+        night=None if daytime is None else _DAYTIMES.get(daytime.word),
+    )

@@ -181,9 +181,20 @@ _SIGN_2020 = _sign(
     }
 )
 
-_ENVIRONMENT = {3: Field("weather", _WEATHERS), 4: Field("underground", _GROUNDS)}
+_ENVIRONMENT = {
+    2: Field("timeOfDay", _words("night sunset afternoon noon morning unknown")),
+    3: Field("weather", _WEATHERS),
+    4: Field("underground", _GROUNDS),
+}
 _LOCATION_2020: Table = {
-    5: Field("environment", {**_ENVIRONMENT, 3: Field("weather", _WEATHERS_2020)})
+    5: Field(
+        "environment",
+        {
+            **_ENVIRONMENT,
+            2: Field("timeOfDay", _words("night day unknown")),
+            3: Field("weather", _WEATHERS_2020),
+        },
+    )
 }
 _BOUND_2020: Table = {**_POLYGON, 2: Field("lineMarking", _MARKS_2020)}
 _LANELET_2020: Table = {

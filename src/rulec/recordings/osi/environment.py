@@ -1,4 +1,4 @@
-"""Country, side of traffic and weather of an ASAM OSI trace."""
+"""Country, side of traffic, weather and daylight of an ASAM OSI trace."""
 
 from __future__ import annotations
 
@@ -28,6 +28,13 @@ _COUNTRIES: Mapping[int, str] = {
 """ISO 3166-1: number -> code of three letters, of those whose side of traffic is known."""
 
 _RAIN = frozenset({"light", "moderate", "heavy", "very_heavy", "extreme"})
+_FALLS: Mapping[str, bool] = {"none": False, "very_light": True, **dict.fromkeys(_RAIN, True)}
+_DARK: Mapping[str, bool] = {
+    **dict.fromkeys(("level1", "level2", "level3", "level4"), True),
+    **dict.fromkeys(("level8", "level9"), False),
+}
+"""Below 10 lx the sun has set, from 1,000 lx on it has not; in between an overcast day may be."""
+
 _FAR = frozenset({"excellent", "good", "moderate", "poor", "mist"})
 _FAR_M = 1000.0
 """In the standard's words fog begins below 1000 m; lighter haze has its names, too."""
@@ -52,4 +59,10 @@ def weather_of(environment: Fields, lanes: Iterable[Fields]) -> Weather:
     if rain in _RAIN:
         wet = True
     icy = any(part > 0 for part in ice) if ice else None
-    return Weather(wet, icy, _FAR_M if environment.get("fog") in _FAR else None)
+    return Weather(
+        wet,
+        icy,
+        _FAR_M if environment.get("fog") in _FAR else None,
+        raining=_FALLS.get(rain),
+        night=_DARK.get(environment.get("ambient_illumination", "unknown")),
+    )

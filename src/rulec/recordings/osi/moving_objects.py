@@ -72,6 +72,12 @@ _BLUE: Mapping[str, frozenset[Lamp]] = {
     "off": frozenset(),
     **dict.fromkeys(("flashing_blue", "flashing_blue_and_red", "on"), frozenset({"blue_light"})),
 }
+_BEAMS: tuple[tuple[str, Lamp], ...] = (
+    ("head_light", "dipped_beam"),
+    ("high_beam", "main_beam"),
+    ("front_fog_light", "front_fog_lamp"),
+    ("rear_fog_light", "rear_fog_lamp"),
+)
 _LAMPS: tuple[tuple[str, frozenset[Lamp], Mapping[str, frozenset[Lamp]]], ...] = (
     (
         "indicator_state",
@@ -80,6 +86,10 @@ _LAMPS: tuple[tuple[str, frozenset[Lamp], Mapping[str, frozenset[Lamp]]], ...] =
     ),
     ("brake_light_state", frozenset({"brake_light"}), _BRAKES),
     ("emergency_vehicle_illumination", frozenset({"blue_light"}), _BLUE),
+    *(
+        (name, frozenset({lamp}), {"off": frozenset[Lamp](), "on": frozenset({lamp})})
+        for name, lamp in _BEAMS
+    ),
 )
 """Field -> the lamps that it tells of, and those that are lit by its value."""
 

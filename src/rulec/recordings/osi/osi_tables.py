@@ -62,6 +62,10 @@ VEHICLE: Table = {
         "light_state",
         {
             1: Field("indicator_state", INDICATORS),
+            2: Field("front_fog_light", LAMPS),
+            3: Field("rear_fog_light", LAMPS),
+            4: Field("head_light", LAMPS),
+            5: Field("high_beam", LAMPS),
             7: Field("brake_light_state", _words("unknown other off normal strong")),
             9: Field("emergency_vehicle_illumination", LAMPS),
         },
@@ -220,6 +224,12 @@ TRAFFIC_LIGHT: Table = {
     ),
 }
 ENVIRONMENT: Table = {
+    1: Field(
+        "ambient_illumination",
+        _words(
+            "unknown other level1 level2 level3 level4 level5 level6 level7 level8 level9",
+        ),
+    ),
     6: Field(
         "precipitation",
         _words("unknown other none very_light light moderate heavy very_heavy extreme"),

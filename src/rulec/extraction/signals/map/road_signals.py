@@ -98,6 +98,7 @@ def _officers(context: DriveContext) -> SignalColumns:
 def _weather(context: DriveContext) -> SignalColumns:
     weather = context.recording.weather
     told = {"wet": weather.wet, "icy": weather.icy, "visibility": weather.visibility_m}
+    told |= {"raining": weather.raining, "night": weather.night}
     return SignalColumns(
         {name: np.full(context.states, value) for name, value in told.items() if value is not None}
     )
@@ -162,5 +163,5 @@ _PASSES: Passes = {
     ("lane_kind",): _lane_kind,
     ("tunnel",): _tunnel,
     ("told_to_stop", "told_to_go"): _officers,
-    ("wet", "icy", "visibility"): _weather,
+    ("wet", "icy", "visibility", "raining", "night"): _weather,
 }

@@ -1,0 +1,63 @@
+"""Signals of ego's own lamps, where the recording has them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.recordings.recording import Lamp
+
+_FOG_LAMPS: tuple[tuple[str, Lamp], ...] = (
+    ("front_fog_lamps", "front_fog_lamp"),
+    ("rear_fog_lamps", "rear_fog_lamp"),
+)
+_HEADLAMPS = ("lamps_off", "dipped_beam", "main_beam")
+_BEAMS = frozenset[Lamp]({"dipped_beam", "main_beam"})
+
+
+def lamp_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of ego's lamps, those of the names."""
+    return signals_by(_PASSES, context, names)
+
+
+def _headlamps(context: DriveContext) -> SignalColumns:
+    """The brightest of ego's lamps; without a beam there may be weaker ones, unless it is night.
+
+    At night those are not enough, whichever they are.
+    """
+    (ego,) = context.ego.participants
+    if not ego.lamps or not ego.shows >= _BEAMS:
+        return SignalColumns()
+    lit = _by_state(context)
+    codes = [2 if "main_beam" in (x or ()) else "dipped_beam" in (x or ()) for x in lit]
+    dark = [x is None or not (x & _BEAMS or context.recording.weather.night) for x in lit]
+    return SignalColumns(
+        {"headlamps": np.array(codes, dtype=int)},
+        unknown={"headlamps": np.array(dark, dtype=bool)},
+        texts={"headlamps": _HEADLAMPS},
+    )
+
+
+def _fog_lamps(context: DriveContext) -> SignalColumns:
+    (ego,) = context.ego.participants
+    told = [(name, lamp) for name, lamp in _FOG_LAMPS if ego.lamps and lamp in ego.shows]
+    lit = _by_state(context)
+    unknown = np.array([x is None for x in lit], dtype=bool)
+    return SignalColumns(
+        {name: np.array([lamp in (x or ()) for x in lit], dtype=bool) for name, lamp in told},
+        unknown={name: unknown for name, _ in told},
+    )
+
+
+def _by_state(context: DriveContext) -> list[frozenset[Lamp] | None]:
+    """Ego's lamps that are lit, by state; None where the recording does not tell."""
+    (ego,) = context.ego.participants
+    return [ego.lamps.get(context.first_step + state) for state in range(context.states)]
+
+
+_PASSES: Passes = {
+    ("headlamps",): _headlamps,
+    ("front_fog_lamps", "rear_fog_lamps"): _fog_lamps,
+}
