@@ -69,6 +69,15 @@ def test_a_box_alone_that_points_across_a_line_decides_nothing(drifts, told):
     assert drive.trace.states[0]["on_solid_line"] is told
 
 
+@pytest.mark.parametrize(("heading", "told"), [(0.0, True), (0.5, UNKNOWN)])
+def test_who_comes_from_beside_the_road_crosses_its_edge(heading, told):
+    """As one does at premises: at 0.5 rad ego does not drive along."""
+    lanes = [straight(1, 0, 100, left_mark="solid", right_mark="solid")]
+    places = {k: (40 + 5 * k * np.cos(heading), -2 + 5 * k * np.sin(heading)) for k in range(2)}
+    (drive,) = Drives(recording(lanes, [vehicle(7, places, heading=heading)]), "right").of("7")
+    assert drive.trace.states[0]["on_solid_line"] is told
+
+
 def test_a_map_without_marks_says_nothing():
     found = recording([straight(1, 0, 100)], [vehicle(7, {0: (40, 0), 1: (50, 0)})])
     (drive,) = Drives(found, "right").of("7")

@@ -258,18 +258,31 @@ def two_lanes():
 
 
 @pytest.mark.parametrize(
-    ("form", "last"), [("CommonRoad scenario", "True"), ("Waymo scenario", "?")]
+    ("form", "first", "last"),
+    # Of a recording of who is there at first nobody knows who has come since
+    [
+        ("CommonRoad scenario", 1, "True"),
+        ("CommonRoad scenario", 0, "?"),
+        ("Waymo scenario", 1, "?"),
+    ],
 )
-def test_a_camera_that_stands_sees_what_ego_leaves_behind(form, last):
+def test_a_camera_that_stands_sees_what_ego_leaves_behind(form, first, last):
     """Who comes at 20 m/s while ego drives 10 needs 20 m and (400 - 100) / 16 m: 38.75 m.
 
     Ego's rear is 35 m from where it began in state 7, 40 m in state 8.
     """
-    body = ego(100, y=4, steps=10)
-    found = replace(recording(two_lanes(), [body], step_s=STEP_S), form=form)
+    bodies = [ego(100, y=4, steps=10), steady(8, 400, 4, 10.0, steps=9, first=first)]
+    found = replace(recording(two_lanes(), bodies, step_s=STEP_S), form=form)
     told = clearance_signals(context_of(found, ("1",)))
     words = np.where(told.unknown["near_lane_is_free"], "?", told.world["near_lane_is_free"])
     assert words.tolist() == ["?"] * 8 + [last] * 2
+
+
+@pytest.mark.parametrize(("back", "free"), [(38, "?"), (39, "True")])
+def test_one_behind_shows_how_far_behind_ego_is_seen(back, free):
+    """As above: 38.75 m are needed, and rears are so far apart."""
+    found = signals(two_lanes(), ego(100, y=4), steady(9, 100 - back, 4, 10.0))
+    assert found["near_lane_is_free"][0] == free
 
 
 @pytest.mark.parametrize(("end", "free"), [(250, "?"), (430, "True")])

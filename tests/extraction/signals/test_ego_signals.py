@@ -6,7 +6,7 @@ import pytest
 
 from rulec.extraction.signals.ego_signals import ego_signals
 from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording, vehicle
+from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 
@@ -135,3 +135,18 @@ def test_lanes_are_numbered_from_the_kerb(y, right_hand, left_hand):
     body = steady(7, 0, y)
     assert set(world(body, 5)["lane_number"].tolist()) == {right_hand}
     assert set(world(body, 5, side="left")["lane_number"].tolist()) == {left_hand}
+
+
+@pytest.mark.parametrize(("end", "unknown"), [(200, True), (800, False)])
+def test_beside_a_lane_that_ends_nobody_knows_which_one_is_at_the_kerb(end, unknown):
+    road = [
+        straight(1, 0, end, left_of=2),
+        straight(2, 0, end, 4, right_of=1, left_of=3, successors=(4,)),
+        straight(3, 0, end, 8, right_of=2, successors=(5,)),
+        straight(4, end, 1600, 4, predecessors=(2,), left_of=5),
+        straight(5, end, 1600, 8, predecessors=(3,), right_of=4),
+    ]
+    body = vehicle(7, dict.fromkeys(range(3), (400 if end == 800 else 100, 4)))
+    signals = ego_signals(context_of(recording(road, [body]), ("2", "4")))
+    assert signals.world["lane"].tolist() == [1] * 3
+    assert signals.unknown["lane"].tolist() == [unknown] * 3

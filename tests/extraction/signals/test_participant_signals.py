@@ -84,15 +84,18 @@ def test_a_safe_gap_is_asked_for_in_egos_lane_only():
 
 
 @pytest.mark.parametrize(
-    ("x", "word"),
-    # Bodies are 4 m long: gaps of 16.8, 16.0, 7.0 and 5.5 m, and speeds are good to 0.1 m/s. Within
-    # the second of reaction and in the braking distance, 100 / 16 m, behind it one can stop
-    [(20.8, True), (20.0, "?"), (11.0, "?"), (9.5, False)],
+    ("ahead", "brakes", "word"),
+    [(18.0, True, "?"), (9.0, True, False), (18.0, False, False), (25.0, True, True)],
 )
-def test_ego_may_have_seen_one_stand_that_has_for_long(x, word):
-    signals = participant_signals(context(steady(8, x, 0, speed=0)))
-    unknown = bool(signals.unknown["safe_gap"][0, 0])
-    assert ("?" if unknown else bool(signals.about["safe_gap"][0, 0])) == word
+def test_ego_has_seen_one_stand_that_it_brakes_for(ahead, brakes, word):
+    """From 10 m/s it stops within 6.25 m, and reacts within 10 m more; bodies are 4 m long."""
+    way = [-5.25, 0.0, 4.25, 7.5, 9.75, 11.0] if brakes else [-5.0, 0.0, 5.0, 10.0, 15.0, 20.0]
+    ego = vehicle(7, {k: (x, 0) for k, x in enumerate(way)}, speed=9.5)
+    stands = vehicle(8, dict.fromkeys(range(6), (ahead, 0)), speed=0)
+    signals = participant_signals(context_of(recording(lanes(1), [ego, stands])))
+    # At 0 m, where a second's mean is of 9.5 m/s, or 10
+    unknown = bool(signals.unknown["safe_gap"][0, 1])
+    assert ("?" if unknown else bool(signals.about["safe_gap"][0, 1])) == word
 
 
 @pytest.mark.parametrize(("leaves_at", "unknown"), [(8, True), (9, False)])
@@ -292,3 +295,13 @@ def test_where_a_lane_leads_that_others_beyond_have_the_number_of(ways, goes, wo
     signals = participant_signals(context_of(found, ("1", "2", "3")))
     unknown = bool(signals.unknown["leads_elsewhere"][0, 0])
     assert ("?" if unknown else bool(signals.about["leads_elsewhere"][0, 0])) == word
+
+
+@pytest.mark.parametrize(("drift", "unknown"), [(0.2, True), (0.0, False)])
+def test_the_gap_to_one_that_is_lost_as_it_goes_aside_is_moot(drift, unknown):
+    """Steps are of 0.5 s: 0.2 m are 0.4 m/s. It is recorded for six states, ego for ten."""
+    places = {k: (10 + 2.5 * k, drift * k) for k in range(6)}
+    bodies = [steady(7, 0, 0, speed=10.0, steps=10), vehicle(8, places, speed=5.0)]
+    signals = participant_signals(context_of(recording(lanes(2), bodies)))
+    assert not signals.about["safe_gap"][0, 2]
+    assert signals.unknown["safe_gap"][0, 2] == unknown

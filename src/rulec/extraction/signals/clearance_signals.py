@@ -12,7 +12,7 @@ from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.queues import LOOSE, lanes_that_go_on, queues_by_lane
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark, Side
 
@@ -278,14 +278,13 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
     """Flags of states in which one may be near ego on the next lane to the kerb, but is not seen.
 
     Its track ended less than ``_UNSEEN_S`` ago, or begins so soon, in sight of ego; it drives on as
-    it did. Behind ego nobody is seen where it is the last one of all that are recorded on its road.
+    it did. Nobody is seen behind the last one of all that are recorded on ego's road.
     Where all traffic is recorded, nobody drives unseen.
     """
     if "arrivals" in context.recording.complete:
         return np.zeros(context.states, dtype=bool)
     lane, there = _next_lane(context, context.side)
-    behind = context.going_along & (relations.station(context) == relations.IN_FRONT_OF)
-    perhaps: Flags = there & ~behind.any(axis=0) & ~_seen_behind(context)
+    perhaps: Flags = there & ~_known_behind(context)
     others, states, step_s = context.extents, np.arange(context.states), context.recording.step_s
     rows = np.flatnonzero(context.driving_along.any(axis=1))
     seen = context.driving_along[rows]
@@ -299,22 +298,35 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
     return perhaps
 
 
-def _seen_behind(context: DriveContext) -> Flags:
+def _known_behind(context: DriveContext) -> Flags:
     """Flags of states in which one that comes from behind would have been recorded.
 
-    A camera that stands sees all the way from where anybody on ego's road was first. Who comes
-    faster by ``_FASTER_MPS`` from farther behind would not have to brake for ego.
+    Who comes faster by ``_FASTER_MPS`` has to brake for ego only within some distance. So far is
+    seen up to one that is recorded farther behind; and where a camera stands, and records who comes
+    later, up to where anybody on ego's road was first.
     """
-    if context.recording.form not in _STANDING_CAMERAS:
-        return np.zeros(context.states, dtype=bool)
     limits, own = context.thresholds, np.maximum(context.ego_extents.along[0], 0.0)
-    others = np.where(context.driving_along, context.extents.s_min, np.inf)
-    rear = context.ego_extents.s_min[0]
-    first = min(float(rear.min()), float(others.min(initial=np.inf)))
     faster = own + _FASTER_MPS
     safe = limits.reaction_s * faster + (faster**2 - own**2) / (2 * limits.braking_mps2)
-    seen: Flags = rear - first >= safe
-    return seen
+    rear, others = context.ego_extents.s_min[0], context.extents
+    farthest = np.where(context.going_along, others.s_min, np.inf).min(axis=0, initial=np.inf)
+    if context.recording.form in _STANDING_CAMERAS and _records_arrivals(context):
+        seen = np.where(context.driving_along, others.s_min, np.inf)
+        first = min(float(rear.min()), float(seen.min(initial=np.inf)))
+        farthest = np.minimum(farthest, first)
+    known: Flags = rear - farthest >= safe
+    return known
+
+
+@once_a_recording
+def _records_arrivals(context: DriveContext) -> bool:
+    """True if some vehicle is recorded from later on than the first step.
+
+    Else those are left out that came after it, as in CommonRoad's cuts from longer recordings.
+    """
+    tracks = context.surroundings.tracks
+    vehicles = tracks.present[tracks.of_type("vehicle")]
+    return bool((~vehicles[:, :1] & vehicles.any(axis=1, keepdims=True)).any())
 
 
 def _on_next_lane(context: DriveContext, side: Side) -> tuple[Flags, Flags]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
+from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
@@ -29,6 +30,7 @@ _EGO_TYPES = {
     "bicycle": "ego_cycle",
 }
 _LANES = ("kerb_lane", "middle_lane", "far_lane")
+_MIDDLE = 1
 _COUNTS = ("one_lane", "two_lanes", "three_or_more_lanes")
 _NUMBERS = ("first_lane", "second_lane", "third_lane", "fourth_or_further_lane")
 _HAIR_M = 0.001
@@ -95,7 +97,18 @@ def _lane(context: DriveContext) -> SignalColumns:
     lane, moves = _from_kerb(context, context.steady_lane), context.steady_lane != context.ego_lane
     if moves.any():
         moves = lane != _from_kerb(context, context.ego_lane)
-    return SignalColumns({"lane": lane}, unknown={"lane": moves}, texts={"lane": _LANES})
+    # Beside one to join or to leave by, the lane at the kerb may as well be ego's
+    at_side = (lane == _MIDDLE) & ~_nearer_goes_on(context)
+    return SignalColumns({"lane": lane}, unknown={"lane": moves | at_side}, texts={"lane": _LANES})
+
+
+def _nearer_goes_on(context: DriveContext) -> Flags:
+    """Flags of states in which a lane nearer to the kerb than ego's goes on."""
+    lanes, own = np.arange(context.existing_lanes.shape[1]), context.steady_lane[:, None]
+    nearer = lanes < own if context.side == "right" else lanes > own
+    goes_on = context.existing_lanes & lanes_that_go_on(context) & nearer
+    found: Flags = np.any(goes_on, axis=1)
+    return found
 
 
 def _lane_number(context: DriveContext) -> SignalColumns:

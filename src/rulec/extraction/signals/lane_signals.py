@@ -35,6 +35,8 @@ _STEADY_MPS = 1.0
 
 _EXACT_M = 0.1
 
+_GOES_OFF_RAD = np.radians(20.0)
+
 _Marks = tuple[LaneMark | None, LaneMark | None]
 
 
@@ -172,7 +174,8 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
         context.ego_extents.left_of_min[0],
         context.ego_extents.left_of_max[0],
     )
-    found = _under(context, _across(context, low, high, (0.0, unmoved)), slice(None))
+    measured = _across(context, low, high, (0.0, unmoved))
+    found = _under(context, measured, slice(None))
     not_told = ~found[:, 0] & found[:, -1]
     near = _near_a_line(context, place + np.abs(offsets))
     shifts = [unmoved, offsets] if offsets.any() else [unmoved]
@@ -184,6 +187,8 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
         (near | found[:, 0], _across(context, middle - half, middle + half, other))
         for other in [(0.0, unmoved), *others]
     ]
+    # Who comes from beside the road, or goes there, crosses its edge as one does at premises
+    tried.append((_goes_off(context), measured & ~_outer_lines(context)))
     states = np.concatenate([np.flatnonzero(where) for where, _ in tried])
     others_found = _under(context, np.concatenate([lines[where] for where, lines in tried]), states)
     differs = (others_found[:, :-1] != found[states, :-1]).any(axis=1)
@@ -191,6 +196,19 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     return SignalColumns(
         dict(zip(names, found.T, strict=False)), unknown=dict.fromkeys(names, not_told)
     )
+
+
+def _goes_off(context: DriveContext) -> Flags:
+    """Flags of states in which ego is turned to the road by more than who drives along it."""
+    turned: Flags = np.abs(np.sin(context.ego_extents.turned[0])) > np.sin(_GOES_OFF_RAD)
+    return turned
+
+
+def _outer_lines(context: DriveContext) -> Flags:
+    """Flags of the lines (second axis) at the edges of ego's road, by state."""
+    there = np.pad(context.existing_lanes, ((0, 0), (1, 1)))
+    outer: Flags = there[:, 1:] != there[:, :-1]
+    return outer
 
 
 def _half_across(context: DriveContext) -> Floats:

@@ -8,12 +8,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.map.lanes_ahead import (
-    JunctionAhead,
-    Leads,
-    goes_along,
-    junctions_ahead,
-)
+from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
 from rulec.extraction.signals.measured_numbers import (
     LONGEST_S,
     bounds_to_others,
@@ -38,6 +33,8 @@ from rulec.trace.plain_arrays import distinct
 
 _ALONG = 0.5
 """The sine of the angle to the road up to which one heads along it."""
+
+_AWAY_MPS = 0.3
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
@@ -127,8 +124,8 @@ def _measured(context: DriveContext, name: str, values: Floats) -> SignalColumns
 def _safe_gap(context: DriveContext) -> SignalColumns:
     """Whether ego keeps its distance from who is, or may be, ahead in its lane.
 
-    Unknown of one that stood ``reaction_s`` ago already, if ego could stop behind it by braking at
-    once: it may have seen it stand long before.
+    Unknown of one that stood ``reaction_s`` ago already, if ego brakes and can stop behind it: it
+    has seen it stand.
     """
     _, _, may_follow = relations.ahead_in_lane(context)
     place, cells, limits = context.tolerances.place_m, may_follow.nonzero(), context.thresholds
@@ -141,7 +138,9 @@ def _safe_gap(context: DriveContext) -> SignalColumns:
     may_pass_by, follows = np.abs(room) < place, room <= 0
     moot = may_pass_by | (follows & _parts_soon(context, cells[0])[cells])
     react_m = np.maximum(context.ego_extents.along[0], 0.0)[cells[1]] * limits.reaction_s
-    moot |= follows & _stood_before(context)[cells] & (short - react_m <= 0)
+    brakes = context.ego.acceleration[0] < -limits.accelerating_mps2
+    stops = brakes[cells[1]] & _stood_before(context)[cells] & (short - react_m <= 0)
+    moot |= follows & stops
     safe, unknown = np.ones(may_follow.shape, dtype=bool), np.zeros(may_follow.shape, dtype=bool)
     safe[cells] = ~follows | (short <= 0)
     unknown[cells] = (follows & (np.abs(short) < wrong)) | (moot & (short > -wrong))
@@ -160,13 +159,21 @@ def _stood_before(context: DriveContext) -> Flags:
 def _parts_soon(context: DriveContext, rows: NDArray[intp]) -> Flags:
     """Flags of those whose lane is not ego's at some state within ``parting_s``.
 
-    Of these rows, False in all others.
+    Or who are lost from sight before, going aside by ``_AWAY_MPS``. Of these rows, False in all
+    others.
     """
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
     parts, rows = np.zeros(context.relevant.shape, dtype=bool), distinct(rows)
     apart = (context.extents.lane[rows] != context.ego_extents.lane) & context.relevant[rows]
     states = np.arange(context.states)
     parts[rows] = next_state(apart, context.states + horizon) <= states + horizon
+    seen, others = context.relevant[rows], context.extents.part(rows, slice(None))
+    middles = (
+        others.d_min + others.d_max - (context.ego_extents.d_min + context.ego_extents.d_max)
+    ) / 2
+    leaves = others.across * np.sign(middles) >= _AWAY_MPS
+    lost = next_state(~seen, context.states + horizon) <= states + horizon
+    parts[rows] |= seen & leaves & lost
     return parts
 
 
@@ -314,50 +321,6 @@ def _on_shoulder(context: DriveContext) -> SignalColumns:
     return SignalColumns(about={"on_shoulder": beside}, unknown={"on_shoulder": unsure})
 
 
-def _leads_elsewhere(context: DriveContext) -> SignalColumns:
-    """Whether the lane of those before a junction does not go on along ego's road beyond it.
-
-    Of a lane from which ways lead there and elsewhere, that of the one who takes it decides.
-    """
-    others, reach = context.extents, context.thresholds.approach_m
-    elsewhere, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
-    for junction in junctions_ahead(context):
-        near = context.on_lanes & (others.s < junction.low)
-        near &= junction.low - others.s_max <= reach
-        if not near.any():
-            continue
-        lane = np.clip(others.lane, 0, len(junction.leads) - 1)
-        away, both = (
-            np.array([leads is kind for leads in junction.leads])[lane]
-            for kind in (Leads.ELSEWHERE, Leads.BOTH)
-        )
-        elsewhere |= near & away
-        for row in np.flatnonzero((near & both).any(axis=1)).tolist():
-            turns_off = _turns_off(context, row, junction)
-            elsewhere[row] |= near[row] & both[row] & bool(turns_off)
-            unknown[row] |= near[row] & both[row] & (turns_off is None)
-    return SignalColumns(
-        about={"leads_elsewhere": elsewhere}, unknown={"leads_elsewhere": unknown & ~elsewhere}
-    )
-
-
-def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool | None:
-    """Does a participant leave ego's road at a junction; None if its track does not tell."""
-    passages = context.surroundings.passages
-    inside = {
-        lanelet.id
-        for lanelets, low in zip(context.road.rows, context.road.borders.tolist(), strict=False)
-        if junction.low - 0.1 <= low < junction.high
-        for lanelet in lanelets
-        if lanelet is not None
-    }
-    for passage in passages.of_row.get(int(context.tracks.rows[row]), ()):
-        same = passages.junctions[passage.junction]
-        if passage.sure and any(inside & way.names for way in same.ways):
-            return not goes_along(context, passages.way(passage), junction.turned)
-    return None
-
-
 def _two_wheeled(context: DriveContext) -> SignalColumns:
     two_wheeled = [body.type in _TWO_WHEELED for body in context.tracks.participants]
     return SignalColumns(about={"two_wheeled": _constant(context, two_wheeled)})
@@ -391,7 +354,7 @@ _PASSES: Passes = {
     ("stopped",): _stopped,
     ("parked",): _parked,
     ("on_shoulder",): _on_shoulder,
-    ("leads_elsewhere",): _leads_elsewhere,
+    ("leads_elsewhere",): leads_elsewhere,
     ("two_wheeled",): _two_wheeled,
     ("in_the_road",): _in_the_road,
 }

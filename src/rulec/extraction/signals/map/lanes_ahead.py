@@ -11,6 +11,7 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import once_a_recording, once_a_road
 from rulec.extraction.tracks.junctions import JunctionWay
 from rulec.scenario.recorded.reference_line import turn
@@ -74,18 +75,62 @@ def _junctions_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
         yield JunctionAhead(low, high, turned, tuple(leads), lit)
 
 
-def goes_along(context: DriveContext, way: JunctionWay, turned: float) -> bool:
+def _goes_along(context: DriveContext, way: JunctionWay, turned: float) -> bool:
     """True if a way turns about as much as ego's road does there (rad)."""
     return bool(abs(turn(way.turned, turned)) <= np.radians(context.thresholds.turned_deg))
 
 
 def _lead(context: DriveContext, ways: Sequence[JunctionWay], turned: float) -> Leads:
-    along = [goes_along(context, way, turned) for way in ways]
+    along = [_goes_along(context, way, turned) for way in ways]
     if not along:
         return Leads.NOWHERE
     if all(along):
         return Leads.ALONG
     return Leads.BOTH if any(along) else Leads.ELSEWHERE
+
+
+def leads_elsewhere(context: DriveContext) -> SignalColumns:
+    """Whether the lane of those before a junction does not go on along ego's road beyond it.
+
+    Of a lane from which ways lead there and elsewhere, that of the one who takes it decides.
+    """
+    others, reach = context.extents, context.thresholds.approach_m
+    elsewhere, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
+    for junction in junctions_ahead(context):
+        near = context.on_lanes & (others.s < junction.low)
+        near &= junction.low - others.s_max <= reach
+        if not near.any():
+            continue
+        lane = np.clip(others.lane, 0, len(junction.leads) - 1)
+        away, both = (
+            np.array([leads is kind for leads in junction.leads])[lane]
+            for kind in (Leads.ELSEWHERE, Leads.BOTH)
+        )
+        elsewhere |= near & away
+        for row in np.flatnonzero((near & both).any(axis=1)).tolist():
+            turns_off = _turns_off(context, row, junction)
+            elsewhere[row] |= near[row] & both[row] & bool(turns_off)
+            unknown[row] |= near[row] & both[row] & (turns_off is None)
+    return SignalColumns(
+        about={"leads_elsewhere": elsewhere}, unknown={"leads_elsewhere": unknown & ~elsewhere}
+    )
+
+
+def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool | None:
+    """Does a participant leave ego's road at a junction; None if its track does not tell."""
+    passages = context.surroundings.passages
+    inside = {
+        lanelet.id
+        for lanelets, low in zip(context.road.rows, context.road.borders.tolist(), strict=False)
+        if junction.low - 0.1 <= low < junction.high
+        for lanelet in lanelets
+        if lanelet is not None
+    }
+    for passage in passages.of_row.get(int(context.tracks.rows[row]), ()):
+        same = passages.junctions[passage.junction]
+        if passage.sure and any(inside & way.names for way in same.ways):
+            return not _goes_along(context, passages.way(passage), junction.turned)
+    return None
 
 
 @once_a_recording
