@@ -32,6 +32,25 @@ def test_what_is_no_step(step, tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
+def test_steps_of_a_jittering_clock_are_taken_for_one_where_that_is_asked_for(
+    compiled, tmp_path, capsys
+):
+    traces = tmp_path / "t.jsonl"
+    lines = [
+        json.dumps({"id": name, "step_s": step, "states": [{"p": True, "q": True}]})
+        for name, step in (("even", 0.5), ("odd", 0.5001), ("other", 0.6))
+    ]
+    traces.write_text("\n".join(lines))
+    judge = ["verify", str(traces), "-r", str(compiled), "--json"]
+    assert main(judge) == 2
+    assert capsys.readouterr().err.count("R0507") == 2
+    assert main([*judge, "--step", "0.5"]) == 2
+    said = capsys.readouterr()
+    assert (said.err.count("R0507"), said.err.count("R0724")) == (0, 1)
+    verdicts = [json.loads(line) for line in said.out.splitlines()]
+    assert [one["trace"] for one in verdicts if one.get("satisfied")] == ["even", "odd"]
+
+
 @pytest.mark.parametrize("step", ["1", "0.25", "1/3"])
 def test_a_step_makes_no_difference_to_rules_without_seconds(step, tmp_path, capsys):
     assert main(["compile", "esterle2019", "-o", str(tmp_path), f"--step={step}"]) == 0

@@ -7,9 +7,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from rulec.diagnostics import RulecError
+from rulec.monitoring.monitoring_messages import OTHER_STEP
 from rulec.trace import Trace, Value
 from rulec.trace.trace_model import Ending
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
+
+JITTER = 0.05
+"""By so much of a step another may differ that is taken for it: what a logger's clock does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,18 +22,21 @@ class Assumptions:
 
     ``values`` are of names that are about no object. With ``defaults`` all else that is unknown has
     its default, a number within bounds is their middle, and the end of a trace is the end of what
-    happened, unless ``ends`` says otherwise.
+    happened, unless ``ends`` says otherwise. ``step_s`` is taken for the step (s) of traces whose
+    own differs from it by at most ``JITTER`` of it; others are refused.
     """
 
     ends: Ending | None = None
     values: Mapping[str, Value] = field(default_factory=dict)
     defaults: bool = False
+    step_s: float | None = None
 
     def __bool__(self) -> bool:
-        return self.ends is not None or bool(self.values) or self.defaults
+        given = self.ends is not None or self.step_s is not None
+        return given or bool(self.values) or self.defaults
 
     def applied(self, trace: Trace) -> Trace:
-        """The trace with these assumptions; what it tells stays."""
+        """The trace with these assumptions; what it tells stays. Raises RulecError R0724."""
         told = trace.told
         untold = {} if told is None else {k: v for k, v in self.values.items() if k not in told}
         states = trace.states
@@ -43,13 +50,33 @@ class Assumptions:
             told = None
         elif told is not None:
             told = told.union(untold)
-        return replace(trace, states=states, ends=ends, told=told)
+        return replace(trace, states=states, ends=ends, told=told, step_s=self._step_of(trace))
+
+    def _step_of(self, trace: Trace) -> float:
+        if self.step_s is None or not isinstance(trace.step_s, int | float):
+            return trace.step_s  # what is no step at all is said by whoever judges
+        if not abs(trace.step_s - self.step_s) <= JITTER * self.step_s:
+            raise OTHER_STEP.error(
+                trace.place,
+                f"trace `{trace.id}` has steps of {trace.step_s} s, which differ from the "
+                f"{self.step_s} s of `--step` by more than a twentieth",
+                help="judge it without `--step`, or bring it to that step",
+            )
+        return self.step_s
 
     def of(self, traces: Sequence[Trace | RulecError]) -> Sequence[Trace | RulecError]:
         """Traces with these assumptions; without any the same sequence."""
         if not self:
             return traces
-        return [self.applied(item) if isinstance(item, Trace) else item for item in traces]
+        return [self._or_reason(item) for item in traces]
+
+    def _or_reason(self, item: Trace | RulecError) -> Trace | RulecError:
+        if isinstance(item, RulecError):
+            return item
+        try:
+            return self.applied(item)
+        except RulecError as error:
+            return error
 
     def _told(self, state: Mapping[str, Any]) -> dict[str, Any]:
         values = self.values

@@ -82,3 +82,16 @@ UNRESTORABLE_MONITOR = Code(
     good=_SAVED + "rulec monitor first.rules --restore saved.json < states.jsonl",
     kind="command",
 )
+
+OTHER_STEP = Code(
+    "R0724",
+    title="a trace's step is another one",
+    why="With `rulec verify --step S` traces are judged as if their states were S seconds apart. A "
+    "logger's clock makes that right for steps next to S, and wrong for all others: a bound in "
+    "seconds would be another one.",
+    bad="""echo '{"step_s": 0.5, "states": [{"surface": "R_cw"}]}' > t.jsonl
+rulec verify t.jsonl -r esterle2019 --step 0.1""",
+    good="""echo '{"step_s": 0.1001, "states": [{"surface": "R_cw"}]}' > t.jsonl
+rulec verify t.jsonl -r esterle2019 --step 0.1""",
+    kind="command",
+)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -62,6 +64,10 @@ if TYPE_CHECKING:
     help="Of traces: cut out of something longer, or over at their end.  [default: as the file "
     "says, else complete]",
 )
+@shared.step_option(
+    "Of traces: take S for the seconds from state to state where a trace's own differ by at most a "
+    "twentieth, as a logger's clock makes them; others are not judged."
+)
 @click.option(
     "--ego",
     "egos",
@@ -87,6 +93,7 @@ def command(
     every_part: bool,
     strict: bool,
     ends: Ending | None,
+    step_s: Fraction | None,
     to: tuple[Output, ...],
     at: str,
     egos: tuple[str, ...],
@@ -126,6 +133,8 @@ def command(
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     if ends is not None and recordings:
         raise click.UsageError("--end is for traces; a recording is always cut.")
+    if step_s is not None and (recordings or Fraction(str(float(step_s))) != step_s):
+        raise click.UsageError("--step is a decimal, and for traces; a recording has its own step.")
     if len(recordings) > 1 and any(one.form == "mcap" for one in to):
         raise click.UsageError("MCAP has one time line: give one recording.")
     traces = [path for path in inputs.paths if path not in recordings]
@@ -171,6 +180,8 @@ def command(
             from rulec.cli.trace_run import TraceRun
 
             assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
+            step = None if step_s is None else float(step_s)
+            assumed = replace(assumed, step_s=step)
             traced = TraceRun(rules, outputs, complaints, to_explain, every_part)
             traced.files(traces, form, assumed)
             violated |= bool(traced.counts[False]) or (strict and traced.open_hard)
