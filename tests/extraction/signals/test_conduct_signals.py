@@ -189,8 +189,11 @@ def test_somebody_makes_ego_brake(other):
     assert cause(other)[1:4] == "TTT"
 
 
-def test_who_is_behind_or_stays_beside_makes_nobody_brake():
-    assert cause(steady(8, 20, 0, 15, 70), steady(9, 90, 4.5, 20, 70))[:10] == "F" * 10
+def test_who_is_farther_off_makes_nobody_brake():
+    assert cause(steady(8, 20, 0, 15, 70), steady(9, 90, 4.5, 26, 70))[:10] == "F" * 10
+    # On the far side one that ego would pass; beside it one that it may want to follow
+    assert cause(steady(9, 90, 4.5, 20, 70))[:2] == "TT"
+    assert cause(steady(9, 60, -4.5, 20, 70))[:4] == "????"
 
 
 @pytest.mark.parametrize(

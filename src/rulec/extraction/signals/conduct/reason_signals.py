@@ -26,7 +26,7 @@ _IN_WAY_M, _COMES_M, _ROAD_M, _CROSSES_M = 2.5, 6.0, 15.0, 30.0
 """Sideways: who is in ego's way, may come into it, is on its road, comes on a road across."""
 
 _SIDEWAYS_MPS, _ACROSS_RAD, _BEND_RAD, _EVERY_M = 0.3, np.radians(30.0), np.radians(20.0), 10.0
-_SLOWER_KMH = 1.0
+_SLOWER_KMH, _ALIKE_MPS = 1.0, 3.0
 _FAR_SLOWER, _SLOWER = 0.5, 0.75
 """Parts of the limit: who is slower than the first holds others up, than the second perhaps."""
 
@@ -46,8 +46,8 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of states with a reason to brake, stand or be slow, and of those perhaps with one.
 
     Ego that stands has perhaps broken down, unless its hazard lights are known to be off; one that
-    stands soon, or whose drive ends, had perhaps something to do there. Where not all traffic is
-    recorded it is as far as somebody is recorded ahead.
+    stands soon, whose drive ends, or that is beside somebody had perhaps something to do. Where
+    not all traffic is recorded it is as far as somebody is recorded ahead.
     """
     caused = _by_map(context) | _by_others(context)
     soon = round(context.thresholds.preparing_s / context.recording.step_s)
@@ -56,8 +56,12 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     perhaps = next_state(stands, context.states + soon) <= states + soon
     perhaps &= ~(stands & _shows_no_hazard(context))
     perhaps |= states + soon // 2 >= context.states
+    # Ego may want to get in behind one beside it, or let it in
+    others = _others(context)
+    away = np.abs(others.left)
+    beside = (away > _IN_WAY_M) & (away <= _COMES_M) & (np.abs(others.ahead) <= _REACH_M)
+    perhaps |= beside.any(axis=0)
     if "arrivals" not in context.recording.complete:
-        others = _others(context)
         farther = (others.ahead > _reach(context)) & (np.abs(others.left) <= _ROAD_M)
         perhaps |= ~farther.any(axis=0)
     return caused, perhaps & ~caused
@@ -115,7 +119,7 @@ def _by_others(context: DriveContext) -> Flags:
     across = (away <= _CROSSES_M) & (angle > _ACROSS_RAD) & (angle < np.pi - _ACROSS_RAD)
     # Whom ego may not pass on the near side
     to_far = others.left * (1 if context.side == "right" else -1)
-    slower = (angle < _ACROSS_RAD) & (others.along < context.ego.speed[0])
+    slower = (angle < _ACROSS_RAD) & (others.along < context.ego.speed[0] + _ALIKE_MPS)
     not_to_pass = slower & (to_far > 0) & (away <= _COMES_M)
     behind = context.relevant & (relations.station(context) == relations.BEHIND)
     same = context.touched[:, np.arange(context.states), context.ego_lane]
