@@ -305,3 +305,17 @@ def test_the_gap_to_one_that_is_lost_as_it_goes_aside_is_moot(drift, unknown):
     signals = participant_signals(context_of(recording(lanes(2), bodies)))
     assert not signals.about["safe_gap"][0, 2]
     assert signals.unknown["safe_gap"][0, 2] == unknown
+
+
+@pytest.mark.parametrize(("end", "elsewhere"), [((180, -30), True), ((200, -1), False)])
+def test_lanes_that_part_outside_of_a_junction_lead_elsewhere(end, elsewhere):
+    """Ego's lane bends off to the right at 112 m; the one beside it goes straight on."""
+    road = [
+        straight(1, 0, 112, successors=(2,), left_of=5),
+        lanelet(2, [(112, 0), (140, 0 if end[1] > -2 else -5), end], predecessors=(1,)),
+        straight(5, 0, 112, 4, right_of=1, successors=(6,)),
+        straight(6, 112, 300, 4, predecessors=(5,)),
+    ]
+    bodies = [steady(7, 60, 0, steps=4), steady(8, 80, 4, steps=4)]
+    signals = participant_signals(context_of(recording(road, bodies), ("1", "2")))
+    assert signals.about["leads_elsewhere"][0, 0] == elsewhere

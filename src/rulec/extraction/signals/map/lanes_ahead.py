@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,12 +15,15 @@ from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import once_a_recording, once_a_road
 from rulec.extraction.tracks.junctions import JunctionWay
+from rulec.recordings.recording import Lanelet
 from rulec.scenario.recorded.reference_line import turn
 
 _BEYOND_M = 1.0
 """So far behind a junction the lanes are those that go on."""
 
 _HAIR_M = 0.01
+
+_PARTS_RAD = np.radians(20.0)
 
 
 class Leads(Enum):
@@ -47,8 +51,8 @@ class JunctionAhead:
 
 @once_a_road
 def junctions_ahead(context: DriveContext) -> Sequence[JunctionAhead]:
-    """The junctions of ego's road, and where the lanes before them lead."""
-    return tuple(_junctions_ahead(context))
+    """The junctions and forks of ego's road, and where the lanes before them lead."""
+    return (*_junctions_ahead(context), *_forks_ahead(context))
 
 
 def _junctions_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
@@ -73,6 +77,31 @@ def _junctions_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
         told = "light" in context.recording.complete or map_contents(context).lights
         lit = bool(lights) or not told
         yield JunctionAhead(low, high, turned, tuple(leads), lit)
+
+
+def _forks_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
+    """Where lanes part outside of junctions, as before a lane of its own for who turns off."""
+    road, known = context.road, context.recording.lanelets
+    for piece, (row, beyond) in enumerate(pairwise(road.rows)):
+        place = float(road.borders[piece + 1])
+        if any(low <= place <= high for low, high in road.junctions):
+            continue
+        ids = {lanelet.id for lanelet in beyond if lanelet is not None}
+        onward = _end_heading(road.lanelet(piece + 1, road.own_lanes[piece + 1]))
+        leads = []
+        for lanelet in row:
+            others = [] if lanelet is None else [x for x in lanelet.successors if x in known]
+            parts = bool(others) and ids.isdisjoint(others)
+            parts &= all(abs(turn(onward, _end_heading(known[x]))) > _PARTS_RAD for x in others)
+            leads.append(Leads.ELSEWHERE if parts else Leads.ALONG)
+        if Leads.ELSEWHERE in leads:
+            yield JunctionAhead(place, place, 0.0, tuple(leads), lit=False)
+
+
+def _end_heading(lanelet: Lanelet) -> float:
+    """The direction (rad) in which a lanelet ends."""
+    dx, dy = lanelet.centre[-1] - lanelet.centre[-2]
+    return float(np.arctan2(dy, dx))
 
 
 def _goes_along(context: DriveContext, way: JunctionWay, turned: float) -> bool:
