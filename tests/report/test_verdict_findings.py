@@ -112,8 +112,8 @@ def test_csv_has_a_row_for_each_finding(rules):
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(A1)", "'=1", "\t=1", "\r=1"])
 def test_no_cell_of_csv_is_a_formula(rules, text):
     found = FoundInRecording("f", "A", 1, (of("slow", vehicle=text, other=(text, "x")),))
-    _, row = csv.reader(io.StringIO(written(rules, "csv", found).decode(), newline=""))
-    for cell in (row[7], row[8]):
+    head, row = csv.reader(io.StringIO(written(rules, "csv", found).decode(), newline=""))
+    for cell in (row[head.index("vehicle")], row[head.index("other")]):
         assert cell[0] in "'\\"
         assert not re.match(r"[=+\-@\t\r]", cell)
 
