@@ -13,6 +13,8 @@ BEHIND = "a bound stands behind its operator, such as `always[<= 3 s] p`"
 OVER_TIME = "only operators over time take a bound, such as `always[<= 3 s]`"
 TWO_ENDS = "write `..` between the two ends, such as `[3 s .. 4 s]`"
 BY_SIGNS = "a quantity is compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
+CHAINS = "`else` chains: write it "
+AS_IN = "as in `3 m if wet else 2 m if dark else 1 m`"
 CONDITIONAL = "a conditional is written `(1.5 m if built_up else 2 m)`"
 DIGITS = "a number's digits stand together, such as `1000`"
 NO_DATES = "an option has no dates; a parameter and a rule may have them"
@@ -112,6 +114,8 @@ FORMULAS = [
         ")",
         "a conditional ends with what holds otherwise: `1.5 m if built_up else 2 m`",
     ),
+    ("gap > (3 m if p, 2 m if q else 1 m)", ",", f"{CHAINS}in place of `,`, {AS_IN}"),
+    ("gap > (3 m if p 2 m if q else 1 m)", "2", f"{CHAINS}before `2`, {AS_IN}"),
     ("gap > (town ? 1.5 m : 2 m)", "?", CONDITIONAL),
     ("gap > (if town then 1.5 m else 2 m)", "if", CONDITIONAL),
     ("p if q", "if", "write `q implies p` for `p if q`"),

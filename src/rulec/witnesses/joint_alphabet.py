@@ -16,6 +16,7 @@ from rulec.witnesses.counted_objects import fewest_counted_objects
 from rulec.witnesses.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.joint_reads import joint_reads
 from rulec.witnesses.object_universe import ObjectUniverse
+from rulec.witnesses.relevant_axioms import relevant_axioms
 from rulec.witnesses.undecided import UndecidedError
 
 JointLetter = tuple[int, ...]
@@ -49,7 +50,8 @@ class JointAlphabet:
             letter_functions.count_function(count, universe)
             for count in letter_functions.counts_read(reads)
         ]
-        functions = [*monitors, *(count.function for count in self._counts), *axioms]
+        read = [*monitors, *(count.function for count in self._counts)]
+        functions = [*read, *relevant_axioms(axioms, read, vocabulary)]
         self._joint = joint_reads(functions, vocabulary)
         self._n_keys = len(monitors) + len(self._counts)
         self._n_numbers = sum(isinstance(read, NumberRead) for read in self._joint.reads)

@@ -102,6 +102,9 @@ def _conditionals(scene: ParseContext) -> str:
         return "write `q implies p` for `p if q`"
     if text == "if" or before == "if":
         return "write `p implies q` for `if p then q`"
+    if scene.accepted >= {"ELSE"} and "if" in behind:
+        instead = "in place of `,`" if text == "," else f"before `{text}`"
+        return f"`else` chains: write it {instead}, as in `3 m if wet else 2 m if dark else 1 m`"
     if scene.accepted >= {"ELSE"}:
         return "a conditional ends with what holds otherwise: `1.5 m if built_up else 2 m`"
     return ""
