@@ -288,6 +288,7 @@ class RulebookVerbs(SessionSettings):
         from dataclasses import replace
 
         from rulec.report.rulebooks import rule_page
+        from rulec.report.rulebooks.spoken_rules import spoken_book
 
         book = self.load_rulebook(reference)
         chosen = next((known for known in book.rules if known.name == rule), None)
@@ -295,6 +296,8 @@ class RulebookVerbs(SessionSettings):
             raise KeyError(f"{book.name} has no rule {rule}")
         compiled = self.compile_rulebook(replace(book, rules=(chosen,)))
         page = rule_page.page_of(chosen, compiled.rules[0], compiled.vocabulary)
+        (spoken,) = spoken_book(replace(book, rules=(chosen,))).rules
+        page = replace(page, rule=spoken)
         return rule_page.as_text(page, book.name, book.vocabulary, width)
 
     def doc(self, reference: str | Path, form: Literal["html", "markdown"] = "html") -> str:

@@ -50,6 +50,7 @@ def command(
     """
     # Rules and automata, 60 ms: not for --help.
     from rulec.report.rulebooks import rule_json, rule_page
+    from rulec.report.rulebooks.spoken_rules import spoken_book
 
     is_automaton = automaton is not None or to.form in ("dot", "svg")
     book, compiled = _read(rulebook, at)
@@ -63,7 +64,11 @@ def command(
             compiled = rulec.compile_rulebook(replace(book, rules=(chosen,)))
         machine = next(rule for rule in compiled.rules if rule.name == chosen.name)
         page = rule_page.page_of(chosen, machine, compiled.vocabulary)
-    rules = book.rules if chosen is None else (chosen,)
+    spoken = spoken_book(book)
+    rules = spoken.rules
+    if chosen is not None and page is not None:
+        rules = tuple(rule for rule in spoken.rules if rule.name == chosen.name)
+        page = replace(page, rule=rules[0])
     if to.form == "json":
         text = rule_json.as_json(book.name, rules, book.vocabulary, page)
     elif page is None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
+from rulec.logic.english.spoken_words import SpokenAtom, SpokenQuantity
 from rulec.logic.formula import (
     Atom,
     BinaryOperator,
@@ -68,6 +69,8 @@ def of_objects(name: str, arguments: Sequence[str]) -> str:
 
 def atom_in_english(atom: Atom, *, holds: bool) -> str:
     """A clause stating that the atom holds, or not."""
+    if isinstance(atom, SpokenAtom):
+        return atom.affirmed if holds else atom.denied
     if atom.value is not None:
         verb = "is" if holds else "is not"
         return f"{of_objects(atom.name, atom.arguments)} {verb} “{spoken(atom.value)}”"
@@ -92,7 +95,11 @@ def _aloud(text: str, terms: Sequence[Term]) -> str:
     for term in terms:
         if isinstance(term, QuantityTerm):
             written = re.compile(rf"(?<![\w.]){re.escape(term_text(term))}(?![\w(])")
-            words = of_objects(term.name, term.arguments)
+            words = (
+                term.noun
+                if isinstance(term, SpokenQuantity)
+                else of_objects(term.name, term.arguments)
+            )
             text = written.sub(lambda _, words=words: words, text)  # type: ignore[misc]
     return text.replace(" * ", " times ")
 

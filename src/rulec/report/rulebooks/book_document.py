@@ -12,6 +12,7 @@ from rulec.logic.english.wording import listed, spoken
 from rulec.logic.printing import formula_text
 from rulec.report.rulebooks.audit_report import progress, provision_table
 from rulec.report.rulebooks.book_rule import WIDTH, rule_heading, rule_section
+from rulec.report.rulebooks.spoken_rules import spoken_book
 from rulec.report.text import markdown
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
@@ -84,7 +85,7 @@ def _top(rulebook: Rulebook) -> Iterator[Block]:
 
 
 def _body(loaded: Loaded, inherited: BookLineage) -> Iterator[Block]:
-    rulebook = loaded.rulebook
+    rulebook = spoken_book(loaded.rulebook)
     yield Heading(2, "Rules")
     yield (
         "A hard rule must never be violated, a soft rule may yield to others. In the examples a "

@@ -1,0 +1,40 @@
+"""Phrases: every word of a vocabulary that ships has one in each language, of its own."""
+
+import pytest
+
+from rulec.logic.english.spoken_words import forms, spoken_formula
+from rulec.logic.english.wording import atom_in_english
+from rulec.rulebook.loader import load_rulebook, load_vocabulary
+from rulec.rulebook.phrases import LANGUAGES, phrases_in, phrases_of
+from rulec.vocabulary import Enumeration, Quantity
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_word_has_a_phrase_of_its_own(language):
+    phrases = phrases_in("road", language)
+    words = {}
+    for name, item in load_vocabulary("road").declarations.items():
+        words |= dict.fromkeys(item.values if isinstance(item, Enumeration) else (name,), item)
+    assert phrases.keys() == words.keys()
+    said = []
+    for name, phrase in phrases.items():
+        affirmed, denied = forms(phrase)
+        said += [affirmed] if isinstance(words[name], Quantity) else [affirmed, denied]
+        assert (affirmed == denied) is isinstance(words[name], Quantity), name
+        for form in (affirmed, denied):
+            assert form.count("{}") == len(words[name].parameters), name
+            assert not set("[]|") & set(form), name
+            assert form == " ".join(form.split()), name
+    assert len(said) == len(set(said))
+
+
+def test_sentences_speak_in_phrases_and_keep_their_reading():
+    rule = next(rule for rule in load_rulebook("vienna").rules if rule.name == "near_side_passing")
+    phrases = phrases_of(load_rulebook("vienna"))
+    formula = spoken_formula(rule.exemptions[0].formula, phrases)
+    assert atom_in_english(formula, holds=False) == (
+        "queues do not fill all lanes of ego's direction"
+    )
+    raining = spoken_formula(type(formula)("raining"), phrases)
+    # What holds a comma or an `or` of its own stays apart from what it is joined with.
+    assert atom_in_english(raining, holds=True) == "“rain, snow or hail falls”"
