@@ -5,7 +5,7 @@ import pytest
 from rulec.logic.english.spoken_words import forms, spoken_formula
 from rulec.logic.english.wording import atom_in_english
 from rulec.rulebook.loader import load_rulebook, load_vocabulary
-from rulec.rulebook.phrases import LANGUAGES, phrases_in, phrases_of
+from rulec.rulebook.vocabulary_phrases import LANGUAGES, phrases_in, phrases_of
 from rulec.vocabulary import Enumeration, Quantity
 
 

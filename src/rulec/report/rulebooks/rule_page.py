@@ -13,6 +13,7 @@ from rulec.logic.english.sentence_layout import lines
 from rulec.logic.english.wording import amount, number_text, plural, spoken
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Constant, Unary, UnaryOperator
+from rulec.logic.free_names import names_in
 from rulec.logic.printing import formula_text
 from rulec.report.automata import automaton_text
 from rulec.report.automata.automaton_model import Automaton, automaton_of
@@ -152,6 +153,20 @@ def _facts(rule: Rule, rulebook: str) -> Iterator[tuple[str, str]]:
     yield "rulebook", rule.book if rule.book != rulebook else ""
     law = f"inherited, not confirmed: that of {rule.inherited_from}" if rule.inherited_from else ""
     yield "law", law
+    yield "not told", _untold(rule)
+
+
+def _untold(rule: Rule) -> str:
+    """The words that no format of recordings tells, of a rule of which some are told."""
+    # What recordings tell, 100 ms: for who asks about a rule alone.
+    from rulec.extraction.tellable_words import TELLABLE_WORDS
+
+    told = frozenset[str]().union(*TELLABLE_WORDS.values())
+    names = dict.fromkeys(names_in(rule.formula))
+    untold = [name for name in names if name not in told]
+    if not untold or len(untold) == len(names):
+        return ""
+    return f"{', '.join(untold)}: by no format of recordings (rulec audit --source says which do)"
 
 
 def in_english(phrase: Phrase, width: int) -> str:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from rulec.logic.english.spoken_words import spoken_formula
-from rulec.rulebook.phrases import phrases_of
 from rulec.rulebook.rulebook_model import Rule, Rulebook
+from rulec.rulebook.vocabulary_phrases import phrases_of
 
 
 def spoken_book(rulebook: Rulebook) -> Rulebook:
