@@ -40,7 +40,7 @@ def values():
     judged = rulec.verify_recording(recording, "de")
     drive = next(one for one in judged.answers() if isinstance(one, rulec.DriveVerdict))
     audit = rulec.audit("de")
-    diff = rulec.diff("de", "gb", patterns=["[a-k]*"])
+    diff = rulec.diff("de", "gb", patterns=["crossing_overtaking*"])
     run = rulec.test("esterle2019")
     lineage = rulec.tree("de")
     cells = rulec.TraceCells(rulec.layout_of([1]), np.array([0]), ({},))

@@ -1,8 +1,10 @@
 """Every explanation's bad example gets its code and no other; the mended one gets none."""
 
+import io
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 
@@ -11,6 +13,7 @@ import pytest
 import rulec
 from rulec import compile_rulebook, find_maneuvers
 from rulec.book_tests.example_coverage import uncovered_verdicts
+from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.monitoring.verify import verify_or_reason
 from rulec.partition import navigation_graph
@@ -87,15 +90,48 @@ RUN = {
 }
 
 
-def shell(text, folder):
-    """The codes in what the command lines print, and the last one's exit status."""
+PLAIN = re.compile(r"^(rulec [^|&;$`<>\n]*?)(?: < ([\w.]+))?( > log)?$", re.MULTILINE)
+"""A line that needs no shell: arguments, perhaps a file for standard input, perhaps a log."""
+
+
+def ran(text, folder, monkeypatch, capsys):
+    """The codes in what the command lines print, and the last one's exit status.
+
+    Lines that are rulec alone need no process of their own; all others are a shell's.
+    """
+    if "&\n" in text:
+        return shell(text, folder)
+    empty = folder / f"run{len(list(folder.iterdir()))}"
+    empty.mkdir()
+    codes, status, done = [], 0, 0
+    for line in (*PLAIN.finditer(text), None):
+        before = text[done : line.start() if line else None]
+        if before.strip():
+            found, status = shell(before, folder, empty)
+            codes += found
+        if line:
+            done = line.end()
+            with monkeypatch.context() as patch:
+                patch.chdir(empty)
+                if line[2]:
+                    given = io.BytesIO((empty / line[2]).read_bytes())
+                    patch.setattr("sys.stdin", io.TextIOWrapper(given))
+                status = main(shlex.split(line[1])[1:])
+            out, err = capsys.readouterr()
+            codes += CODE.findall(err if line[3] else out + err)
+    return codes, status
+
+
+def shell(text, folder, empty=None):
+    """The same by a shell, in a folder that is empty unless another one is given."""
     place = folder / "bin"
     place.mkdir(exist_ok=True)
     program = place / "rulec"
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m rulec "$@"\n')
     program.chmod(0o755)
-    empty = folder / f"run{len(list(folder.iterdir()))}"
-    empty.mkdir()
+    if empty is None:
+        empty = folder / f"run{len(list(folder.iterdir()))}"
+        empty.mkdir()
     done = subprocess.run(
         ["sh", "-c", text],
         cwd=empty,
@@ -130,11 +166,13 @@ def test_the_bad_example_gets_the_code_and_the_mended_one_none(code, tmp_path):
 
 
 @pytest.mark.parametrize("code", COMMANDS)
-def test_the_bad_commands_get_the_code_and_their_status_and_the_mended_ones_none(code, tmp_path):
+def test_the_bad_commands_get_the_code_and_their_status_and_the_mended_ones_none(
+    code, tmp_path, monkeypatch, capsys
+):
     about = CODES[code]
-    codes, status = shell(about.bad, tmp_path)
+    codes, status = ran(about.bad, tmp_path, monkeypatch, capsys)
     assert (set(codes), status in {1, 2}) == ({code}, True)
-    assert shell(about.good, tmp_path) == ([], 0)
+    assert ran(about.good, tmp_path, monkeypatch, capsys) == ([], 0)
 
 
 def test_only_what_no_input_makes_has_no_example():

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from itertools import product
 
 import pytest
 from hypothesis import given
@@ -27,7 +28,8 @@ STOPS = [
     ("jp", "stop_at_level_crossings", {}, "enters_level_crossing"),
 ]
 of_each_stop = pytest.mark.parametrize(("book", "rule", "sign", "line"), STOPS)
-of_each_end = pytest.mark.parametrize("ends", ["stutter", "finite"])
+ENDS = ["stutter", "finite"]
+of_each_end = pytest.mark.parametrize("ends", ENDS)
 
 
 @cache
@@ -52,9 +54,14 @@ def drive(line, sign, *course):
     return [{**sign, "speed": speed, line: over} for speed, over in course]
 
 
-@of_each_end
-@pytest.mark.parametrize("step", STEPS, ids=str)
-@of_each_stop
+def at_each_step():
+    """Every stop at every step and end, most of them in the long profile alone."""
+    for stop, step, ends in product(STOPS, STEPS, ENDS):
+        is_brief = stop in (STOPS[0], STOPS[5]) or (step, ends) == (STEPS[1], ENDS[0])
+        yield pytest.param(*stop, step, ends, marks=[] if is_brief else [pytest.mark.long])
+
+
+@pytest.mark.parametrize(("book", "rule", "sign", "line", "step", "ends"), list(at_each_step()))
 def test_a_trace_may_end_on_the_line_after_a_stop(book, rule, sign, line, step, ends):
     judge = book_on(book, rule, ends, step)
     seconds = int(1 / step)
