@@ -17,6 +17,13 @@ TRACES = "docs/samples/traces.jsonl"
 RECORDING = "docs/samples/passing.fcd.xml"
 
 WRONG = "rulebook wrong\nuse paper\nhard rule r { require always (nowhere) }\n"
+CONFLICT = """\
+rulebook conflict
+signal p, q default false
+hard rule keep { require always (p implies always q) }
+hard rule leave { require always (p implies eventually not q) }
+hard rule idle { require always (p or not p) }
+"""
 WRONG_EXAMPLE = """\
 rulebook failing
 use paper
@@ -37,12 +44,12 @@ FOUND = (
 DOCUMENTS = [
     ("findings", ["check", "WRONG", "--output-format", "json"]),
     ("findings", ["check", "esterle2019", "--output-format", "json"]),
-    ("findings", ["analyze", "vienna", "--output-format", "json"]),
+    ("findings", ["analyze", "CONFLICT", "--output-format", "json"]),
     ("audit", ["audit", "de", "--output-format", "json"]),
     ("audit", ["audit", "esterle2019", "--compare", "esterle2019", "--output-format", "json"]),
     ("codes", ["explain", "R0101", "--output-format", "json"]),
-    ("diff", ["diff", "de", "fr", "--rule", "*overtak*", "--output-format", "json"]),
-    ("matrix", ["diff", "--all", "de", "fr", "--rule", "*overtak*", "--output-format", "json"]),
+    ("diff", ["diff", "de", "fr", "--rule", "rail*", "--output-format", "json"]),
+    ("matrix", ["diff", "--all", "de", "fr", "--rule", "rail*", "--output-format", "json"]),
     ("formats", ["formats", "--json"]),
     ("list", ["list", "--json"]),
     ("list", ["list", "codes", "--json"]),
@@ -100,6 +107,7 @@ def run(tmp_path, monkeypatch, capfdbinary):
     files = {
         "WRONG": ("wrong.rules", WRONG),
         "FAILING": ("failing.rules", WRONG_EXAMPLE),
+        "CONFLICT": ("conflict.rules", CONFLICT),
         "BROKEN": ("broken.jsonl", BROKEN),
         "FOUND": ("found.jsonl", FOUND),
         "PAST": ("past.jsonl", PAST),
