@@ -8,6 +8,7 @@ from typing import Literal
 
 from rulec.analysis.audit.citations import Reference, article_listed, covers, each_reference
 from rulec.rulebook.rulebook_model import Provision, Rule, Rulebook
+from rulec.value_display import short_repr
 
 ProvisionState = Literal["covered", "silent", "not machine-readable", "to do"]
 
@@ -19,6 +20,8 @@ class ListedProvision:
     It is ``covered`` if a rule does that is the rulebook's own law; else ``state`` is what the
     rulebook says of it, ``because`` why.
     """
+
+    __repr__ = short_repr
 
     number: str
     heading: str

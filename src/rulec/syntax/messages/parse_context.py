@@ -28,6 +28,7 @@ _PHRASES: Final = {
     "$END": "nothing more",
 }
 _SPELLINGS: Final = {
+    "NOT_MACHINE_READABLE": "not machine-readable",
     "ON_TOPIC": "on",
     "LPAR": "(",
     "RPAR": ")",
