@@ -18,6 +18,8 @@ _ALIKE, _ASIDE_M = 0.4, 6.0
 """The cosine between two headings that are much alike, and how far one is beside the other's."""
 
 
+_STANDS_MPS = 0.3
+
 _HEADWAY_S = {"gb": 2.0, "fr": 2.0}
 """Where the law counts seconds instead."""
 
@@ -53,6 +55,10 @@ def following_facts(world):
         steady = led & surely_led & ~world.changing[track.id]
         steady &= ~_leader_changing(world, track)
         steady[: round(_FALLS_BACK_S / world.step_s)] = False
+        # The law asks for a distance to one that drives ahead. Who draws near to one that stands
+        # has seen it, and may stop behind it
+        stops = (leading < _STANDS_MPS) & (gap >= speed**2 / (2 * BRAKING_MPS2))
+        steady &= ~stops
         possible = (short > -_PERHAPS_M) | _beside_short(world, track)
         possible |= _merging_short(world, track)
         surely, perhaps = _asked_for(world, track)
