@@ -123,7 +123,7 @@ def test_pipes_and_links_out_of_the_tree_are_not_read(tmp_path):
 
 def test_mistakes_of_the_rulebook_and_of_its_vocabulary_come_together(tmp_path):
     write(tmp_path / "words.rules", "vocabulary words { signal p is x\n colour is one red }\n")
-    path = write(tmp_path / "mine.rules", MINE.replace("require p", "require p & & p"))
+    path = write(tmp_path / "mine.rules", MINE.replace("require always p", "require p & & p"))
     with pytest.raises(RulecError) as caught:
         load_rulebook(path)
     places = [(Path(one.place.file).name, one.place.line) for one in caught.value.diagnostics]

@@ -154,7 +154,7 @@ def test_a_state_says_what_has_no_default(state, missing):
     type car
     signal b(c: car)
     surface is one of road, path
-    hard rule r (v: car) {{ require b_v and road accept {state} }}"""
+    hard rule r (v: car) {{ require always (b_v and road) accept {state} }}"""
     with pytest.raises(RulecError) as caught:
         parse_rulebook(text)
     (one,) = caught.value.diagnostics
