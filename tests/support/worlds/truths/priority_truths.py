@@ -38,9 +38,11 @@ def give_way_facts(world):
     for crossing, other, grade, at in _conflicts(world):
         link = crossing.link
         side = abs(_comes_from(world, link, other.link))
-        # Those who come from ahead have the same sign: that is another rule's
-        if _gives_way(world, link) and _sideways(side, _ABOUT_DEG):
-            sure = grade and _sideways(side)
+        # Those who come from ahead have the same sign: that is another rule's. The ring of a
+        # roundabout is the main road of each that leads to it, at whatever angle they meet
+        to_ring = _enters_before(world, link, other.link)
+        if _gives_way(world, link) and (to_ring or _sideways(side, _ABOUT_DEG)):
+            sure = grade and (to_ring or _sideways(side))
             yield Fact(crossing.track.id, "give_way_sign", *at, sure, other.track.id)
 
 
@@ -52,8 +54,7 @@ def _sideways(side_deg, more_deg=0.0):
 def roundabout_facts(world):
     """Who enters a roundabout before one that is on it."""
     for crossing, other, grade, at in _conflicts(world):
-        enters = _on_ring(world, crossing.link.end) and not _on_ring(world, crossing.link.start)
-        if enters and _on_ring(world, other.link.start):
+        if _enters_before(world, crossing.link, other.link):
             yield Fact(crossing.track.id, "roundabout_priority", *at, grade, other.track.id)
 
 
@@ -196,6 +197,12 @@ def _gives_way(world, link):
     """True if the whole road gives way: its way straight on does."""
     ways = [one for one in world.net.links.values() if one.start == link.start]
     return all(one.state == "m" for one in ways)
+
+
+def _enters_before(world, link, other):
+    """True if one way leads onto a roundabout, and the other one is on it already."""
+    enters = _on_ring(world, link.end) and not _on_ring(world, link.start)
+    return enters and _on_ring(world, other.start)
 
 
 def _on_ring(world, lane):
