@@ -10,6 +10,7 @@ from rulec.analysis.lint.antecedents import antecedents, has_constant, occurrenc
 from rulec.analysis.lint.conflict_findings import conflicts
 from rulec.analysis.lint.conflict_search import common_objects, conflict
 from rulec.analysis.lint.finding_messages import undecided_diagnostic
+from rulec.analysis.lint.harmless_states import have_harmless_state
 from rulec.analysis.lint.questions import ComparedRules, RuleAnswers
 from rulec.analysis.lint.redundancy import (
     MOST_PREMISES,
@@ -27,6 +28,8 @@ from rulec.resource_limits import in_force
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Axiom, Rule, Variable
 from rulec.trace import Trace
+from rulec.witnesses.letter_functions import monitor_function
+from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.undecided import UndecidedError
 from support.builders.rulebooks import always, both, eventually, implies, no
 from support.generators.random_rule_pairs import ALONE, COUNTED, VOCABULARY, X, Y, sides
@@ -185,6 +188,34 @@ def test_conflicts_come_as_early_as_they_can(formulas, length):
         assert clash.trace is None
     else:
         assert len(clash.trace.states) == length
+
+
+@pytest.mark.parametrize(
+    ("formulas", "harmless"),
+    [
+        # With all at its default, and where that violates one of them.
+        ([always(no(P)), always(implies(NEAR, P))], True),
+        ([always(P), always(NEAR)], True),
+        ([always(P), always(no(P))], False),
+        # Whether the next state may be near depends on the one before.
+        (
+            [
+                always(implies(P, NEXT_NEAR)),
+                always(implies(no(P), Unary(UnaryOperator.NEXT, no(NEAR)))),
+            ],
+            False,
+        ),
+        # What nothing keeps asks nothing of a state.
+        ([Constant(False), always(no(P))], True),
+    ],
+)
+def test_harmless_states(formulas, harmless):
+    rules = sides(formulas, [X], ["finite"] * len(formulas))
+    universe = ObjectUniverse({"x": "car"}, VOCABULARY)
+    machines = [rule.rule.machine for rule in rules]
+    functions = [monitor_function(machine, {"x": "x"}) for machine in machines]
+    assert have_harmless_state(machines, functions, universe) is harmless
+    assert not harmless or conflict(rules) is None
 
 
 def test_conflicts_are_about_all_bindings():

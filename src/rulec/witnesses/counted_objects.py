@@ -16,6 +16,7 @@ from rulec.logic.formula import Count, Formula
 from rulec.logic.free_names import variables_of
 from rulec.witnesses import letter_functions
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
+from rulec.witnesses.relevant_axioms import relevant_axioms
 from rulec.witnesses.state_synthesis import JointState, Subject, Value, synthesize_state
 from rulec.witnesses.undecided import UndecidedError
 
@@ -134,7 +135,7 @@ def _of_type(
     own_counts = [count for count in counts if vocabulary.is_subtype(kind, count.type)]
     bodies = [letter_functions.body_of(count, EXTRA) for count in own_counts]
     reads, truths = letter_functions.truths_of(
-        [*bodies, *_axioms_about(kind, universe)], vocabulary
+        [*bodies, *_axioms_about(kind, universe, bodies)], vocabulary
     )
     choices: list[Sequence[int]] = [
         range(read.size)
@@ -159,11 +160,26 @@ def _of_type(
             yield CountedObject(kind, adds, added.values)
 
 
-def _axioms_about(kind: str, universe: ObjectUniverse) -> Iterator[Formula]:
+def _axioms_about(kind: str, universe: ObjectUniverse, bodies: Sequence[Formula]) -> list[Formula]:
+    """The axioms about an additional object that can tell anything about the counts' bodies.
+
+    Others would multiply the states to go through, and its words in them have their defaults.
+    """
+    vocabulary = universe.vocabulary
     with_it = replace(universe, objects={**universe.objects, EXTRA: kind})
-    for formula in with_it.axiom_formulas():
-        if not any(True for _ in counts_in(formula)) and EXTRA in variables_of(formula):
-            yield formula
+    formulas = [
+        formula
+        for formula in with_it.axiom_formulas()
+        if not any(True for _ in counts_in(formula)) and EXTRA in variables_of(formula)
+    ]
+    functions = [letter_functions.axiom_function(formula, vocabulary) for formula in formulas]
+    read = [letter_functions.axiom_function(body, vocabulary) for body in bodies]
+    relevant = set(map(id, relevant_axioms(functions, read, vocabulary)))
+    return [
+        formula
+        for formula, function in zip(formulas, functions, strict=True)
+        if id(function) in relevant
+    ]
 
 
 def _digit(read: Read | NumberRead, state: JointState, universe: ObjectUniverse) -> int:

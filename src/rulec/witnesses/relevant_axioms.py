@@ -52,6 +52,11 @@ def _subjects(reads: Reads) -> frozenset[Subject]:
     return frozenset(subjects)
 
 
+def hold_by_default(functions: Iterable[LetterFunction], vocabulary: Vocabulary) -> bool:
+    """True if every function without counts is 1 where everything that it reads has its default."""
+    return all(_holds_by_default(function, vocabulary) for function in functions)
+
+
 def _holds_by_default(axiom: LetterFunction, vocabulary: Vocabulary) -> bool:
     digits = [default_digit(read, vocabulary) for read in axiom.reads]
     known = [digit for digit in digits if digit is not None]

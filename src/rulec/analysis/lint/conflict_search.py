@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.analysis.counterexample import common_step
+from rulec.analysis.lint.harmless_states import have_harmless_state
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.rulebook.rulebook_model import Variable
@@ -45,6 +46,8 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
             owners.append(number)
             monitors.append(analyzed.rule.machine)
             functions.append(monitor_function(analyzed.rule.machine, binding))
+    if have_harmless_state(monitors, functions, universe):
+        return None
     alphabet = JointAlphabet(universe, functions)
     if not alphabet.letters:
         return None

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from math import prod
 
 from rulec.analysis.counterexample import counterexample
 from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.diagnostics import RulecError
+from rulec.trace import Trace
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.shortest_traces import shortest_word
+from rulec.witnesses.undecided import UndecidedError
 
 MOST_PREMISES = 6
 MOST_JOINT_STATES = 5_000
@@ -38,17 +42,60 @@ def implied_by(analyzed: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[
     The others, which are related to it, are taken together as far as their automata stay small; so
     more of them together may imply it without being found. Raises UndecidedError.
     """
+    forbidden = ForbiddenTraces(analyzed)
     for premise in others:
-        if counterexample(analyzed, [premise]) is None:
+        if not forbidden.one_that_allow([premise]):
             return (premise,)
     premises = small_premises(analyzed, others)
-    if len(premises) < 2 or counterexample(analyzed, premises) is not None:
+    if len(premises) < 2 or forbidden.one_that_allow(premises):
         return ()
     for premise in premises:
         fewer = [kept for kept in premises if kept is not premise]
-        if counterexample(analyzed, fewer) is None:
+        if not forbidden.one_that_allow(fewer):
             premises = fewer
     return tuple(premises)
+
+
+class ForbiddenTraces:
+    """Traces that a rule forbids: most other rules allow one that was found for another of them.
+
+    So only what allows none of those found takes a search of its own.
+    """
+
+    def __init__(self, analyzed: AnalyzedRule) -> None:
+        self._analyzed = analyzed
+        self._found: list[Trace] = []
+        # Who allows which of those found: rules as they are, for names are not theirs alone.
+        self._allowed: dict[tuple[int, int], bool] = {}
+        with suppress(UndecidedError):
+            self._search([])
+
+    def one_that_allow(self, others: Sequence[AnalyzedRule]) -> bool:
+        """True if all of the others allow some trace that the rule forbids.
+
+        Raises UndecidedError.
+        """
+        numbers = range(len(self._found))
+        if any(all(self._allows(other, number) for other in others) for number in numbers):
+            return True
+        return self._search(others)
+
+    def _search(self, others: Sequence[AnalyzedRule]) -> bool:
+        found = counterexample(self._analyzed, others)
+        if found is not None:
+            self._found.append(found)
+        return found is not None
+
+    def _allows(self, other: AnalyzedRule, number: int) -> bool:
+        key = id(other), number
+        if key not in self._allowed:
+            vocabulary = self._analyzed.rulebook.vocabulary
+            try:
+                self._allowed[key] = not other.violations(self._found[number], vocabulary)
+            except RulecError:
+                # The trace has another step, or objects to be counted that a fact rules out.
+                self._allowed[key] = False
+        return self._allowed[key]
 
 
 def small_premises(analyzed: AnalyzedRule, related: Sequence[AnalyzedRule]) -> list[AnalyzedRule]:

@@ -1,0 +1,63 @@
+"""States of the world in which rules are content, whatever was before.
+
+Where there is one for several rules at once, they never conflict: from wherever each of them can
+still be kept, that state as the next and last one keeps them all. Most rules are content where
+everything has its default, so that most pairs need no search.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.witnesses.joint_alphabet import JointAlphabet
+from rulec.witnesses.letter_functions import LetterFunction, axiom_function, counts_read
+from rulec.witnesses.object_universe import ObjectUniverse
+from rulec.witnesses.relevant_axioms import hold_by_default
+
+
+def have_harmless_state(
+    monitors: Sequence[MealyMonitor], functions: Sequence[LetterFunction], universe: ObjectUniverse
+) -> bool:
+    """True if some state is harmless to all monitors, whose letters in it are the functions'.
+
+    False says nothing: they may be kept together by states that depend on those before. Raises
+    UndecidedError.
+    """
+    harmless = [harmless_classes(monitor) for monitor in monitors]
+    if not all(harmless):
+        return False
+    contents = [
+        LetterFunction(function.reads, tuple([int(symbol in own) for symbol in function.letters]))
+        for function, own in zip(functions, harmless, strict=True)
+    ]
+    reads = [read for content in contents for read in content.reads]
+    vocabulary = universe.vocabulary
+    # Counts have no default: the universe's own objects may be among those counted.
+    if not counts_read(reads) and hold_by_default(contents, vocabulary):
+        formulas = universe.axiom_formulas()
+        if hold_by_default((axiom_function(one, vocabulary) for one in formulas), vocabulary):
+            return True
+    return (1,) * len(contents) in JointAlphabet(universe, contents).states
+
+
+def harmless_classes(machine: MealyMonitor) -> frozenset[int]:
+    """The letter classes that are accepted in every state from which a rule can be kept.
+
+    And in those in which it is kept if the trace ends there.
+    """
+    kept = {
+        target
+        for row, verdicts in zip(machine.successors, machine.outputs, strict=True)
+        for target, verdict in zip(row, verdicts, strict=True)
+        if verdict
+    }
+    kept |= {state for state, verdicts in enumerate(machine.outputs) if any(verdicts)}
+    n_before = 0
+    while len(kept) > n_before:
+        n_before = len(kept)
+        kept |= {state for state, row in enumerate(machine.successors) if not kept.isdisjoint(row)}
+    classes = range(len(machine.outputs[0]))
+    return frozenset(
+        symbol for symbol in classes if all(machine.outputs[state][symbol] for state in kept)
+    )
