@@ -79,7 +79,7 @@ NO_INPUT = Code(
     title="standard input cannot be read",
     why="The device that it comes from fails, or it is open for writing alone. `-` stands for it.",
     bad="rulec check - 0> written",
-    good="echo 'rulebook a signal p hard rule r { require p }' | rulec check -",
+    good="echo 'rulebook a signal p hard rule r { require always p }' | rulec check -",
     kind="command",
 )
 

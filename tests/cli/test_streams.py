@@ -49,6 +49,19 @@ def test_a_full_disk_is_said(arguments):
     assert b"R0720]: standard output cannot be written to: no space left on device" in done.stderr
 
 
+def test_input_that_cannot_be_read_is_said(tmp_path):
+    done = shell(f'"$@" 0> {tmp_path}/written', "check", "-")
+    assert done.returncode == 2
+    assert b"R0721]: standard input cannot be read" in done.stderr
+
+
+def test_a_working_folder_that_is_gone_is_said(tmp_path):
+    (tmp_path / "gone").mkdir()
+    done = shell(f'cd {tmp_path}/gone && rmdir {tmp_path}/gone && "$@"', "list")
+    assert done.returncode == 2
+    assert b"R0722]" in done.stderr
+
+
 def test_a_message_that_cannot_be_written_keeps_its_status():
     assert shell('"$@" 2>/dev/full', "verify", "missing", "-r", "esterle2019").returncode == 2
     assert shell('"$@" 2>/dev/full', "maneuvers", "s9", "-r", "esterle2019").returncode == 2

@@ -97,9 +97,10 @@ PLAIN = re.compile(r"^(rulec [^|&;$`<>\n]*?)(?: < ([\w.]+))?( > log)?$", re.MULT
 def ran(text, folder, monkeypatch, capsys):
     """The codes in what the command lines print, and the last one's exit status.
 
-    Lines that are rulec alone need no process of their own; all others are a shell's.
+    Lines that are rulec alone need no process of their own; all others are a shell's, and all of
+    them where the shell changes its folder or has jobs.
     """
-    if "&\n" in text:
+    if "&\n" in text or re.search(r"^cd ", text, re.MULTILINE):
         return shell(text, folder)
     empty = folder / f"run{len(list(folder.iterdir()))}"
     empty.mkdir()

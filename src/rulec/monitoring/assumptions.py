@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from rulec.diagnostics import RulecError
-from rulec.monitoring.monitoring_messages import OTHER_STEP
+from rulec.monitoring.monitoring_messages import STEP_TOO_FAR_OFF
 from rulec.trace import Trace, Value
 from rulec.trace.trace_model import Ending
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
@@ -56,7 +56,7 @@ class Assumptions:
         if self.step_s is None or not isinstance(trace.step_s, int | float):
             return trace.step_s  # what is no step at all is said by whoever judges
         if not abs(trace.step_s - self.step_s) <= JITTER * self.step_s:
-            raise OTHER_STEP.error(
+            raise STEP_TOO_FAR_OFF.error(
                 trace.place,
                 f"trace `{trace.id}` has steps of {trace.step_s} s, which differ from the "
                 f"{self.step_s} s of `--step` by more than a twentieth",

@@ -83,7 +83,7 @@ UNRESTORABLE_MONITOR = Code(
     kind="command",
 )
 
-OTHER_STEP = Code(
+STEP_TOO_FAR_OFF = Code(
     "R0724",
     title="a trace's step is another one",
     why="With `rulec verify --step S` traces are judged as if their states were S seconds apart. A "

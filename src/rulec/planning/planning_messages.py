@@ -33,7 +33,7 @@ UNFITTING_PAST = Code(
 )
 
 _WEIGHTS = """\
-{{ echo "rulebook many use road"; nexts=""; w=1; for rule in $(seq 16); do
+{{ echo "rulebook many use road"; nexts="next"; w=1; for rule in $(seq 16); do
     echo "soft rule r$rule (v: vehicle) weight {weight} {{ require $nexts same_lane(v) }}"
     nexts="$nexts next"; w=$((2 * w)); done
   echo "soft rule same (v: vehicle) weight $w {{ require $nexts same_lane(v) }}"
