@@ -25,8 +25,8 @@ NOTHING_TO_RUN = Code(
     "R0460",
     title="no rule and no example is matched by `--run`",
     why="With `--run PATTERN`, `rulec test` runs the examples whose `RULE` or `RULE/LABEL` the "
-    "pattern matches. If it matches none, nothing was tested and nothing is covered, which says as little "
-    "about the rulebook as a test that was never written.",
+    "pattern matches. If it matches none, nothing was tested and nothing is covered, which says "
+    "as little about the rulebook as a test that was never written.",
     bad="rulec test esterle2019 --run R7",
     good="rulec test esterle2019 --run R1",
     kind="command",

@@ -23,9 +23,9 @@ NARROW_OPERATOR = Code(
     "R0361",
     title="an operator of time speaks of less than what stands behind it",
     why="The operators `never`, `always` and `eventually` bind tighter than `and`, `or` and "
-    "`implies`: `never a and b` is `(never a) and b`, which asks for `b` in the first state alone. `rulec check --fix` "
-    "puts what follows into parentheses; whoever means the other reading puts these around "
-    "the operator, as `rulec fmt` does, so that it can be seen.",
+    "`implies`: `never a and b` is `(never a) and b`, which asks for `b` in the first state alone. "
+    "`rulec check --fix` puts what follows into parentheses; whoever means the other reading puts "
+    "these around the operator, as `rulec fmt` does, so that it can be seen.",
     bad="rulebook example\nsignal a, b\nhard rule r { require always a implies b }\n",
     good="rulebook example\nsignal a, b\nhard rule r { require always (a implies b) }\n",
 )
