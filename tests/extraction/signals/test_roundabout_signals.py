@@ -10,6 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
@@ -196,6 +197,19 @@ def test_where_ego_enters_it_and_is_on_it(style):
     assert TIMES[entered] == pytest.approx(expected, abs=0.5)
     assert TIMES[inside[0]] == pytest.approx(expected + 0.3, abs=0.6)
     assert inside[-1] == len(TIMES) - 1
+
+
+def test_one_turns_where_one_leaves_it():
+    """Onto it and along it the road bends, which is no turn that anybody signals."""
+    way = 42 + 9 * TIMES
+    context = context_of(seen("arms", ego=way), ROUTE)
+    turn = junction_signals(context, {"turn"}).world["turn"]
+    # The ring begins 60 m and the entry along; ego is on it from 200° to 340°
+    leaves = 60 + np.hypot(*np.diff(ENTRY, axis=0).T).sum() + np.radians(140) * RADIUS_M
+    turns = turn != "straight_on"
+    assert set(turn[turns].tolist()) == {"turn_near"}
+    assert way[turns].min() > leaves - context.thresholds.zone_m - 5.0
+    assert turns[np.abs(way - leaves).argmin()]
 
 
 def test_a_drive_that_begins_on_it_does_not_enter_it():

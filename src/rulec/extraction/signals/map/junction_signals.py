@@ -7,6 +7,7 @@ import numpy as np
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.priority_signals import own_passages
+from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -179,7 +180,12 @@ def _crosses_stop_line(context: DriveContext) -> Flags:
 
 
 def turn_at(context: DriveContext, start: float, end: float) -> str:
-    """Where ego's road goes at a junction from ``start`` to ``end``."""
+    """Where ego's road goes at a junction from ``start`` to ``end``.
+
+    Who drives onto a roundabout, or along it, follows its bend: one turns where one leaves it.
+    """
+    if any(low - 0.1 <= start and end <= high + 0.1 for low, high, _ in roundabouts(context)):
+        return "straight_on"
     line = context.road.line
     turned = np.degrees(line.heading_at(end + 1.0) - line.heading_at(start - 1.0))
     turned = (turned + 180.0) % 360.0 - 180.0
