@@ -21,12 +21,14 @@ def _kinds():
         town = more | {"demand": lights, "ends_s": 70}
         junction = more | {"demand": crowded, "ends_s": 65}
         signs = junction | {"book": "gb" if hand else "fr"}
+        # Where all have to stop who came first goes first, which the books of Europe do not know
+        all_stop = junction | {"book": "gb" if hand else "us-ca"}
         yield WorldKind(name=f"grid{hand}", layout="lights", **town)
         yield WorldKind(name=f"spider{hand}", layout="spider", **town)
         yield WorldKind(name=f"wide_grid{hand}", layout="wide_lights", **town)
         yield WorldKind(name=f"priority{hand}", layout="priority", **signs)
         yield WorldKind(name=f"stop_signs{hand}", layout="priority_stop", **junction)
-        yield WorldKind(name=f"all_way_stop{hand}", layout="allway_stop", **junction)
+        yield WorldKind(name=f"all_way_stop{hand}", layout="allway_stop", **all_stop)
         yield WorldKind(name=f"roundabout{hand}", layout="roundabout", **junction)
         yield WorldKind(name=f"zebra{hand}", layout="zebra", demand=zebra, **more)
         yield WorldKind(name=f"motorway{hand}", layout="motorway", demand=motorway, **more)
