@@ -99,7 +99,14 @@ TYPE_DEPTH: Final = ResourceLimit(
     "leave out types that no rule tells apart",
 )
 
-LIMITS: Final = {limit.name: limit for limit in (CHOICES, STEPS, CUBES, PAIRS, TYPE_DEPTH)}
+SEARCH: Final = ResourceLimit(
+    "search",
+    2_000_000,
+    "steps of search for states of the world, in one question about rules",
+    "say less in one rule",
+)
+
+LIMITS: Final = {limit.name: limit for limit in (CHOICES, STEPS, CUBES, PAIRS, TYPE_DEPTH, SEARCH)}
 """All limits that can be lifted."""
 
 

@@ -11,7 +11,7 @@ from rulec.analysis.lint.conflict_findings import conflicts
 from rulec.analysis.lint.conflict_search import common_objects, conflict
 from rulec.analysis.lint.finding_messages import undecided_diagnostic
 from rulec.analysis.lint.harmless_states import have_harmless_state
-from rulec.analysis.lint.questions import ComparedRules, RuleAnswers
+from rulec.analysis.lint.questions import ComparedRules, Question, RuleAnswers, answers_to
 from rulec.analysis.lint.redundancy import (
     MOST_PREMISES,
     can_be_kept,
@@ -216,6 +216,18 @@ def test_harmless_states(formulas, harmless):
     functions = [monitor_function(machine, {"x": "x"}) for machine in machines]
     assert have_harmless_state(machines, functions, universe) is harmless
     assert not harmless or conflict(rules) is None
+
+
+def test_a_search_that_takes_too_long_leaves_its_question_open():
+    analyzed = sides([always(P), always(implies(NEAR, NEXT_FAR))], [X], ["stutter"] * 2)
+    rules = ComparedRules(dict(zip("rs", analyzed, strict=True)))
+    with in_force(["search=10"]):
+        problem = next(answers_to(rules, Question("kept", ("s",))))
+        # The next question, about two states instead of three, has a limit of its own.
+        assert next(answers_to(rules, Question("kept", ("r",)))) is True
+    assert "more than 10 steps of search" in str(problem)
+    assert "`rulec --limit search=NUMBER`" in str(problem)
+    assert next(answers_to(rules, Question("kept", ("s",)))) is True
 
 
 def test_conflicts_are_about_all_bindings():

@@ -11,6 +11,7 @@ from heapq import heappop, heappush
 from itertools import count
 
 from rulec.automata.mealy_monitor import NumberRead
+from rulec.resource_limits import SEARCH
 from rulec.witnesses import letter_functions, state_synthesis
 from rulec.witnesses.counted_objects import fewest_counted_objects
 from rulec.witnesses.decision_diagrams import DecisionDiagrams
@@ -24,6 +25,10 @@ JointLetter = tuple[int, ...]
 
 MOST_LETTERS = 20_000
 MOST_NODES = 200_000
+
+_SUMS_TRIED = 20
+_COUNTS_TRIED = 100
+"""What it counts as, in steps of search, to solve inequalities and to look for objects to count."""
 
 Steps = tuple["tuple[int, int]", "Steps"] | None
 """The digits chosen on a way through the diagrams, the first one first."""
@@ -40,6 +45,7 @@ class JointAlphabet:
         self, universe: ObjectUniverse, monitors: Sequence[letter_functions.LetterFunction]
     ) -> None:
         self._universe = universe
+        self._steps_left = self._most_steps = SEARCH.value()
         vocabulary = universe.vocabulary
         axioms = [
             letter_functions.axiom_function(formula, vocabulary)
@@ -71,6 +77,7 @@ class JointAlphabet:
                 letter, classes = key[: len(monitors)], key[len(monitors) :]
                 way = (cost + more, next(numbers), steps, classes)
                 heappush(ways_to.setdefault(letter, []), way)
+            self._take(len(ways))
             if len(ways_to) > MOST_LETTERS:
                 raise UndecidedError("too many different states of the world have to be told apart")
         self.states: Mapping[JointLetter, state_synthesis.JointState] = {
@@ -83,6 +90,15 @@ class JointAlphabet:
     def letters(self) -> list[JointLetter]:
         """All that can be read."""
         return list(self.states)
+
+    def _take(self, steps: int) -> None:
+        """Count steps of the search; other questions are not to wait for this one for ever."""
+        self._steps_left -= steps
+        if self._steps_left < 0:
+            raise UndecidedError(
+                f"it takes more than {self._most_steps:,} steps of search for states of the world, "
+                f"and `rulec --limit {SEARCH.name}=NUMBER` lifts the limit"
+            )
 
     def _cost(self, level: int, digit: int) -> int:
         default = self._defaults[level]
@@ -125,6 +141,7 @@ class JointAlphabet:
         reads = [(self._joint.reads[level], digit) for level, digit in number_digits]
         numbers = [(read, digit) for read, digit in reads if isinstance(read, NumberRead)]
         *earlier, (last, _) = numbers
+        self._take(_SUMS_TRIED)
         known = {term for read, _ in earlier for _, term in read.terms}
         if known.isdisjoint(term for _, term in last.terms):
             return True
@@ -150,6 +167,7 @@ class JointAlphabet:
                     if key not in ways or own + cost < ways[key][0]:
                         ways[key] = own + cost, ((level, digit), steps)
         self._plain[nodes] = ways
+        self._take(len(ways))
         return ways
 
     def _best(
@@ -157,6 +175,7 @@ class JointAlphabet:
     ) -> state_synthesis.JointState | None:
         while candidates:
             _, _, steps, classes = heappop(candidates)
+            self._take(_COUNTS_TRIED if self._counts else 1)
             digits = []
             while steps is not None:
                 (level, digit), steps = steps
