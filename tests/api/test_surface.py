@@ -131,6 +131,7 @@ def test_what_verbs_return_is_public():
     }
     helpers |= {
         "Literal",
+        "Mapping",
         "Path",
         "PictureFormat",
         "Rules",

@@ -113,7 +113,7 @@ def test_no_color_is_obeyed():
 @pytest.mark.parametrize("verb", ["check", "test"])
 def test_findings_have_colour_for_people_only(verb, tmp_path):
     file = tmp_path / "a.rules"
-    formula = "p" if verb == "test" else "p =>"
+    formula = "always p" if verb == "test" else "p =>"
     file.write_text(f"rulebook a signal p hard rule r {{ require {formula} reject {{ p }} }}")
     arguments = [verb, str(file)]
     assert "\x1b[1;31merror[R0" in on_terminal(arguments, {"NO_COLOR": ""})

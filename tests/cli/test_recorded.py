@@ -166,7 +166,7 @@ def test_signals_that_mean_something_else_are_left_out(answer, tmp_path):
     book.write_text(
         "rulebook book\nlanes is one of narrow, wide default wide\n"
         "quantity congested in m default 3\nhard rule A { require always "
-        "wide and congested > 2 m }\n"
+        "(wide and congested > 2 m) }\n"
     )
     status, out, err = answer("-r", str(book), "--json")
     assert (status, err) == (0, "")

@@ -48,6 +48,7 @@ def test_json_has_every_field():
         "place": place,
         "expected": "expected something",
         "help": "the way out",
+        "fix": None,
         "labels": [
             {
                 "place": {

@@ -246,11 +246,8 @@ def test_a_relation_is_looked_up_where_the_definition_is_used():
     define both(a: car, b) = near(a) and b
     signal near(c: car) default false
     hard rule r (v: car) { require always both(v, a) }"""
-    near, a = (
-        parse_rulebook(text).rules[0].formula.left,
-        parse_rulebook(text).rules[0].formula.right,
-    )
-    assert (near, a) == (Atom("near", ("v",)), Atom("a"))
+    both = parse_rulebook(text).rules[0].formula.operand
+    assert (both.left, both.right) == (Atom("near", ("v",)), Atom("a"))
 
 
 @pytest.mark.parametrize(

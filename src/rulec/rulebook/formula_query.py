@@ -11,6 +11,7 @@ from rulec.diagnostics import Diagnostic, RulecError, Source
 from rulec.logic.bounds import NotAMultipleError
 from rulec.rulebook.asked_formula import FormulaQuery
 from rulec.rulebook.elaborate.rule_messages import no_multiple
+from rulec.rulebook.elaborate.time_reach_messages import FIRST_STATE_ONLY
 from rulec.rulebook.formula_places import AskedParts
 from rulec.rulebook.loader import (
     Trees,
@@ -76,7 +77,9 @@ def read_query(
         found = _resolved(program, trees, folders, at)
     except RulecError as error:
         places = AskedParts(asked, program, parts)
-        raise RulecError([places.said(_in_words(one)) for one in error.diagnostics]) from None
+        # What is asked at each moment by itself is not for the first state only.
+        found_wrong = [one for one in error.diagnostics if one.code != FIRST_STATE_ONLY.code]
+        raise RulecError([places.said(_in_words(one)) for one in found_wrong]) from None
     own = next(one for one in found.rules if one.name == _NAME)
     named = replace(found.vocabulary, name=words)
     return FormulaQuery(text.strip(), own, named, found.semantics, found.traffic)
