@@ -181,3 +181,30 @@ def test_articles_are_covered_by_the_rules_that_cite_them_or_a_part_of_them():
         "Customs": ("covered", ("room_of_lorries",), ""),
     }
     assert list(unlisted(BOOK)) == [("other", "§ 7")]
+
+
+MANY = 200_000
+"""So much of anything that work which grows with its square would never end."""
+
+
+@pytest.mark.parametrize(
+    ("text", "cite", "expected"),
+    [
+        ("§ 1 A\n\n" * MANY, "§ 1", ""),
+        ("### Annex 2\n\nSign 1 a\n" + "\n" * MANY + "Sign 2 b\n", "sign 2", "Sign 2 b"),
+        ("### Annex 2\n\nSign 1 a" + " |" * MANY + "y\n", "sign 1", f"Sign 1 a{' |' * MANY}y"),
+        ("### Annex 2\n\nSign 1 a |\n| 12 |\n| Sign 2\n", "sign 1", "Sign 1 a"),
+        ("### § 5 A\n\n(4) Begin. " + "Nr. A " * MANY, "§ 5(4) s. 1", "Begin."),
+    ],
+)
+def test_long_texts_are_read_once(text, cite, expected):
+    *_, place = references_in(cite)[0]
+    assert law_text(Source("act.md", text)).find(place) == expected
+
+
+@pytest.mark.parametrize("cite", ["§ 1-{}", "§ 5(1) s. {}", "§ 5(2) no. 1, {}", "§ {}", "sign {}"])
+def test_numbers_too_long_to_be_any_are_not_found(cite):
+    (*_, place), unread = references_in(cite.format("9" * 5_000))
+    assert unread == ()
+    assert place.several() == (place,)
+    assert law_text(Source("act.md", MARKDOWN)).find(place) is None

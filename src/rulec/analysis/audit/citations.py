@@ -30,7 +30,7 @@ class Reference:
 
     def several(self) -> tuple[Reference, ...]:
         """The articles of a range such as `20-22`; itself alone if it is none."""
-        ends = re.fullmatch(r"(\d+)-(\d+)", self.number)
+        ends = re.fullmatch(r"(\d{1,6})-(\d{1,6})", self.number)
         if ends is None or not 0 < int(ends[2]) - int(ends[1]) <= _LONGEST_RANGE:
             return (self,)
         numbers = map(str, range(int(ends[1]), int(ends[2]) + 1))
@@ -59,7 +59,7 @@ _PART: Final = re.compile(
     rf"|{_ITEM}\s*(?P<item>\d+(?:-(?:bis|ter|quater)\b)?|[a-z]\b)(?:\s?(?P<letter>[a-z])\b)?"
     r"|(?P<roman>[IVX]+\b))"
 )
-_FURTHER: Final = re.compile(r"(?P<plain>\d+|[a-z]|[IVX]+)(?![\w(])")
+_FURTHER: Final = re.compile(r"\d+|[a-z]|[IVX]+")
 _BETWEEN: Final = re.compile(r"\s*(?:,|;|\band\b|\bund\b|\bet\b|&)\s*")
 _UP_TO: Final = re.compile(r"\s*[-–]\s*(?:\(\w{1,4}\)|\d+\b)")
 _YEAR: Final = re.compile(r"\s*\((?:19|20)\d\d\)")
@@ -90,11 +90,12 @@ def references_in(cite: str) -> tuple[tuple[Reference, ...], tuple[str, ...]]:
             found.append(further)
             continue
         match = _HEAD.match(text)
-        labelled = match is not None and match.lastgroup is not None
-        if match is not None and labelled:
-            said = [name for name in _LABELS if match[name]]
-            kind, label = (said[0], f"{match[said[0]]} ") if said else (kind, label)
-        if match is None or (kind is None and not match.group(0)[:1].isalnum()):
+        if match is None:
+            unread.append(piece)
+            continue
+        said = [name for name in _LABELS if match[name]]
+        kind, label = (said[0], f"{match[said[0]]} ") if said else (kind, label)
+        if kind is None and not match[0][:1].isalnum():
             unread.append(piece)
             continue
         parts, end = _parts(text, match.end())
@@ -121,7 +122,7 @@ def _further(text: str, found: list[Reference]) -> Reference | None:
             whole = (*before.parts[:depth], *parts)
             return replace(before, parts=whole)
     match = _FURTHER.fullmatch(text)
-    far = match is not None and text.isdigit() and int(text) > _MOST_PARTS
+    far = text.isdecimal() and (len(text) > len(str(_MOST_PARTS)) or int(text) > _MOST_PARTS)
     if match and not far and before.parts and before.parts[-1][0] != "mark":
         last = (before.parts[-1][0], text)
         whole = (*before.parts[:-1], last)

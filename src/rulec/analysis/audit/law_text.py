@@ -49,18 +49,18 @@ class LawText:
     def _sign(self, number: str) -> str | None:
         """What an entry on a sign says, up to the next sign's; or the part that mentions it."""
         mention = rf"(?:[Zz]eichen|[Ss]igns?)[ \t]*{re.escape(number)}(?![\w-]|\.\d)"
-        for line in (rf"^\W*{mention}", mention):
+        for line in (rf"^[^\w\n]*{mention}", mention):
             for text in self.articles.values():
                 match = re.search(line, text, re.MULTILINE)
                 if match is not None:
                     following = _ANY_SIGN.search(text, match.end())
                     entry = text[match.start() : following.start() if following else None]
-                    # The next row of a table begins with its number.
-                    return " ".join(re.sub(r"[\s*|]+\d*[\s*|]*$", "", entry).split())
+                    return " ".join(_without_next_row(entry).split())
         return None
 
 
-_ANY_SIGN: Final = re.compile(r"^\W*(?:[Zz]eichen|[Ss]ign)\s*\d+", re.MULTILINE)
+_ANY_SIGN: Final = re.compile(r"^[^\w\n]*(?:[Zz]eichen|[Ss]ign)\s*\d+", re.MULTILINE)
+_BETWEEN_CELLS: Final = " \t\r\n\f\v\xa0*|"
 _MARKDOWN: Final = re.compile(r"^#{1,6}\s+(?P<head>.*)$", re.MULTILINE)
 _LABELLED: Final = re.compile(
     r"^[ \t*_]*(?P<head>(?:§|[Aa]rt(?:ic(?:le|olo|ulo)|ikel|ículo)?\b\.?|[Ss]ection\b|[Ss]ec\.|"
@@ -76,6 +76,13 @@ _NUMBERED: Final = re.compile(
 _CONTINUED: Final = re.compile(
     r"\s*(?:(?:Abs|Absatz|Nr|Nummer|Satz|Buchst)\b|and\b|und\b|or\b|oder\b|,|;|\()"
 )
+
+
+def _without_next_row(entry: str) -> str:
+    """An entry of a table without the number that the next row begins with, and marks of cells."""
+    text = entry.rstrip(_BETWEEN_CELLS)
+    before = text.rstrip("0123456789")
+    return before.rstrip(_BETWEEN_CELLS) if before[-1:] in [*_BETWEEN_CELLS] else text
 
 
 def read_law_text(path: Path) -> LawText:
@@ -139,13 +146,14 @@ def _named(head: str) -> tuple[str, str] | None:
 
 
 def _after_blank(text: str, start: int) -> bool:
-    return not text[:start].rstrip(" \t") or text[:start].rstrip(" \t").endswith("\n\n")
+    return start == 0 or text.endswith("\n\n", 0, start)
 
 
 def _part(text: str, kind: PartKind, name: str) -> str | None:
     if kind == "sentence":
         sentences = _sentences(text)
-        return sentences[int(name) - 1] if 0 < int(name) <= len(sentences) else None
+        number = int(name) if len(name) <= _MOST_DIGITS else 0
+        return sentences[number - 1] if 0 < number <= len(sentences) else None
     own = _marker(kind, re.escape(name)).search(text)
     if own is None:
         return None
@@ -167,10 +175,14 @@ def _marker(kind: PartKind, name: str) -> re.Pattern[str]:
 
 
 _SHORT: Final = re.compile(
-    r"(?:\b(?:Nr|Nrn|Abs|Art|Buchst|bzw|usw|vgl|ggf|no|nos|para|paras|al|lit|St|Dr|s|ss|[A-Z])|^\s*\d+[a-z]?)$",
+    r"(?:\b(?:Nr|Nrn|Abs|Art|Buchst|bzw|usw|vgl|ggf|no|nos|para|paras|al|lit|St|Dr|s|ss|[A-Z])"
+    r"|^[ \t]*\d+[a-z]?)\Z",
     re.MULTILINE,
 )
 """What a full stop that ends no sentence stands behind: `Nr.`, `z. B.`, the number of an item."""
+_LONGEST_SHORT: Final = 40
+_MOST_DIGITS: Final = 6
+"""No number of a sentence has more."""
 _ONE_LETTER: Final = re.compile(r"\s+[A-Z]\.")
 _END: Final = re.compile(r"[.!?][)“\"»]?(?=\s+[A-ZÄÖÜÉÀ§(„“\"«]|\s*\Z)")
 
@@ -178,10 +190,11 @@ _END: Final = re.compile(r"[.!?][)“\"»]?(?=\s+[A-ZÄÖÜÉÀ§(„“\"«]|\s
 def _sentences(text: str) -> list[str]:
     body = re.sub(r"^[ \t]*\(\w{1,4}\)[ \t]*", "", text.lstrip("\n"))
     sentences: list[str] = []
-    begin = 0
+    begin, end = 0, len(body.rstrip())
     for match in _END.finditer(body):
-        short = _SHORT.search(body, begin, match.start()) or _ONE_LETTER.match(body, match.end())
-        if short is None or not body[match.end() :].strip():
+        near = max(begin, match.start() - _LONGEST_SHORT)
+        short = _SHORT.search(body, near, match.start()) or _ONE_LETTER.match(body, match.end())
+        if short is None or match.end() >= end:
             sentences.append(body[begin : match.end()])
             begin = match.end()
     return [*sentences, *([body[begin:]] if body[begin:].strip() else [])]
