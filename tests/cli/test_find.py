@@ -195,3 +195,14 @@ def test_traces_are_asked_while_they_are_read(files, monkeypatch, capsys):
     before, after = told
     assert not before
     assert "state 0" in after
+
+
+def test_words_of_a_vocabulary_beside_those_of_a_rulebook(files, capsys):
+    """Neither option makes the other one void, and a name that both have is refused."""
+    asked = "(c: car) too_near(c) and not CONGESTED"
+    assert found(files, asked, capsys, "-u", "paper") == FORMULAS["(c: car) too_near(c)"]
+    book, drives = files
+    assert main(["find", asked, drives, "-r", book]) == 2
+    assert "nothing is called `CONGESTED`" in capsys.readouterr().err
+    assert main(["find", "wet", drives, "-r", book, "-u", "road"]) == 2
+    assert "the name `wet` is declared twice" in capsys.readouterr().err

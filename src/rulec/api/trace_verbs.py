@@ -155,12 +155,13 @@ class TraceVerbs(SessionSettings):
         wanted: RequestedDrives | None = None,
         map_path: str | Path | None = None,
         *,
-        vocabulary: str = "road",
+        vocabulary: str = "",
     ) -> Iterator[DriveMoments | RulecError]:
         """Find the moments at which a formula holds in drives: of a file, a recording, or traces.
 
         The formula has its variables before it, as in ``(v: vehicle) gap(v) < 5 m``. It is in the
-        words of a ``vocabulary``, or of a ``rulebook``, with its definitions. ``wanted`` and
+        words of a ``vocabulary`` (``road`` if neither is named), of a ``rulebook``, with its
+        definitions, or of both. ``wanted`` and
         ``map_path`` are as for ``verify_recording``. In place of a trace that cannot be asked there
         is the RulecError.
 

@@ -20,9 +20,9 @@ from rulec.rulebook.loader import (
     parse_all,
     parse_rulebook,
     resolve_trees,
+    with_book,
 )
 from rulec.rulebook.rulebook_model import Rulebook
-from rulec.syntax import parse
 from rulec.syntax.parser import parse_formula
 
 _HEAD = re.compile(r"\s*(\(\s*\w+\s*(?::\s*\w+\s*)(?:,\s*\w+\s*(?::\s*\w+\s*)?)*\))")
@@ -30,6 +30,7 @@ _HEAD = re.compile(r"\s*(\(\s*\w+\s*(?::\s*\w+\s*)(?:,\s*\w+\s*(?::\s*\w+\s*)?)*
 
 _NAME = "what_is_asked"
 _SAID = "the formula"
+_USUAL = "road"
 
 
 def bound_between_states(query: FormulaQuery, error: NotAMultipleError) -> RulecError:
@@ -41,13 +42,14 @@ def read_query(
     text: str,
     *,
     rulebook: str = "",
-    vocabulary: str = "road",
+    vocabulary: str = "",
     search_path: Sequence[str | Path] = (),
     at: str = "",
 ) -> FormulaQuery:
     """Read a formula, with its variables before it, as in ``(v: vehicle) gap(v) < 5 m``.
 
-    It is in the words of a vocabulary, or of a ``rulebook`` with its definitions and parameters.
+    It is in the words of a vocabulary, of a ``rulebook`` with its definitions and parameters, or of
+    both; of ``road`` where neither is named.
     Raises RulecError with all that is wrong with it.
     """
     head = _HEAD.match(text)
@@ -61,13 +63,13 @@ def read_query(
         # That it is one formula, and nothing else.
         parse_formula(formula, _SAID)
         trees = parse_all(find(rulebook, folders)) if rulebook else None
-        words = vocabulary
-        if trees is None:
-            first = f"rulebook {_NAME} use {_word(vocabulary, folders)}\n"
-        else:
+        words = vocabulary or ("" if rulebook else _USUAL)
+        first = f"rulebook {_NAME}" + (f" use {_word(words, folders)}" if words else "")
+        if trees is not None:
             base = trees.books[-1].name
             words = rulebook if base is None else base.text
-            first = f"rulebook {_NAME}" + ("" if base is None else f" extends {words}") + "\n"
+            first += "" if base is None else f" extends {words}"
+        first += "\n"
         first += f"soft rule {_NAME} "
         second = f"{head[1] if head else ''} {{\n  require "
         program = Source(_SAID, f"{first}{second}{formula}\n}}\n")
@@ -108,13 +110,7 @@ def _word(vocabulary: str, folders: Sequence[Path]) -> str:
 def _resolved(program: Source, trees: Trees | None, folders: Sequence[Path], at: str) -> Rulebook:
     if trees is None:
         return parse_rulebook(program.text, program.name, folders, at)
-    parsed, mistakes = parse(program)
-    asked = replace(
-        trees,
-        name=program.name,
-        books=(*trees.books, parsed),
-        mistakes=(*mistakes, *trees.mistakes),
-    )
+    asked = with_book(trees, program, folders)
     # The law is that of the rulebook's day.
     law = trees.books[-1].law
     return resolve_trees(asked, at or (law.as_of if law else "")).rulebook

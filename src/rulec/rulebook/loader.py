@@ -113,6 +113,21 @@ def parse_all(file: RulebookFile) -> Trees:
     return _with_bases(file, parsed, mistakes)
 
 
+def with_book(trees: Trees, source: Source, search_path: Sequence[Path] = ()) -> Trees:
+    """The trees with one more rulebook, which extends the last, and what vocabularies it uses."""
+    book, mistakes = parse(source)
+    files = ReferencedFiles(search_path)
+    read = [files.vocabulary(use, None) for use in _once(book.uses)]
+    return Trees(
+        name=source.name,
+        books=(*trees.books, book),
+        vocabularies=(*trees.vocabularies, *(one for one in read if one is not None)),
+        sources=(*trees.sources, *files.sources),
+        mistakes=(*mistakes, *files.mistakes, *trees.mistakes),
+        dependencies=None if files.failed else trees.dependencies,
+    )
+
+
 def resolve_trees(trees: Trees, at: str = "", traffic: Traffic = "") -> Loaded:
     """Resolve syntax trees to a rulebook. Raises RulecError with every mistake in them."""
     loaded, diagnosis = _resolved(trees, at, traffic)

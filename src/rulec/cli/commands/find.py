@@ -43,13 +43,13 @@ FORMATS = {**endings_of("text", "json"), **TABLES}
     "-u",
     "--use",
     "vocabulary",
-    default="road",
-    show_default=True,
+    default="",
     metavar="NAME",
-    help="The vocabulary whose words the formula is in.",
+    help="The vocabulary whose words the formula is in.  [default: road, or the rulebook's]",
 )
 @shared.rulebook_option(
-    "A rulebook, name or source, whose words, definitions and parameters the formula is in.",
+    "A rulebook, name or source, whose words, definitions and parameters the formula is in, "
+    "beside those of --use.",
     required=False,
 )
 @click.option(
