@@ -82,7 +82,8 @@ def check_alphabet(functions, states, universe):
     alphabet = JointAlphabet(universe, functions)
     met = {tuple(value(function, state) for function in functions) for state in states}
     assert met <= set(alphabet.letters)
-    for letter, state in alphabet.states.items():
+    for letter in alphabet.letters:
+        state = alphabet.state(letter)
         values = exact_values(state)
         assert tuple(value(function, values) for function in functions) == letter
     return alphabet, met
@@ -112,7 +113,7 @@ def test_axioms_hold_in_every_state_of_the_alphabet(functions):
     ]
     alphabet, met = check_alphabet(functions, possible, universe)
     assert met == set(alphabet.letters)
-    for state in alphabet.states.values():
+    for state in map(alphabet.state, alphabet.letters):
         assert not (
             state.value(("place", ("x",)), VOCABULARY) == "near"
             and state.value(("q", ("x",)), VOCABULARY)
@@ -131,7 +132,8 @@ def test_states_have_as_many_defaults_as_can_be(function):
         )
 
     read = {(one.name, one.variables) for one in function.reads}
-    for (letter,), state in alphabet.states.items():
+    for (letter,) in alphabet.letters:
+        state = alphabet.state((letter,))
         fewest = min(
             others({key: said for key, said in values.items() if key in read})
             for values in PLAIN_STATES

@@ -13,9 +13,9 @@ from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.vocabulary import ObjectType, Signal, Vocabulary
 from rulec.witnesses.counted_objects import (
     MOST_COUNTED_OBJECTS,
+    CountedObjectKinds,
     counted_objects_of_types,
     fewest_counted_objects,
-    object_kinds,
 )
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.state_synthesis import JointState
@@ -36,6 +36,7 @@ VOCABULARY = Vocabulary(
     },
 )
 UNIVERSE = ObjectUniverse({"x": "thing"}, VOCABULARY)
+KINDS = CountedObjectKinds(UNIVERSE)
 LOUD = Count("o", "thing", Atom("loud", ("o",)))
 PARKED = Count("o", "car", Atom("parked", ("o",)))
 BOTH = Count("o", "car", Binary(BinaryOperator.AND, LOUD.body, PARKED.body))
@@ -62,9 +63,7 @@ numbers = st.integers(0, 4)
 
 @given(numbers, numbers, numbers)
 def test_as_few_objects_as_can_be(n_loud, n_parked, n_both):
-    found = fewest_counted_objects(
-        state((LOUD, n_loud), (PARKED, n_parked), (BOTH, n_both)), UNIVERSE
-    )
+    found = fewest_counted_objects(state((LOUD, n_loud), (PARKED, n_parked), (BOTH, n_both)), KINDS)
     if n_both > min(n_loud, n_parked):
         assert found is None
     else:
@@ -77,26 +76,26 @@ def test_as_few_objects_as_can_be(n_loud, n_parked, n_both):
         ]
         types = sorted(one.type for one in found)
         again = counted_objects_of_types(
-            state((LOUD, n_loud), (PARKED, n_parked), (BOTH, n_both)), UNIVERSE, types
+            state((LOUD, n_loud), (PARKED, n_parked), (BOTH, n_both)), KINDS, types
         )
         assert [one.type for one in again] == types
 
 
 def test_own_objects_count_already():
-    assert fewest_counted_objects(state((LOUD, 2), counted=2), UNIVERSE) == ()
-    assert len(fewest_counted_objects(state((LOUD, 3), counted=2), UNIVERSE)) == 1
-    assert fewest_counted_objects(state((LOUD, 1), counted=2), UNIVERSE) is None
+    assert fewest_counted_objects(state((LOUD, 2), counted=2), KINDS) == ()
+    assert len(fewest_counted_objects(state((LOUD, 3), counted=2), KINDS)) == 1
+    assert fewest_counted_objects(state((LOUD, 1), counted=2), KINDS) is None
 
 
 def test_too_many_objects_are_left_undecided():
     with pytest.raises(UndecidedError, match="more than 40 objects"):
-        fewest_counted_objects(state((LOUD, MOST_COUNTED_OBJECTS + 1)), UNIVERSE)
-    many = fewest_counted_objects(state((LOUD, MOST_COUNTED_OBJECTS)), UNIVERSE)
+        fewest_counted_objects(state((LOUD, MOST_COUNTED_OBJECTS + 1)), KINDS)
+    many = fewest_counted_objects(state((LOUD, MOST_COUNTED_OBJECTS)), KINDS)
     assert len(many) == MOST_COUNTED_OBJECTS
 
 
 def test_kinds_are_told_apart_by_what_they_add():
-    kinds = {(one.type, one.adds) for one in object_kinds(state((LOUD, 1), (PARKED, 1)), UNIVERSE)}
+    kinds = {(one.type, one.adds) for one in KINDS.of(state((LOUD, 1), (PARKED, 1)))}
     assert kinds == {
         *(("thing", (loud, 0)) for loud in (0, 1)),
         *(("car", (loud, parked)) for loud in (0, 1) for parked in (0, 1)),
@@ -106,7 +105,7 @@ def test_kinds_are_told_apart_by_what_they_add():
 def test_axioms_hold_for_further_objects():
     axiom = Axiom((Variable("c", "thing"),), Atom("loud", ("c",)))
     universe = ObjectUniverse({}, VOCABULARY, (axiom,))
-    assert {one.adds for one in object_kinds(state((LOUD, 1)), universe)} == {(1,)}
+    assert {one.adds for one in CountedObjectKinds(universe).of(state((LOUD, 1)))} == {(1,)}
 
 
 def test_objects_are_the_same_in_all_states():

@@ -44,7 +44,7 @@ def counterexample(
     ]
     monitors, bindings, verdicts = zip(*bound, strict=True)
     alphabet = JointAlphabet(universe, list(map(monitor_function, monitors, bindings)))
-    word = shortest_word(monitors, verdicts, alphabet.letters)
+    word = shortest_word(monitors, verdicts, alphabet.candidates, alphabet.can_be_read)
     if word is None:
         return None
 
@@ -53,8 +53,9 @@ def counterexample(
             allowed.violations(trace, universe.vocabulary) for allowed in allowing
         )
 
-    states = [alphabet.states[letter] for letter in word]
-    return synthesize_trace(states, universe, common_step((forbidding, *allowing)), shows)
+    return synthesize_trace(
+        alphabet.states_of(word), universe, common_step((forbidding, *allowing)), shows
+    )
 
 
 def common_step(rules: Iterable[AnalyzedRule]) -> Fraction:

@@ -38,15 +38,18 @@ class CountedObject:
 CountedObjects = tuple[CountedObject, ...]
 
 
-def fewest_counted_objects(state: JointState, universe: ObjectUniverse) -> CountedObjects | None:
+def fewest_counted_objects(
+    state: JointState, object_kinds: CountedObjectKinds
+) -> CountedObjects | None:
     """Find the fewest additional objects that satisfy the counts, or None."""
+    universe = object_kinds.universe
     counts = _counts_of(state)
     if not counts:
         return ()
     sums = tuple(dict(state.counted)[count] for count in counts)
     if _comes_out(state, universe, dict(zip(counts, sums, strict=True))):
         return ()  # mostly; kinds of objects take a search each
-    kinds = object_kinds(state, universe)
+    kinds = object_kinds.of(state)
     enough = [_enough(count, state) for count in counts]
     waiting: list[tuple[tuple[int, ...], CountedObjects]] = [(sums, ())]
     seen = {sums}
@@ -68,11 +71,12 @@ def fewest_counted_objects(state: JointState, universe: ObjectUniverse) -> Count
 
 
 def counted_objects_of_types(
-    state: JointState, universe: ObjectUniverse, types: Sequence[str]
+    state: JointState, object_kinds: CountedObjectKinds, types: Sequence[str]
 ) -> CountedObjects | None:
     """Find an additional object of each type for the counts, or None."""
+    universe = object_kinds.universe
     counts = _counts_of(state)
-    kinds = object_kinds(state, universe, types) if types else []
+    kinds = object_kinds.of(state, types) if types else []
     start = tuple(dict(state.counted)[count] for count in counts)
     reached: dict[tuple[int, ...], CountedObjects] = {start: ()}
     for type_name in types:
@@ -107,57 +111,110 @@ def _comes_out(state: JointState, universe: ObjectUniverse, counted: Mapping[Cou
     )
 
 
-def object_kinds(
-    state: JointState, universe: ObjectUniverse, types: Sequence[str] = ()
-) -> list[CountedObject]:
-    """Additional objects that the counts distinguish, most general types first.
+class CountedObjectKinds:
+    """Additional objects of a universe that counts distinguish.
 
-    Their types are those that are counted, and ``types``, which another state may need.
+    What they depend on in a state, mostly nothing, is told once, for states are many.
     """
-    vocabulary = universe.vocabulary
-    counts = _counts_of(state)
-    kinds: dict[tuple[str, tuple[int, ...]], CountedObject] = {}
-    fitting = [
-        kind
-        for kind in vocabulary.types
-        if kind in types or any(vocabulary.is_subtype(kind, count.type) for count in counts)
-    ]
-    for kind in sorted(fitting, key=lambda candidate: len(list(vocabulary.ancestors(candidate)))):
-        for candidate in _of_type(kind, counts, state, universe):
-            kinds.setdefault((kind, candidate.adds), candidate)
-    return list(kinds.values())
+
+    def __init__(self, universe: ObjectUniverse) -> None:
+        self.universe = universe
+        self._types: dict[object, list[_CountedType]] = {}
+        self._found: dict[object, tuple[CountedObject, ...]] = {}
+
+    def of(self, state: JointState, types: Sequence[str] = ()) -> list[CountedObject]:
+        """Those of a state, of most general types first.
+
+        Their types are those that are counted, and ``types``, which another state may need.
+        """
+        counts = tuple(_counts_of(state))
+        key = counts, tuple(types)
+        if key not in self._types:
+            self._types[key] = list(self._counted_types(counts, types))
+        return [
+            candidate for counted in self._types[key] for candidate in self._of_type(counted, state)
+        ]
+
+    def _counted_types(
+        self, counts: Sequence[Count], types: Sequence[str]
+    ) -> Iterator[_CountedType]:
+        vocabulary = self.universe.vocabulary
+        fitting = [
+            kind
+            for kind in vocabulary.types
+            if kind in types or any(vocabulary.is_subtype(kind, count.type) for count in counts)
+        ]
+        for kind in sorted(fitting, key=lambda fit: len(list(vocabulary.ancestors(fit)))):
+            bodies = {
+                place: letter_functions.body_of(count, EXTRA)
+                for place, count in enumerate(counts)
+                if vocabulary.is_subtype(kind, count.type)
+            }
+            axioms = _axioms_about(kind, self.universe, list(bodies.values()))
+            reads, truths = letter_functions.truths_of([*bodies.values(), *axioms], vocabulary)
+            letters = dict(zip(bodies, truths, strict=False))
+            counted = tuple(letters.get(place, 0) for place in range(len(counts)))
+            yield _CountedType(kind, reads, counted, tuple(truths[len(bodies) :]))
+
+    def _of_type(self, counted: _CountedType, state: JointState) -> tuple[CountedObject, ...]:
+        universe = self.universe
+        reads = [
+            (_unknown(read, state, universe) if isinstance(read, NumberRead) else read, None)
+            if letter_functions.speaks_of_extra(read)
+            else (read, _digit(read, state, universe))
+            for read in counted.reads
+        ]
+        depends_on = tuple(
+            digit if digit is not None else getattr(read, "thresholds", None)
+            for read, digit in reads
+        )
+        key = id(counted), depends_on
+        if key not in self._found:
+            self._found[key] = tuple(_first_of_each(counted, reads, universe))
+        return self._found[key]
 
 
-def _of_type(
-    kind: str, counts: Sequence[Count], state: JointState, universe: ObjectUniverse
+@dataclass(frozen=True, slots=True)
+class _CountedType:
+    """A type of additional objects, and what decides which counts one adds to.
+
+    Letters are those of ``reads``; sets of them are the bits of integers. ``counted`` has for each
+    count those in which it counts, ``allowed`` for each axiom those in which it holds.
+    """
+
+    type: str
+    reads: Sequence[Read | NumberRead]
+    counted: Sequence[int]
+    allowed: Sequence[int]
+
+
+def _first_of_each(
+    counted: _CountedType,
+    reads: Sequence[tuple[Read | NumberRead, int | None]],
+    universe: ObjectUniverse,
 ) -> Iterator[CountedObject]:
-    vocabulary = universe.vocabulary
-    own_counts = [count for count in counts if vocabulary.is_subtype(kind, count.type)]
-    bodies = [letter_functions.body_of(count, EXTRA) for count in own_counts]
-    reads, truths = letter_functions.truths_of(
-        [*bodies, *_axioms_about(kind, universe, bodies)], vocabulary
-    )
-    choices: list[Sequence[int]] = [
-        range(read.size)
-        if letter_functions.speaks_of_extra(read)
-        else (_digit(read, state, universe),)
-        for read in reads
-    ]
+    """The first object that adds to the same counts, for all that can be.
+
+    The reads are what is to be told of it, or have the digit that the state gives them.
+    """
+    choices = [range(read.size) if digit is None else (digit,) for read, digit in reads]
+    seen = set()
     for digits in product(*choices):
-        letter = letter_functions.letter_of(digits, reads)
-        values = [bool(letters >> letter & 1) for letters in truths]
-        if not all(values[len(bodies) :]):
+        letter = letter_functions.letter_of(digits, counted.reads)
+        if not all(letters >> letter & 1 for letters in counted.allowed):
+            continue
+        adds = tuple([letters >> letter & 1 for letters in counted.counted])
+        if adds in seen:
             continue
         about_it = [
-            (read if isinstance(read, Read) else _unknown(read, state, universe), digit)
-            for read, digit in zip(reads, digits, strict=True)
-            if letter_functions.speaks_of_extra(read)
+            (read, digit)
+            for (read, known), digit in zip(reads, digits, strict=True)
+            if known is None
         ]
         added = synthesize_state(universe, about_it)
         if added is not None:
-            holds = dict(zip(own_counts, values, strict=False))
-            adds = tuple(int(holds.get(count, False)) for count in counts)
-            yield CountedObject(kind, adds, added.values)
+            seen.add(adds)
+            yield CountedObject(counted.type, adds, added.values)
 
 
 def _axioms_about(kind: str, universe: ObjectUniverse, bodies: Sequence[Formula]) -> list[Formula]:

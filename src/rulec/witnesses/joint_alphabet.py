@@ -6,14 +6,14 @@ depend on each other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import count
 
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.resource_limits import SEARCH
 from rulec.witnesses import letter_functions, state_synthesis
-from rulec.witnesses.counted_objects import fewest_counted_objects
+from rulec.witnesses.counted_objects import CountedObjectKinds, fewest_counted_objects
 from rulec.witnesses.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.joint_reads import joint_reads
 from rulec.witnesses.object_universe import ObjectUniverse
@@ -39,12 +39,16 @@ class JointAlphabet:
 
     States are those that the universe's axioms allow; numbers fit together, and there can be as
     many further objects as counts ask for. Raises UndecidedError where that is too much to tell.
+
+    ``candidates`` are the letters that can be read as far as the diagrams tell, in order. To tell
+    whether some state gives one takes a search of its own, so that is done for those asked for.
     """
 
     def __init__(
         self, universe: ObjectUniverse, monitors: Sequence[letter_functions.LetterFunction]
     ) -> None:
         self._universe = universe
+        self._object_kinds = CountedObjectKinds(universe)
         self._steps_left = self._most_steps = SEARCH.value()
         vocabulary = universe.vocabulary
         axioms = [
@@ -67,7 +71,8 @@ class JointAlphabet:
             state_synthesis.default_digit(read, vocabulary) for read in self._joint.reads
         ]
         self._plain: dict[tuple[int, ...], dict[JointLetter, tuple[int, Steps]]] = {}
-        ways_to: dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]] = {}
+        self._states: dict[JointLetter, state_synthesis.JointState | None] = {}
+        ways_to = self._ways_to = dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]]()
         numbers = count()
         for number_digits, ways in self._numbered(self._cleared(roots), ()):
             cost = sum(self._cost(level, digit) for level, digit in number_digits)
@@ -80,16 +85,26 @@ class JointAlphabet:
             self._take(len(ways))
             if len(ways_to) > MOST_LETTERS:
                 raise UndecidedError("too many different states of the world have to be told apart")
-        self.states: Mapping[JointLetter, state_synthesis.JointState] = {
-            letter: best
-            for letter, candidates in ways_to.items()
-            if (best := self._best(candidates)) is not None
-        }
+        self.candidates: Sequence[JointLetter] = tuple(ways_to)
+
+    def state(self, letter: JointLetter) -> state_synthesis.JointState | None:
+        """The plainest state that gives a letter, None if there is none. Raises UndecidedError."""
+        if letter not in self._states:
+            self._states[letter] = self._best(self._ways_to.get(letter, []))
+        return self._states[letter]
+
+    def can_be_read(self, letter: JointLetter) -> bool:
+        """True if some state gives the letter. Raises UndecidedError."""
+        return self.state(letter) is not None
+
+    def states_of(self, word: Iterable[JointLetter]) -> list[state_synthesis.JointState]:
+        """A state for each letter of a word, all of which can be read."""
+        return [state for letter in word if (state := self.state(letter)) is not None]
 
     @property
     def letters(self) -> list[JointLetter]:
         """All that can be read."""
-        return list(self.states)
+        return list(filter(self.can_be_read, self.candidates))
 
     def _take(self, steps: int) -> None:
         """Count steps of the search; other questions are not to wait for this one for ever."""
@@ -185,6 +200,6 @@ class JointAlphabet:
                 for function, letter_class in zip(self._counts, classes, strict=True)
             )
             state = state_synthesis.synthesize_state(self._universe, digits, counted)
-            if state is not None and fewest_counted_objects(state, self._universe) is not None:
+            if state is not None and fewest_counted_objects(state, self._object_kinds) is not None:
                 return state
         return None

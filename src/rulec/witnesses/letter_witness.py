@@ -18,7 +18,7 @@ from rulec.logic.formula import Count
 from rulec.rulebook.rulebook_model import ExampleState, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses import letter_functions, state_synthesis
-from rulec.witnesses.counted_objects import fewest_counted_objects
+from rulec.witnesses.counted_objects import CountedObjectKinds, fewest_counted_objects
 from rulec.witnesses.joint_reads import JointReads, joint_reads
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.trace_synthesis import place_objects
@@ -49,6 +49,7 @@ class LetterWitnesses:
         self._counts = letter_functions.counts_read(rule.machine.reads)
         objects = {variable.name: variable.type for variable in rule.variables}
         self._universe = ObjectUniverse(objects, vocabulary)
+        self._object_kinds = CountedObjectKinds(self._universe)
         self._states: dict[int, state_synthesis.JointState | None] = {}
         self._undecided: set[int] = set()
         self._digits = list(letter_functions.all_digits(rule.machine.reads))
@@ -135,7 +136,7 @@ class LetterWitnesses:
             )
             reads = list(zip(joint.reads, joint_digits, strict=True))
             state = state_synthesis.synthesize_state(self._universe, reads, counted)
-            if state is not None and fewest_counted_objects(state, self._universe) is not None:
+            if state is not None and fewest_counted_objects(state, self._object_kinds) is not None:
                 return state
         return None
 

@@ -5,7 +5,7 @@ The product of several monitors is searched breadth first, and built as far as t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
@@ -23,12 +23,16 @@ ProductState = tuple[int, ...]
 
 
 def shortest_word(
-    monitors: Sequence[MealyMonitor], verdicts: Sequence[bool], letters: Sequence[JointLetter]
+    monitors: Sequence[MealyMonitor],
+    verdicts: Sequence[bool],
+    letters: Sequence[JointLetter],
+    can_be_read: Callable[[JointLetter], bool] = lambda _: True,
 ) -> tuple[JointLetter, ...] | None:
     """Find a shortest non-empty word with these verdicts, or None.
 
-    Of several the first in the order of ``letters``. A single monitor is searched to its end;
-    raises UndecidedError where a product is too large for that.
+    Of several the first in the order of ``letters``, of those that can be read; that is asked only
+    where it matters. A single monitor is searched to its end; raises UndecidedError where a product
+    is too large for that.
     """
     start: ProductState = (0,) * len(monitors)
     words: dict[ProductState, tuple[JointLetter, ...]] = {start: ()}
@@ -46,12 +50,14 @@ def shortest_word(
             if all(
                 row[own] is verdict
                 for row, own, verdict in zip(outputs, letter, verdicts, strict=True)
-            ):
+            ) and can_be_read(letter):
                 return (*words[state], letter)
             target = tuple([row[own] for row, own in zip(successors, letter, strict=True)])
             if target in words or any(
                 own == sink for own, sink in zip(target, hopeless, strict=True)
             ):
+                continue
+            if not can_be_read(letter):
                 continue
             words[target] = (*words[state], letter)
             waiting.append(target)

@@ -10,7 +10,11 @@ from typing import Any
 
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
-from rulec.witnesses.counted_objects import counted_objects_of_types, fewest_counted_objects
+from rulec.witnesses.counted_objects import (
+    CountedObjectKinds,
+    counted_objects_of_types,
+    fewest_counted_objects,
+)
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse
 from rulec.witnesses.state_synthesis import JointState, Subject, Value, default_value, subjects_of
 from rulec.witnesses.undecided import UndecidedError
@@ -27,8 +31,9 @@ def place_objects(
     """
     # Each type as often as any state needs it.
     most: Counter[str] = Counter()
+    kinds = CountedObjectKinds(universe)
     for state in states:
-        needed = fewest_counted_objects(state, universe) or ()
+        needed = fewest_counted_objects(state, kinds) or ()
         most |= Counter(companion.type for companion in needed)
     types = sorted(most.elements())
     names: list[str] = []
@@ -37,7 +42,7 @@ def place_objects(
         names.append(next(name for name in numbered if name not in {*universe.objects, *names}))
     placed: list[dict[Subject, Value]] = []
     for state in states:
-        further = counted_objects_of_types(state, universe, types)
+        further = counted_objects_of_types(state, kinds, types)
         if further is None:
             raise UndecidedError("objects to be counted in one state are in the way in another")
         values = dict(state.values)

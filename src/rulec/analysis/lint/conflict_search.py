@@ -49,15 +49,16 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
     if have_harmless_state(monitors, functions, universe):
         return None
     alphabet = JointAlphabet(universe, functions)
-    if not alphabet.letters:
+    letters = alphabet.letters
+    if not letters:
         return None
     rules = []
     for number in range(len(analyzed_rules)):
         places = [place for place, owner in enumerate(owners) if owner == number]
-        own = dict.fromkeys(tuple(letter[place] for place in places) for letter in alphabet.letters)
+        own = dict.fromkeys(tuple(letter[place] for place in places) for letter in letters)
         alone = _explored([monitors[place] for place in places], [0] * len(places), list(own))
         rules.append((places, _hopeful(alone, frozenset([0]))))
-    word = _shortest(_explored(monitors, owners, alphabet.letters), rules)
+    word = _shortest(_explored(monitors, owners, letters), rules)
     if not word:
         return None if word is None else Conflict(None)
 
@@ -68,8 +69,9 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
             for violation in analyzed.violations(trace, vocabulary)
         )
 
-    states = [alphabet.states[letter] for letter in word]
-    return Conflict(synthesize_trace(states, universe, common_step(analyzed_rules), is_open))
+    return Conflict(
+        synthesize_trace(alphabet.states_of(word), universe, common_step(analyzed_rules), is_open)
+    )
 
 
 def common_objects(

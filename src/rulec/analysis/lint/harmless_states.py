@@ -38,7 +38,7 @@ def have_harmless_state(
         formulas = universe.axiom_formulas()
         if hold_by_default((axiom_function(one, vocabulary) for one in formulas), vocabulary):
             return True
-    return (1,) * len(contents) in JointAlphabet(universe, contents).states
+    return JointAlphabet(universe, contents).can_be_read((1,) * len(contents))
 
 
 def harmless_classes(machine: MealyMonitor) -> frozenset[int]:

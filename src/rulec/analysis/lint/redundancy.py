@@ -32,8 +32,10 @@ def can_be_kept(analyzed: AnalyzedRule) -> bool:
     universe = ObjectUniverse(objects, analyzed.rulebook.vocabulary, analyzed.axioms)
     bindings = universe.bindings(analyzed.rule.variables)
     machine = analyzed.rule.machine
-    letters = JointAlphabet(universe, [monitor_function(machine, own) for own in bindings]).letters
-    return shortest_word([machine] * len(bindings), [True] * len(bindings), letters) is not None
+    alphabet = JointAlphabet(universe, [monitor_function(machine, own) for own in bindings])
+    machines, verdicts = [machine] * len(bindings), [True] * len(bindings)
+    word = shortest_word(machines, verdicts, alphabet.candidates, alphabet.can_be_read)
+    return word is not None
 
 
 def implied_by(analyzed: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[AnalyzedRule, ...]:
