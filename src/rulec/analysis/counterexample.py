@@ -116,9 +116,11 @@ def shared_vocabulary(first: Vocabulary, second: Vocabulary) -> SharedVocabulary
     unlike = set()
     for name, item in second.declarations.items():
         known = declarations.setdefault(name, item)
+        if known == item:
+            continue
         if _kind(known) != _kind(item):
             unlike.add(name)
-        elif known != item:
+        else:
             declarations[name] = replace(
                 _kind(known) if known.default != item.default else known,
                 constant=known.constant and item.constant,

@@ -9,7 +9,7 @@ from fractions import Fraction
 from itertools import permutations
 from string import ascii_uppercase
 
-from rulec.analysis.diff.rule_comparison import RuleRelation, compare
+from rulec.analysis.diff.rule_comparison import RuleRelation, rule_relation
 from rulec.analysis.diff.rulebook_comparison import rules_matching
 from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile_shared
 from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook
@@ -150,16 +150,16 @@ def _classified(
             continue
         compared: list[RuleRelation] = []
         while "equal" not in compared and len(compared) < len(representatives):
-            compared.append(compare(side, representatives[len(compared)]).relation)
+            compared.append(rule_relation(side, representatives[len(compared)]))
         if "equal" in compared:
             known[side.law] = len(compared) - 1
             continue
         own = known[side.law] = len(representatives)
         representatives.append(side)
         relations[own, own] = "equal"
-        for number, relation in enumerate(compared):
-            relations[own, number] = relation
-            relations[number, own] = CONVERSE[relation]
+        for number, found in enumerate(compared):
+            relations[own, number] = found
+            relations[number, own] = CONVERSE[found]
     return {book: known[side.law] for book, side in sides.items()}, relations
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Literal
 
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, Source
 from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.files import reference_messages as say
 from rulec.rulebook.files import search_path as search
@@ -25,6 +26,12 @@ class Book:
 
     file: tree.File
     path: Path | None
+
+
+@lru_cache(maxsize=16)
+def _parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
+    """What ``parse`` says: whoever reads many rulebooks meets the same bases again and again."""
+    return parse(source)
 
 
 def source_file(name: str, data: bytes) -> SourceFile:
@@ -70,7 +77,7 @@ class ReferencedFiles:
                 help="let a rulebook extend a more general one directly",
             )
         data = self._read("base", name, user, path)
-        file, mistakes = parse(decode(str(path), data))
+        file, mistakes = _parsed(decode(str(path), data))
         if file.kind == "vocabulary" and file.name is not None:
             expected = "expected the name of a rulebook"
             raise RulecError(say.vocabulary_for_rulebook(name, expected=expected))
@@ -88,7 +95,7 @@ class ReferencedFiles:
                 return None
             source = decode(str(path), data)
             self._vocabularies.append(path)
-            file, mistakes = parse(source)
+            file, mistakes = _parsed(source)
             if file.name is not None and (file.kind, file.name.text) != ("vocabulary", name.text):
                 raise RulecError(say.not_the_vocabulary(use, file, path))
         except RulecError as error:
