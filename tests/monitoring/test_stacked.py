@@ -180,3 +180,37 @@ def test_what_is_odd_is_refused_as_states_are(arrays, message):
     (answer,) = verify_arrays([TraceArrays("odd", 1.0, 1, **arrays)], compiled)
     assert isinstance(answer, NotJudged)
     assert message in str(answer.error)
+
+
+CROWDED = """\
+rulebook crowded
+type car
+type truck is car
+signal clear default true
+signal near(c: car) default false
+hard rule whatever { require always (clear or not some c: car (near(c) and clear)) }
+hard rule alone { require always (clear or not some c: car (near(c) and not clear)) }
+hard rule trucks { require always (clear or count c: truck (near(c) and not clear) <= 1) }
+"""
+"""Counts that read what their rule reads beside them: no two of them are looked at apart."""
+
+
+@pytest.mark.parametrize(
+    ("near", "violated", "undecided"),
+    [
+        ({}, [], []),
+        ({"a1": True}, [], [("alone",)]),
+        (dict.fromkeys(["a1", "b1", "b2"], True), [], [("alone",), ("trucks",)]),
+        ({f"a{n}": UNKNOWN for n in range(30)}, [], [("alone",)]),
+        ({f"b{n}": UNKNOWN for n in range(30)}, [], [("alone",), ("trucks",)]),
+        ({"a1": UNKNOWN, "b1": UNKNOWN}, [], [("alone",)]),
+    ],
+)
+def test_of_a_crowd_of_whom_the_same_is_said_all_is_known(near, violated, undecided):
+    compiled = rulec.compile(rulec.parse_rulebook(CROWDED))
+    crowd = {f"a{n}": "car" for n in range(30)} | {f"b{n}": "truck" for n in range(30)}
+    trace = Trace("crowd", 1.0, crowd, ({}, {"clear": UNKNOWN, "near": near}, {}))
+    (together,) = verify_arrays([in_arrays(trace, compiled.vocabulary)], compiled)
+    assert found(together) == (violated, undecided)
+    assert all(one.exact for one in together.open)
+    assert together == verify_or_reason(trace, compiled)

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.automata.mealy_monitor import Read
+from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic import formula as ltl
-from rulec.monitoring.batch.stacked.stack_reader import StackReader, is_partial
-from rulec.monitoring.batch.stacked.stacked_outcomes import StackedWords, digits_at
+from rulec.monitoring.batch.stacked.entangled_letters import digits_at
+from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
+from rulec.monitoring.batch.stacked.stacked_outcomes import StackedWords
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleWord
+from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 from rulec.monitoring.uncertainty.within_tolerance import told_within_bounds
 from rulec.monitoring.verdict import OpenReasons
 from rulec.trace.trace_arrays import Flags
+from rulec.vocabulary.partial_values import UNKNOWN
 
 _Value = TypeVar("_Value")
 
@@ -29,29 +32,33 @@ class StackedReasons:
         self._reader = reader
         self._order = tuple(reader.stack.vocabulary.declarations)
         self._said: dict[str, tuple[Flags | None, Flags | None]] = {}
+        self._of_type: dict[tuple[str | None, str], Flags] = {}
 
-    def of(self, words: StackedWords, place: int) -> OpenReasons | None:
-        """Why the verdict on one of these words is open; None if one has to look closer."""
+    def of(self, words: StackedWords, place: int) -> OpenReasons:
+        """Why the verdict on one of these words is open."""
         own = slice(int(words.bounds[place]), int(words.bounds[place + 1]))
-        if words.entangled[own].any():
-            return None
+        rule, is_exact = words.rule, words.is_exact
         possible, constants = [], []
-        for supposed, numbers, letters in zip(
-            words.supposed, words.numbers, words.letters, strict=True
+        for supposed, numbers, letters, entangled in zip(
+            words.supposed, words.numbers, words.letters, words.entangled, strict=True
         ):
-            rule = words.rule
-            starts, lengths = _runs([_part(column, own) for column in numbers])
-            places = starts + own.start
-            digits = [digits_at(rule, n, numbers[n], places) for n in range(len(rule.reads))]
+            columns = [_part(column, own) for column in numbers]
+            if entangled is not None:
+                columns.append(np.array(entangled.at(np.arange(own.start, own.stop))))
+            starts, lengths = _runs(columns)
+            starts += own.start
+            digits = [digits_at(rule, n, numbers[n], starts) for n in range(len(rule.reads))]
             unknown = []
             for n, column in enumerate(digits):
-                names = self._unknown_names(words, n, column, own)
-                if names is None:
-                    return None
-                unknown.append(names)
+                unknown.append(self._unknown_names(words, n, column, own))
             sets = rule.letters.sets
-            classes = [sets[number] for number in letters[places].tolist()]
-            states = [(cube,) for cube in zip(*digits, strict=True)]
+            classes = [sets[number] for number in letters[starts].tolist()]
+            states: list[Letters] = [(cube,) for cube in zip(*digits, strict=True)]
+            if entangled is not None:
+                for run, number in enumerate(entangled.at(starts)):
+                    if number >= 0:
+                        states[run] = entangled.letters[number]
+                        is_exact = is_exact and entangled.exact[number]
             word = PossibleWord(
                 tuple(_repeated(classes, lengths)),
                 exact=True,
@@ -60,35 +67,73 @@ class StackedReasons:
             )
             possible.append(word)
             constants.append(_by_name(supposed))
-        found = words.rule.machine.reasons(possible, constants, self._order)
-        found = found._replace(exact=found.exact and words.is_exact)
+        found = rule.machine.reasons(possible, constants, self._order)
+        found = found._replace(exact=found.exact and is_exact)
         first, last = words.instances.firsts[place], words.instances.lasts[place]
         stretch = slice(int(first), int(last) + 1)
         return told_within_bounds(found, lambda name: self._is_within_bounds(name, stretch))
 
     def _unknown_names(
         self, words: StackedWords, read: int, digits: list[int], own: slice
-    ) -> frozenset[str] | None:
-        """The names of values of which some are unknown; None if one has to look closer."""
+    ) -> frozenset[str]:
+        """The names of values of which some are unknown."""
         stacked = words.rule.reads[read]
         if all(mask & (mask - 1) == 0 for mask in set(digits)):
             return frozenset()
         if len(stacked.names) == 1:
             return frozenset(stacked.names)
-        if stacked.count is not None or isinstance(stacked.read, Read):
-            return None
         spots = words.spots.part(own)
-        unknown = set()
+        if stacked.count is not None:
+            return self._unknown_in_count(stacked.count, spots)
+        assert isinstance(stacked.read, NumberRead), "it has several names"
+        stack, unknown = self._reader.stack, set()
         for _, term in stacked.read.terms:
             assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
-            column = self._reader.stack.column(term.name)
+            column = stack.column(term.name)
+            flags = None if column is None else is_partial(column)
             if column is None:
-                return None
-            where = spots.cells[term.arguments[0]] if term.arguments else spots.states
-            flags = is_partial(column)
-            if flags is not None and flags[where].any():
+                is_unknown = stack.default(term.name) is UNKNOWN
+            else:
+                where = spots.cells[term.arguments[0]] if term.arguments else spots.states
+                is_unknown = flags is not None and bool(flags[where].any())
+            if is_unknown:
                 unknown.add(term.name)
         return frozenset(unknown)
+
+    def _unknown_in_count(self, count: ltl.Count, spots: Spots) -> frozenset[str]:
+        """The names of which something is unknown of, or beside, those who may count."""
+        stack, unknown = self._reader.stack, set()
+        there = self._are_there(count.type)[spots.states]
+        for name, arguments in _asked_in(count.body):
+            column = stack.column(name)
+            flags = None if column is None else is_partial(column)
+            if column is None:
+                is_unknown = there & (stack.default(name) is UNKNOWN)
+            elif flags is None:
+                continue
+            elif not arguments:
+                is_unknown = there & flags[spots.states]
+            elif arguments[0] == count.variable:
+                is_unknown = self._of_anybody(name, count.type, flags)[spots.states]
+            else:
+                is_unknown = there & flags[spots.cells[arguments[0]]]
+            if is_unknown.any():
+                unknown.add(name)
+        return frozenset(unknown)
+
+    def _are_there(self, kind: str) -> Flags:
+        """The states in which somebody of a type is there."""
+        return self._of_anybody(None, kind, None)
+
+    def _of_anybody(self, name: str | None, kind: str, flags: Flags | None) -> Flags:
+        """The states in which the flags of a name are set in a cell of some object of a type."""
+        if (name, kind) not in self._of_type:
+            stack = self._reader.stack
+            cells = stack.cells_of_type(kind)
+            found: Flags = np.zeros(stack.n_states, dtype=bool)
+            found[stack.state_of[cells if flags is None else cells[flags[cells]]]] = True
+            self._of_type[name, kind] = found
+        return self._of_type[name, kind]
 
     def _is_within_bounds(self, name: str, states: slice) -> bool:
         """Whether some number is an interval in these states, and none is unknown altogether."""
@@ -119,6 +164,17 @@ class StackedReasons:
         found: NDArray[np.bool_] = np.zeros(stack.n_states, dtype=bool)
         found[stack.state_of[flags]] = True
         return found
+
+
+def _asked_in(body: ltl.Formula) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The names that a counted formula reads, which counts nothing itself, and of what."""
+    for part in ltl.atoms_of(body):
+        if isinstance(part, ltl.Atom):
+            yield part.name, part.arguments
+        elif isinstance(part, ltl.Comparison):
+            for _, term in part.terms:
+                assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
+                yield term.name, term.arguments
 
 
 def _part(column: Numbers, own: slice) -> NDArray[np.intp]:

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.outcome_machine import KEPT
+from rulec.monitoring.batch.stacked.entangled_letters import EntangledLetters, entangled_letters
 from rulec.monitoring.batch.stacked.instances import Instances, doubtful_instances, numbers_at
-from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
+from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.batch.uncertain.partial_reader import number_of_value
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
@@ -20,7 +21,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import Answer
 from rulec.trace import Value
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES
+from rulec.vocabulary.partial_values import UNKNOWN
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,8 +29,8 @@ class StackedWords:
     """The words of some choices of objects, one for each way to choose what does not change.
 
     ``numbers`` are those of the reads, ``letters`` those of the sets of letters, both at the
-    ``spots``; the words begin and end at ``bounds``. Where they are ``entangled`` not all is said
-    by the numbers of the reads, and where they are ``odd`` nothing is known by them.
+    ``spots``; the words begin and end at ``bounds``. Where letters are ``entangled``
+    the numbers of reads do not say all, and where they are ``odd`` nothing.
     """
 
     rule: StackedRule
@@ -40,7 +41,7 @@ class StackedWords:
     is_exact: bool
     numbers: Sequence[Sequence[Numbers]]
     letters: Sequence[NDArray[np.intp]]
-    entangled: NDArray[np.bool_]
+    entangled: Sequence[EntangledLetters | None]
     odd: NDArray[np.bool_]
 
 
@@ -136,7 +137,6 @@ def _of_group(
     """The words of choices of which the same constants are ``unknown``, places of reads."""
     instances, bounds, spots, numbers = told
     vocabulary, n_spots = reader.stack.vocabulary, len(spots.states)
-    entangled = np.zeros(n_spots, dtype=bool)
     odd = _hides_constants(rule, reader, spots)
     supposed: Sequence[Mapping[Subject, Value]] = [{}]
     is_exact = True
@@ -148,7 +148,7 @@ def _of_group(
         )
         if len(given) > 1 and supposed == [{}]:
             odd[:] = True
-    every_numbers, every_letters = [], []
+    every_numbers, every_letters, every_entangled = [], [], []
     for values in supposed:
         own = list(numbers)
         for place in unknown:
@@ -157,17 +157,19 @@ def _of_group(
                 read = rule.reads[place].read
                 own[place] = number_of_value(read, value, vocabulary)[1]
         letters = np.array(np.broadcast_to(np.asarray(rule.letters.numbers(own)), (n_spots,)))
+        entangled = None
         if rule.related and not odd.all():
             partial = rule.letters.are_partial(own, rule.related)
-            dark = _are_entangled(rule, reader, spots) & partial
-            places = np.flatnonzero(dark)
-            if len(places):
-                entangled |= dark
-                if rule.entangled is None:
-                    odd |= dark
+            partial = np.broadcast_to(partial, (n_spots,))
+            if partial.any():
+                about = spots, partial
+                entangled = entangled_letters(rule, reader, about, own, values)
+                if entangled is None:
+                    odd |= partial
                 else:
-                    about = spots.part(places), places
-                    letters[places] = _entangled(rule, reader, about, own, values)
+                    sets = [rule.letters.number_of(classes) for classes in entangled.classes]
+                    letters[entangled.places] = np.array(sets, dtype=np.intp)[entangled.numbers]
+        every_entangled.append(entangled)
         every_numbers.append(own)
         every_letters.append(letters)
     return StackedWords(
@@ -179,7 +181,7 @@ def _of_group(
         is_exact=is_exact,
         numbers=every_numbers,
         letters=every_letters,
-        entangled=entangled,
+        entangled=every_entangled,
         odd=odd,
     )
 
@@ -203,58 +205,3 @@ def _hides_constants(rule: StackedRule, reader: StackReader, spots: Spots) -> ND
 def _subject(rule: StackedRule, place: int) -> Subject:
     read = rule.reads[place]
     return read.names[0], read.variables
-
-
-def _are_entangled(rule: StackedRule, reader: StackReader, spots: Spots) -> NDArray[np.bool_]:
-    """Where unknown values have to do with each other; everywhere if that is not known."""
-    n_spots, reads = len(spots.states), rule.entangled
-    if reads is None:
-        return np.ones(n_spots, dtype=bool)
-    found = np.zeros(n_spots, dtype=bool)
-    for about in reads.subjects:
-        name, variables = about
-        column = reader.stack.column(name)
-        if column is None:
-            if about in reads.shared and reader.stack.default(name) is UNKNOWN:
-                found[:] = True
-            continue
-        flags = is_partial(column) if about in reads.shared else column.apart
-        if flags is not None:
-            found |= flags[spots.cells[variables[0]] if variables else spots.states]
-    return found
-
-
-def _entangled(
-    rule: StackedRule,
-    reader: StackReader,
-    about: tuple[Spots, NDArray[np.intp]],
-    numbers: Sequence[Numbers],
-    supposed: Mapping[Subject, Value],
-) -> list[int]:
-    """The numbers of sets of letters where reads have to do with each other."""
-    spots, places = about
-    reads = rule.entangled
-    assert reads is not None
-    letters = rule.machine.classes.of_rule(rule.rule, reads)
-    columns = []
-    for subject in reads.subjects:
-        values = reader.values_at(*subject, spots)
-        if subject in supposed:
-            instead = supposed[subject]
-            values = [instead if type(value) in UNKNOWN_TYPES else value for value in values]
-        columns.append(values)
-    rows = zip(*columns, strict=True) if columns else [()] * len(places)
-    digits = [digits_at(rule, n, numbers[n], places) for n in letters.independent]
-    keys = list(zip(*digits, map(reads.number, rows), strict=True))
-    return [rule.letters.number_of(classes) for classes in letters.classes(keys)]
-
-
-def digits_at(
-    rule: StackedRule, read: int, numbers: Numbers, places: NDArray[np.intp] | slice
-) -> list[int]:
-    """The digits, as bits, that a read may have at some places of its numbers."""
-    meanings = rule.reads[read].meanings
-    if isinstance(numbers, np.ndarray):
-        return [meanings[number] for number in numbers[places].tolist()]
-    n_places = places.stop - places.start if isinstance(places, slice) else len(places)
-    return [meanings[numbers]] * n_places

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import holds
 from rulec.monitoring.batch.uncertain.partial_reader import meanings_of
+from rulec.monitoring.uncertainty.state_letters.counted_crowd import counts
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
@@ -97,6 +98,20 @@ class StackedRule:
         self.letters = self._no_letters()
         self._answers: dict[bytes, Answer] = {}
         self._bytes = 0
+        self._vocabulary = vocabulary
+        self._everybody: dict[str, str] = {}
+        self._crowd: EntangledReads | None = None
+
+    def reads_among(self, everybody: Mapping[str, str]) -> EntangledReads:
+        """The entangled reads of a rule without variables, where these objects may be there.
+
+        Of others it may be asked later on, so they are all those of whom it has been.
+        """
+        if self._crowd is None or not everybody.keys() <= self._everybody.keys():
+            self._everybody |= everybody
+            objects = NothingKnown(dict(self._everybody), self._vocabulary)
+            self._crowd = EntangledReads(self.rule, {}, (), objects)
+        return self._crowd
 
     def _no_letters(self) -> LetterSets:
         return LetterSets(self.machine.classes.diagram, [read.meanings for read in self.reads])
@@ -213,13 +228,6 @@ def _is_simple_read(read: StackedRead, rule: StackedRule) -> bool:
         return False
     return not read.variables or (
         len(rule.variables) == 1 and _counts_no_stranger(read.count, rule.variables[0])
-    )
-
-
-def counts(part: ltl.Proposition) -> bool:
-    """Whether a proposition compares a number of objects."""
-    return isinstance(part, ltl.Comparison) and any(
-        isinstance(term, ltl.Count) for _, term in part.terms
     )
 
 

@@ -21,7 +21,6 @@ from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
 from rulec.monitoring.batch.stacked.stacked_outcomes import (
     StackedOutcome,
-    StackedWords,
     outcomes,
 )
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
@@ -30,7 +29,7 @@ from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
-from rulec.monitoring.verdict import NotJudged, OpenReasons, OpenVerdict, Verdict, Violation
+from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, verify_or_reason
 from rulec.trace.trace_arrays import TraceArrays
 
@@ -135,18 +134,10 @@ class _StackedRun:
                 step += int(words.instances.firsts[place] - stack.begins[number])
             found = Violation(rule.name, rule.strength, binding, step)
         else:
-            why = partial(self._why, number, words, place)
+            why = partial(self._reasons.of, words, place)
             found = OpenVerdict.explained_later(rule.name, rule.strength, binding, why)
         if found is not None:
             self._found[number].append(((rule_number, *chosen), found))
-
-    def _why(self, number: int, words: StackedWords, place: int) -> OpenReasons:
-        found = self._reasons.of(words, place)
-        if found is not None:
-            return found
-        items = [self._stack.names[int(own[place])] for own in words.instances.objects]
-        binding = dict(zip(words.rule.variables, items, strict=True))
-        return self._closely[number].reasons(words.rule.rule.name, binding)
 
     def _add_closely(self, rule_number: int, rule: StackedRule) -> None:
         for number, close in enumerate(self._closely):
@@ -188,6 +179,3 @@ class _CloseLook:
 
     def answers(self, rule: str) -> list[Found]:
         return list(self._run.answers(rule))
-
-    def reasons(self, rule: str, binding: Mapping[str, str]) -> OpenReasons:
-        return self._run.reasons(rule, binding)

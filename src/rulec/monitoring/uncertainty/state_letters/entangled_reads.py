@@ -19,6 +19,7 @@ from rulec.logic.free_names import names_in
 from rulec.logic.kleene import Unknown, holds
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import joint_digits
+from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in, counts, crowd_of
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     names_of_read,
@@ -88,7 +89,7 @@ class EntangledReads:
         self.numbers = tuple(
             n
             for n, read in enumerate(reads)
-            if _count_in(read) or any(places[subject] > 1 for subject in about[n])
+            if count_in(read) or any(places[subject] > 1 for subject in about[n])
         )
         self._reads = [reads[n] for n in self.numbers]
         self._ready = [read_digits(read) for read in self._reads]
@@ -99,6 +100,11 @@ class EntangledReads:
         for n in self.numbers:
             if _is_coarse(reads[n]):
                 self.shared |= about[n]
+        # Facts may tell apart whom no read does.
+        self._crowd = None
+        if not is_local and not axioms:
+            asked = frozenset(binding.values())
+            self._crowd = crowd_of(self._reads, self.subjects, asked, everybody.objects)
         self.found: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}
@@ -116,7 +122,11 @@ class EntangledReads:
 
         Unless the reads are local it matters who is ``there``. Raises MissingValueError.
         """
-        key = values if there is None else (values, *there)
+        key: tuple[object, ...] = values
+        if there is not None:
+            key = values, *there
+            if self._crowd is not None:
+                key, there = self._crowd.few(values, there)
         known = self._known.get(key)
         if known is None:
             found = self._letters(values, self._everybody.objects if there is None else there)
@@ -170,31 +180,20 @@ def _local_reads(
     return EntangledReads(rule, binding, (), NothingKnown(own, vocabulary), is_local=True)
 
 
-def _count_in(read: Read | NumberRead) -> ltl.Count | None:
-    terms = read.terms if isinstance(read, NumberRead) else ()
-    return next((term for _, term in terms if isinstance(term, ltl.Count)), None)
-
-
 def _is_coarse(read: Read | NumberRead) -> bool:
     """Whether not all digits between the least and the greatest may be those of a count."""
-    count = _count_in(read)
+    count = count_in(read)
     if count is None or not isinstance(read, NumberRead):
         return False
     is_plain = len(read.terms) == 1 and len(read.thresholds) == 1
-    return not is_plain or any(map(_counts, ltl.atoms_of(count.body)))
-
-
-def _counts(part: ltl.Proposition) -> bool:
-    return isinstance(part, ltl.Comparison) and any(
-        isinstance(term, ltl.Count) for _, term in part.terms
-    )
+    return not is_plain or any(map(counts, ltl.atoms_of(count.body)))
 
 
 def _deciding_subjects(
     read: Read | NumberRead, binding: Mapping[str, str], everybody: NothingKnown
 ) -> Iterator[Subject]:
     """What decides a read, with repetitions; of a count what decides whether objects count."""
-    count = _count_in(read)
+    count = count_in(read)
     if count is None:
         yield from subjects_of_read(read, binding, everybody)
         return
@@ -209,10 +208,10 @@ def _deciding_subjects(
 
 def _is_local(read: Read | NumberRead, rule: CompiledRule, vocabulary: Vocabulary) -> bool:
     """Whether a read depends on nobody but the objects that the rule is bound to."""
-    count = _count_in(read)
+    count = count_in(read)
     if count is None:
         return True
-    if any(map(_counts, ltl.atoms_of(count.body))):
+    if any(map(counts, ltl.atoms_of(count.body))):
         return False
     variables = {variable.name: variable.type for variable in rule.variables}
     for kind in variables.values():

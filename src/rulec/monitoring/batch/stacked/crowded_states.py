@@ -1,0 +1,184 @@
+"""What reads that count everybody may be together, found once for states alike but for names.
+
+Of those who count nothing matters but how many there are of whom the same is said, and that only up
+to a count's highest threshold. So dense traffic is in few different states.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.monitoring.batch.stacked.stack import Places, StackColumn
+from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
+from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
+from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in, enough_alike
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
+from rulec.trace import Value
+from rulec.trace.plain_arrays import distinct
+from rulec.trace.trace_arrays import Flags
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, PartialValue
+
+MOST_KINDS = 1 << 7
+"""Where more different things are said of objects, states are looked at one by one."""
+
+
+class CrowdedStates:
+    """The states of a stack for a rule without variables that counts everybody.
+
+    ``is_known`` is false if it takes a look at each state by itself.
+    """
+
+    def __init__(self, rule: StackedRule, reader: StackReader) -> None:
+        self._rule, self._reader, self._stack = rule, reader, reader.stack
+        reads = [rule.reads[n].read for n in rule.related]
+        enough = enough_alike(reads)
+        self._enough = 0 if enough is None else enough
+        self.is_known = enough is not None and not rule.variables
+        names = sorted({name for n in rule.related for name in rule.reads[n].names})
+        declared = self._stack.vocabulary.declarations
+        self._world = [name for name in names if not declared[name].parameters]
+        self._about = [name for name in names if declared[name].parameters]
+        self._counted = sorted({count.type for count in map(count_in, reads) if count is not None})
+
+    def are_entangled(self) -> Flags:
+        """The states of the stack in which unknown values may have to do with each other."""
+        stack = self._stack
+        everybody = {f"{kind} {n}": kind for kind in self._counted for n in range(2)}
+        shared = {name for name, _ in self._rule.reads_among(everybody).shared}
+        found = np.zeros(stack.n_states, dtype=bool)
+        cells = self._cells(found | True)
+        for name in (*self._world, *self._about):
+            column = stack.column(name)
+            if column is None:
+                found |= name in shared and stack.default(name) is UNKNOWN
+                continue
+            flags = is_partial(column) if name in shared else column.apart
+            if flags is not None and name in self._world:
+                found |= flags
+            elif flags is not None:
+                found[stack.state_of[cells[flags[cells]]]] = True
+        return found
+
+    def numbers(
+        self, states: Places, supposed: Mapping[Subject, Value]
+    ) -> tuple[EntangledReads, list[int]] | None:
+        """The rule's entangled reads, and the place of what is found of them in each state.
+
+        States are in ascending order. None if one has to look at each by itself.
+        """
+        stack = self._stack
+        is_meant = np.zeros(stack.n_states, dtype=bool)
+        is_meant[states] = True
+        cells = self._cells(is_meant)
+        kinds = self._kinds(cells)
+        n_kinds = int(kinds.max(initial=-1)) + 1
+        if n_kinds > MOST_KINDS:
+            return None
+        owners = np.searchsorted(states, stack.state_of[cells])
+        often = np.bincount(owners * n_kinds + kinds, minlength=len(states) * n_kinds)
+        often = np.minimum(often, self._enough).reshape(len(states), n_kinds)
+        said = [codes for name in self._world for codes in _codes(stack.column(name), states)]
+        alike: dict[bytes, int] = {}
+        firsts: list[int] = []
+        groups: list[int] = []
+        for place, row in enumerate(np.column_stack([often, *said])):
+            group = alike.setdefault(row.tobytes(), len(firsts))
+            if group == len(firsts):
+                firsts.append(place)
+            groups.append(group)
+        examples = np.empty(n_kinds, dtype=np.intp)
+        examples[kinds[::-1]] = cells[::-1]
+        reads, found = self._found(states[firsts], often[firsts], examples, supposed)
+        return reads, [found[group] for group in groups]
+
+    def _cells(self, states: Flags) -> Places:
+        """The cells, in some states, of those who may count."""
+        stack = self._stack
+        suits = np.zeros(len(stack.types), dtype=bool)
+        for kind in self._counted:
+            suits |= stack.of_type(kind)
+        return np.flatnonzero(suits[stack.object_of] & states[stack.state_of])
+
+    def _kinds(self, cells: Places) -> Places:
+        """A number for each cell, the same where the same is said of objects of one type."""
+        stack = self._stack
+        types = {kind: place for place, kind in enumerate(dict.fromkeys(stack.types))}
+        of_object = np.array([types[kind] for kind in stack.types], dtype=np.intp)
+        kinds = of_object[stack.object_of[cells]]
+        for name in self._about:
+            for codes in _codes(stack.column(name), cells):
+                kinds = _places(kinds * (int(codes.max(initial=0)) + 1) + codes)
+        return kinds
+
+    def _found(
+        self,
+        states: Places,
+        often: NDArray[np.intp],
+        examples: Places,
+        supposed: Mapping[Subject, Value],
+    ) -> tuple[EntangledReads, list[int]]:
+        """What is found in states in which there are objects like these examples so often."""
+        stack, reader = self._stack, self._reader
+        types = [stack.types[item] for item in stack.object_of[examples].tolist()]
+        spots = Spots(stack.state_of[examples], {"": examples})
+        about = {name: reader.values_at(name, ("",), spots) for name in self._about}
+        world = {
+            name: supposed_instead(
+                reader.values_at(name, (), Spots(states, {})), supposed.get((name, ()))
+            )
+            for name in self._world
+        }
+        there: list[dict[str, int]] = []
+        for row in often.tolist():
+            n_of_type: Counter[str] = Counter()
+            own: dict[str, int] = {}
+            for kind, n in enumerate(row):
+                for _ in range(n):
+                    own[f"{types[kind]} {n_of_type[types[kind]]}"] = kind
+                    n_of_type[types[kind]] += 1
+            there.append(own)
+        everybody = {item: types[kind] for own in there for item, kind in own.items()}
+        reads = self._rule.reads_among(everybody)
+        found = []
+        for place, own in enumerate(there):
+            values = [
+                world[name][place]
+                if not items
+                else about[name][own[items[0]]]
+                if items[0] in own
+                else None
+                for name, items in reads.subjects
+            ]
+            objects = {item: types[kind] for item, kind in own.items()}
+            found.append(reads.number(tuple(values), objects))
+        return reads, found
+
+
+def supposed_instead(
+    values: Sequence[PartialValue | None], instead: Value | None
+) -> Sequence[PartialValue | None]:
+    """The values, with one that is supposed where they are unknown."""
+    if instead is None:
+        return values
+    return [instead if type(value) in UNKNOWN_TYPES else value for value in values]
+
+
+def _codes(column: StackColumn | None, where: Places) -> list[Places]:
+    """Numbers of what a column says at some places, the same where it says the same."""
+    if column is None:
+        return []
+    ends = [column.values] if column.upper is None else [column.values, column.upper]
+    codes = [_places(end[where]) + 1 for end in ends]
+    if column.unknown is not None:
+        codes = [np.where(column.unknown[where], 0, own) for own in codes]
+    return codes
+
+
+def _places(values: NDArray[np.generic]) -> Places:
+    """The place of each value among the different ones."""
+    return np.searchsorted(distinct(values), values)

@@ -1,0 +1,126 @@
+"""The letters of states in which unknown values that a rule reads have to do with each other.
+
+There the numbers of its reads, one by one, do not say which letters are possible.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.monitoring.batch.stacked.crowded_states import CrowdedStates, supposed_instead
+from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
+from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import Numbers
+from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
+from rulec.trace import Value
+from rulec.trace.trace_arrays import Flags
+from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EntangledLetters:
+    """The possible ``letters`` at some ``places``, with their ``classes`` as bits.
+
+    ``numbers`` says which of them each place has; ``exact`` whether these are all possible.
+    """
+
+    places: NDArray[np.intp]
+    numbers: NDArray[np.intp]
+    letters: tuple[Letters, ...]
+    exact: tuple[bool, ...]
+    classes: tuple[int, ...]
+
+    def at(self, places: NDArray[np.intp]) -> list[int]:
+        """The number of the letters at each of some places, -1 where they are not entangled."""
+        if not len(self.places):
+            return [-1] * len(places)
+        near = np.minimum(np.searchsorted(self.places, places), len(self.places) - 1)
+        found: list[int] = np.where(self.places[near] == places, self.numbers[near], -1).tolist()
+        return found
+
+
+def entangled_letters(
+    rule: StackedRule,
+    reader: StackReader,
+    about: tuple[Spots, Flags],
+    numbers: Sequence[Numbers],
+    supposed: Mapping[Subject, Value],
+) -> EntangledLetters | None:
+    """The letters where some related reads are ``partial``, and what they read is entangled.
+
+    ``about`` are the spots, and where reads are partial. None if these are to be looked at one by
+    one.
+    """
+    spots, partial = about
+    found: Sequence[int]
+    if rule.entangled is not None:
+        reads = rule.entangled
+        places = np.flatnonzero(partial & _are_entangled(reads, reader, spots))
+        found = list(map(reads.number, _rows(reads, reader, spots.part(places), supposed)))
+    else:
+        crowd = CrowdedStates(rule, reader)
+        if not crowd.is_known:
+            return None
+        places = np.flatnonzero(partial & crowd.are_entangled()[spots.states])
+        told = crowd.numbers(spots.states[places], supposed)
+        if told is None:
+            return None
+        reads, found = told
+    letters = rule.machine.classes.of_rule(rule.rule, reads)
+    digits = [digits_at(rule, n, numbers[n], places) for n in letters.independent]
+    keys: dict[tuple[int, ...], int] = {}
+    own = [keys.setdefault(key, len(keys)) for key in zip(*digits, found, strict=True)]
+    return EntangledLetters(
+        places,
+        np.array(own, dtype=np.intp),
+        tuple(map(letters.letters, keys)),
+        tuple([reads.found[key[-1]][1] for key in keys]),
+        tuple(map(letters.classes_of, keys)),
+    )
+
+
+def _are_entangled(reads: EntangledReads, reader: StackReader, spots: Spots) -> Flags:
+    """Where unknown values have to do with each other."""
+    found = np.zeros(len(spots.states), dtype=bool)
+    for about in reads.subjects:
+        name, variables = about
+        column = reader.stack.column(name)
+        if column is None:
+            if about in reads.shared and reader.stack.default(name) is UNKNOWN:
+                found[:] = True
+            continue
+        flags = is_partial(column) if about in reads.shared else column.apart
+        if flags is not None:
+            found |= flags[spots.cells[variables[0]] if variables else spots.states]
+    return found
+
+
+def _rows(
+    reads: EntangledReads,
+    reader: StackReader,
+    spots: Spots,
+    supposed: Mapping[Subject, Value],
+) -> Iterator[tuple[PartialValue | None, ...]]:
+    """What is said of the reads' subjects at some spots."""
+    columns = [
+        supposed_instead(reader.values_at(*subject, spots), supposed.get(subject))
+        for subject in reads.subjects
+    ]
+    return zip(*columns, strict=True) if columns else iter([()] * len(spots.states))
+
+
+def digits_at(
+    rule: StackedRule, read: int, numbers: Numbers, places: NDArray[np.intp] | slice
+) -> list[int]:
+    """The digits, as bits, that a read may have at some places of its numbers."""
+    meanings = rule.reads[read].meanings
+    if isinstance(numbers, np.ndarray):
+        return [meanings[number] for number in numbers[places].tolist()]
+    n_places = places.stop - places.start if isinstance(places, slice) else len(places)
+    return [meanings[numbers]] * n_places
