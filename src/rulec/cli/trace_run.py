@@ -137,7 +137,7 @@ def _in_stream(
 ) -> Iterator[Answer]:
     size = None if name == "standard input" else _size(stream)
     with progress(f"judging {name}", size) as tell:
-        for chunk in read_chunks(stream, name, form):
+        for chunk in read_chunks(stream, name, form, together=True):
             traces, answers = verify_items(assumed.of(chunk), rules)
             for place, answer in enumerate(answers):
                 yield traces, place, answer

@@ -6,6 +6,7 @@ Whatever is odd about a trace, from an unknown name to a missing value, is left 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 from rulec.automata.axiom_instances import counts
@@ -17,6 +18,7 @@ from rulec.monitoring.batch import trace_groups
 from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block, groups_of
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
+from rulec.monitoring.batch.columns.line_columns import columnize_lines
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.uncertain.uncertain_verdicts import uncertain_verdicts
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
@@ -37,8 +39,9 @@ from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
+from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
-from rulec.trace.trace_columns import Array, Layout
+from rulec.trace.trace_columns import Array, Layout, TraceColumns
 from rulec.trace.trace_model import check_frame, check_presence
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -261,7 +264,34 @@ def verify_items(items: Items, rulebook: CompiledRulebook) -> tuple[Items, Seque
         if judged is not None:
             return judged
         items = list(items)
+    if isinstance(items, LineBlock):
+        return items, _verify_lines(items, rulebook)
     return items, verify_chunk(items, rulebook)
+
+
+def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answer]:
+    answers: list[Answer | None] = [None] * len(block)
+    for alike in block.alike:
+        # What is odd about it is said of each line by itself.
+        with suppress(UnencodableError, NotGivenError, RulecError):
+            _verify_alike(alike, rulebook, answers)
+    left = [place for place, answer in enumerate(answers) if answer is None]
+    others = iter(verify_chunk([block[place] for place in left], rulebook))
+    return [next(others) if answer is None else answer for answer in answers]
+
+
+def _verify_alike(
+    lines: AlikeLines, rulebook: CompiledRulebook, answers: list[Answer | None]
+) -> None:
+    """Answer for those traces of lines whose values are all readable."""
+    example = lines.headings[0]
+    rules = rules_for(Trace("", example.step_s, example.objects, ()), rulebook)
+    order, columns = columnize_lines(lines, rules.vocabulary)
+    objects = tuple(columns.objects)
+    for number, violations in violations_in(_verdicts(columns, rules), len(order)):
+        heading = lines.headings[order[number]]
+        own = trace_groups.under_own_names(violations, objects, tuple(heading.objects))
+        answers[lines.lines[order[number]]] = Verdict(heading.id, own)
 
 
 def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
@@ -307,6 +337,19 @@ def _changes(values: Array, layout: Layout) -> bool:
     )
 
 
+def _verdicts(columns: TraceColumns, rules: CompiledRulebook) -> Sequence[VerdictColumns]:
+    """Verdicts on columns that were read from a file. Raises UnencodableError, NotGivenError."""
+    if any(counts(axiom.formula) for axiom in rules.axioms):
+        raise UnencodableError
+    if any(
+        _changes(values, columns.layout)
+        for (name, _), values in columns.values.items()
+        if name in rules.vocabulary.constants
+    ):
+        raise UnencodableError
+    return verify_columns(columns, rules)
+
+
 def _verify_block_group(
     group: BlockGroup, rulebook: CompiledRulebook, answers: list[Answer | None]
 ) -> None:
@@ -315,16 +358,8 @@ def _verify_block_group(
     objects = dict(zip(group.objects, group.types, strict=True))
     step_s = float(presence.step_s[group.traces[0]])
     rules = rules_for(Trace("", step_s, objects, ()), rulebook)
-    if any(counts(axiom.formula) for axiom in rules.axioms):
-        raise UnencodableError
     columns = columnize_block(group, rules.vocabulary)
-    if any(
-        _changes(values, columns.layout)
-        for (name, _), values in columns.values.items()
-        if name in rules.vocabulary.constants
-    ):
-        raise UnencodableError
-    verdicts = verify_columns(columns, rules)
+    verdicts = _verdicts(columns, rules)
     traces = group.traces.tolist()
     for number, violations in violations_in(verdicts, len(traces)):
         trace = traces[number]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterable, Iterator, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
-from typing import IO, Any, cast
+from typing import IO, TYPE_CHECKING, Any, cast
 
 import msgspec
 
@@ -17,6 +18,9 @@ from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_floa
 from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
 from rulec.trace.trace_model import Ending, State, Trace
+
+if TYPE_CHECKING:
+    from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
 
 _INTERVAL = 'an interval is written {"from": 1, "to": 2.5}'
 _LONGEST_HEAD_BYTES = 1 << 16
@@ -47,8 +51,12 @@ _TRACE = json_line_problems.Kind(
 _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
 
-def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecError]]:
+def read_chunks(
+    stream: IO[bytes], file: str, *, together: bool = False
+) -> Iterator[Sequence[Trace | RulecError]]:
     """Read traces, one a line, a block of the stream at a time.
+
+    With ``together`` those that are written alike become the columns of a ``LineBlock``.
 
     Of a pipe that is what has arrived. For every line that is not blank there is a Trace, or the
     RulecError (R0501) that says why it is none; for a stream without any trace one RulecError
@@ -65,14 +73,17 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
             if error is not None:
                 yield [error]
                 return
-        chunk: list[Trace | RulecError] = []
+        chunk: list[Trace | RulecError | None] = []
+        alike = _alike(lines) if together else []
+        known = set(chain.from_iterable(found.lines.tolist() for found in alike))
+        places: dict[int, int] = {}
         with _no_collection():
-            for line in lines:
+            for index, line in enumerate(lines):
                 number += 1
                 place = SourceLocation(file, number)
                 if line.isspace() or not line:
                     continue
-                trace = _trace(line, place, read_state)
+                trace = None if index in known else _trace(line, place, read_state)
                 if torn is not None:
                     if isinstance(trace, RulecError) and not line.startswith(b"{"):
                         torn.goes_on = True
@@ -82,14 +93,57 @@ def read_chunks(stream: IO[bytes], file: str) -> Iterator[list[Trace | RulecErro
                 if isinstance(trace, RulecError) and json_line_problems.is_beginning(line):
                     torn = _Torn(line, place)
                 else:
+                    places[index] = len(chunk)
                     chunk.append(trace)
         result += len(chunk)
-        if chunk:
-            yield chunk
+        if alike:
+            yield _block(chunk, alike, lines, places, SourceLocation(file, number - len(lines)))
+        elif chunk:
+            yield cast("list[Trace | RulecError]", chunk)
     if torn is not None:
         yield [torn.error(at_the_end=True)]
     elif not result:
         yield [_TRACE.bad("there is no trace in this file: it is empty", SourceLocation(file))]
+
+
+def _alike(lines: Sequence[bytes]) -> Sequence[AlikeLines]:
+    # numpy, 60 ms: not for a running trace.
+    from rulec.trace.formats.alike_lines import alike_lines
+
+    return list(alike_lines(lines, _heading))
+
+
+def _block(
+    items: Sequence[Trace | RulecError | None],
+    alike: Sequence[AlikeLines],
+    lines: Sequence[bytes],
+    places: Mapping[int, int],
+    before: SourceLocation,
+) -> LineBlock:
+    """The items of lines behind the one ``before``, of which ``places`` has those of lines."""
+    # As above: not for a running trace.
+    from rulec.trace.formats.alike_lines import LineBlock, placed_among
+
+    line_at = {place: index for index, place in places.items()}
+    first = (before.line or 0) + 1
+
+    def decode(place: int) -> Trace | RulecError:
+        index = line_at[place]
+        return _trace(lines[index], replace(before, line=first + index), _StateReader())
+
+    return LineBlock(items, decode, [placed_among(places, found, first) for found in alike])
+
+
+def _heading(line: bytes) -> tuple[str, float, Mapping[str, str]] | None:
+    """A trace's name, step and objects, if nothing is unusual beside its states."""
+    try:
+        read = _OUTLINE_DECODER.decode(line)
+    except (ValueError, RecursionError):  # msgspec's errors are the former
+        return None
+    is_usual = read.ends == "complete" and read.told is None and not read.present
+    if not is_usual or not 0 < read.step_s < math.inf or may_be_no_float(line):
+        return None
+    return str(read.id), read.step_s, read.objects
 
 
 @contextmanager

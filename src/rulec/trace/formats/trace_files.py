@@ -47,15 +47,17 @@ def read_traces(path: str | Path, form: Format | None = None) -> Iterator[Trace 
 
 
 def read_chunks(
-    stream: IO[bytes], file: str, form: Format
+    stream: IO[bytes], file: str, form: Format, *, together: bool = False
 ) -> Iterator[Sequence[Trace | RulecError]]:
     """Read the traces of a stream in chunks; of a table perhaps a ``Block``.
 
-    In place of a bad one stands the RulecError that says why. Raises RulecError R0706 for Parquet
-    that cannot be read here.
+    Those to be judged ``together`` may come as a ``LineBlock``, too. In place of a bad one stands
+    the RulecError that says why. Raises RulecError R0706 for Parquet that cannot be read here.
     """
-    readers = {"jsonl": json_lines.read_chunks, "csv": read_csv, "parquet": read_parquet}
-    yield from readers[form](stream, file)
+    if form == "jsonl":
+        yield from json_lines.read_chunks(stream, file, together=together)
+    else:
+        yield from (read_csv if form == "csv" else read_parquet)(stream, file)
 
 
 def write_traces(

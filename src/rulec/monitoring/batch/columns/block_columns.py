@@ -108,7 +108,7 @@ def _by_objects(
         raise UnencodableError
     line_of = np.zeros(int(choices[-1]) + 1, dtype=np.int64)
     line_of[choices] = np.arange(len(choices))
-    values = _values(column, rows, declaration)
+    values = encode_column(column, rows, declaration)
     cells = line_of[chosen] * n_states + state
     lines = np.zeros((len(choices), n_states), dtype=values.dtype)
     lines.ravel()[cells] = values
@@ -128,7 +128,8 @@ def _by_objects(
     return columns
 
 
-def _values(column: Column, rows: NDArray[np.int64], declaration: Declaration) -> Array:
+def encode_column(column: Column, rows: NDArray[np.int64], declaration: Declaration) -> Array:
+    """The values in some rows, which are given. Raises UnencodableError."""
     if isinstance(column, Coded):
         codes = column.codes[rows]
         used = np.bincount(codes, minlength=len(column.values)) > 0

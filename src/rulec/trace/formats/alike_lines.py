@@ -1,0 +1,317 @@
+"""Lines of JSON with traces whose states are written alike, read together as columns.
+
+Most programs write all states of a trace with the same names in the same order, so that only values
+differ. What stands between values is compared with that of the state before, all states at once,
+and the values are read where they have to be. Whatever is written otherwise is left to be decoded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias, overload
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.diagnostics import RulecError
+from rulec.trace.formats.byte_columns import PADDING, Bytes, Places, bytes_from, read_values
+from rulec.trace.formats.partial_json import BOUNDS
+from rulec.trace.formats.table_blocks import Coded, Column, Numbers
+from rulec.trace.trace_model import Trace
+
+FEWEST_STATES = 32
+"""Fewer states of one kind are not worth it."""
+
+_STYLES = ((b", ", b": "), (b",", b":"))
+"""What stands between members, and between a name and its value."""
+
+_END = b"\0"
+"""It stands in no JSON."""
+
+_DECODE = msgspec.json.Decoder(dict[str, Any]).decode
+
+ColumnPath: TypeAlias = tuple[str, tuple[int, ...]]
+"""A name, and the places of the objects that it is about among the trace's."""
+
+
+HeadingReader: TypeAlias = Callable[[bytes], tuple[str, float, Mapping[str, str]] | None]
+"""It reads a trace's name, step (s) and objects from a line without states, None if it has more."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineHeading:
+    """What a line says beside its states, of objects that are there all the time."""
+
+    id: str
+    step_s: float
+    objects: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AlikeLines:
+    """Traces whose columns are the same but for their objects' names.
+
+    ``lines`` are places of their lines, ``lengths`` how many states each has, ``headings`` what
+    else they say. In ``columns`` states of one trace stand together, traces in their order.
+    """
+
+    lines: Places
+    lengths: NDArray[np.int64]
+    headings: Sequence[LineHeading]
+    columns: Mapping[ColumnPath, Column]
+
+
+def placed_among(places: Mapping[int, int], found: AlikeLines, first: int) -> AlikeLines:
+    """Lines with their places among items; one without a name is called by its number.
+
+    ``first`` is the number of the first line.
+    """
+    indices = found.lines.tolist()
+    headings = [
+        heading if heading.id else replace(heading, id=f"line {first + index}")
+        for index, heading in zip(indices, found.headings, strict=True)
+    ]
+    return replace(found, lines=np.array([places[one] for one in indices]), headings=headings)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineBlock(Sequence["Trace | RulecError"]):
+    """Traces of some lines; those that are ``alike`` are first decoded when they are asked for.
+
+    ``items`` has None for these; ``decode`` decodes the one at a place. The ``lines`` of what is
+    alike are places among the items.
+    """
+
+    items: Sequence[Trace | RulecError | None]
+    decode: Callable[[int], Trace | RulecError]
+    alike: Sequence[AlikeLines]
+
+    def __len__(self) -> int:
+        return len(self.items)
+
+    @overload
+    def __getitem__(self, place: int) -> Trace | RulecError: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[Trace | RulecError]: ...
+    def __getitem__(self, place: int | slice) -> Trace | RulecError | list[Trace | RulecError]:
+        if isinstance(place, slice):
+            return [self[index] for index in range(len(self))[place]]
+        item = self.items[place]
+        return self.decode(range(len(self))[place]) if item is None else item
+
+
+@dataclass(frozen=True, slots=True)
+class _Form:
+    """How a state is written: what stands before each of its values, and behind the last.
+
+    It is so many bytes ``text``, in which an object's name is ``%s``, whose objects are ``named``.
+    """
+
+    comma: bytes
+    text: bytes
+    named: tuple[int, ...]
+    paths: tuple[ColumnPath, ...]
+    n_quotes: int
+
+    def between(self, names: Sequence[bytes]) -> tuple[bytes, ...]:
+        """What stands between values for objects of these names, and before the next state."""
+        return tuple((self.text % tuple([names[one] for one in self.named])).split(_END))
+
+
+@dataclass(frozen=True, slots=True)
+class _Outline:
+    """A line with its ``states`` as bytes, and what stands between their values."""
+
+    line: int
+    heading: LineHeading
+    states: bytes
+    form: _Form
+    between: tuple[bytes, ...]
+
+
+def alike_lines(lines: Sequence[bytes], heading_of: HeadingReader) -> Iterator[AlikeLines]:
+    """The lines that can be read together, by their kinds."""
+    kinds: dict[tuple[object, ...], list[_Outline]] = {}
+    form: _Form | None = None
+    for number, line in enumerate(lines):
+        outline = _outlined(number, line, heading_of, form)
+        if outline is None:
+            continue
+        form, heading = outline.form, outline.heading
+        types = tuple(heading.objects.values())
+        kind = heading.step_s, types, form.text, form.named, tuple(map(len, outline.between))
+        kinds.setdefault(kind, []).append(outline)
+    for outlines in kinds.values():
+        found = _together(outlines)
+        if found is not None:
+            yield found
+
+
+def _outlined(
+    number: int,
+    line: bytes,
+    heading_of: HeadingReader,
+    usual: _Form | None,
+) -> _Outline | None:
+    """A line, whose first state is probably of the ``usual`` form; None if it is unusual."""
+    found = [(line.find(b'"states"' + colon + b"["), comma, colon) for comma, colon in _STYLES]
+    begin, comma, colon = max(found)
+    if begin < 0:
+        return None
+    begin = line.index(b"[", begin) + 1
+    end = line.rfind(b"}]") + 1
+    states = line[begin:end]
+    if not states or b"\\" in states:
+        return None
+    read = heading_of(line[:begin] + line[end:])
+    if read is None:
+        return None
+    heading = LineHeading(*read)
+    if not BOUNDS.isdisjoint(heading.objects):
+        return None
+    names = [name.encode(errors="surrogatepass") for name in heading.objects]
+    if any(b":" in name or b'"' in name for name in names):
+        return None
+    first = states[: states.find(b"}" + comma + b"{") + 1] or states
+    form = usual
+    if form is None or form.comma != comma or form.n_quotes != first.count(b'"'):
+        form = _form_of(first, comma, colon, heading.objects)
+    if form is None or any(one >= len(names) for one in form.named):
+        return None
+    return _Outline(number, heading, states, form, form.between(names))
+
+
+def _form_of(first: bytes, comma: bytes, colon: bytes, objects: Mapping[str, str]) -> _Form | None:
+    """How a state is written; None if it is unusual."""
+    try:
+        state = _DECODE(first)
+    except (msgspec.DecodeError, RecursionError):
+        return None
+    parts = _Parts(comma, colon, {name: place for place, name in enumerate(objects)})
+    if not parts.add_state(state) or not parts.paths:
+        return None
+    form = _Form(
+        comma, parts.text + comma, tuple(parts.named), tuple(parts.paths), first.count(b'"')
+    )
+    place = 0
+    for part in form.between([name.encode(errors="surrogatepass") for name in objects]):
+        place = (first + comma).find(part, place)
+        if place < 0:
+            return None  # it is written in some other style
+    return form
+
+
+class _Parts:
+    """What stands between the values of a state that is written in a style."""
+
+    def __init__(self, comma: bytes, colon: bytes, places: Mapping[str, int]) -> None:
+        self.text = b""
+        self.paths: list[ColumnPath] = []
+        self.named: list[int] = []
+        self._comma, self._colon = comma, colon
+        self._places = places
+
+    def add_state(self, state: Mapping[str, Any]) -> bool:
+        """Add the parts of a state; False if something about it is unusual."""
+        self.text += b"{"
+        for number, (name, value) in enumerate(state.items()):
+            if ":" in name or '"' in name:
+                return False
+            own = name.encode(errors="surrogatepass").replace(b"%", b"%%")
+            self.text += self._comma * (number > 0) + b'"' + own + b'"' + self._colon
+            if not self._add(name, (), value):
+                return False
+        self.text += b"}"
+        return True
+
+    def _add(self, name: str, items: tuple[int, ...], value: Any) -> bool:
+        if type(value) is not dict:
+            self.text += _END
+            self.paths.append((name, items))
+            return value is not None and type(value) is not list
+        self.text += b"{"
+        for number, (item, inner) in enumerate(value.items()):
+            if item not in self._places:
+                return False
+            self.named.append(self._places[item])
+            self.text += self._comma * (number > 0) + b'"%s"' + self._colon
+            if not self._add(name, (*items, self._places[item]), inner):
+                return False
+        self.text += b"}"
+        return True
+
+
+def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
+    """Those lines that are written alike in all their states; None of too few states."""
+    form, between = outlines[0].form, outlines[0].between
+    colons_before = np.cumsum([part.count(b":") for part in between])
+    n_colons = int(colons_before[-1])
+    text, colons, ends = _joined(outlines, form.comma)
+    counts = np.diff(np.searchsorted(colons, ends), prepend=0)
+    are_whole = (counts % n_colons == 0) & (counts > 0)
+    are_whole[np.searchsorted(ends, np.flatnonzero(text < _FIRST_IN_JSON), "right")] = False
+    if not are_whole.all():
+        outlines = [outlines[place] for place in np.flatnonzero(are_whole).tolist()]
+        counts = counts[are_whole]
+        text, colons, ends = _joined(outlines, form.comma)
+    lengths = counts // n_colons
+    if lengths.sum() < FEWEST_STATES:
+        return None
+    line_of = np.repeat(np.arange(len(outlines)), lengths)
+    first = np.cumsum(lengths) - lengths
+    # A value begins behind the last colon of what stands before it.
+    behind = len(between[0]) - between[0].rindex(b":")
+    begins = colons.reshape(-1, n_colons)[:, colons_before[:-1] - 1] + behind
+    heads = begins[:, 0] - len(between[0])
+    next_heads = np.append(heads[1:], 0)
+    next_heads[first + lengths - 1] = ends
+    befores = [*(begins - [len(part) for part in between[:-1]]).T, next_heads - len(between[-1])]
+    fits = np.ones(len(line_of), dtype=bool)
+    fits[first] = heads[first] == np.append(PADDING, ends[:-1])
+    is_first = np.zeros(len(line_of), dtype=bool)
+    is_first[first] = True
+    for place, before in enumerate(befores):
+        parts = bytes_from(text, before, len(between[place]))
+        fits[1:] &= (parts[1:] == parts[:-1]) | is_first[1:]
+        fits[first] &= parts[first] == np.array([one.between[place] for one in outlines])
+    columns = {}
+    for place, path in enumerate(form.paths):
+        starts, stops = begins[:, place], befores[place + 1]
+        fits &= stops > starts
+        found = read_values(text, starts, np.maximum(stops, starts + 1))
+        fits &= found.read
+        columns[path] = found.column
+    is_whole = np.ones(len(outlines), dtype=bool)
+    is_whole[line_of[~fits]] = False
+    if lengths[is_whole].sum() < FEWEST_STATES:
+        return None
+    kept = np.flatnonzero(is_whole).tolist()
+    if len(kept) < len(outlines):
+        columns = {path: _taken(column, is_whole[line_of]) for path, column in columns.items()}
+    return AlikeLines(
+        lines=np.array([outlines[place].line for place in kept]),
+        lengths=lengths[kept],
+        headings=[outlines[place].heading for place in kept],
+        columns=columns,
+    )
+
+
+_FIRST_IN_JSON = 32
+"""The first byte that a text in JSON may have as it is."""
+
+
+def _joined(outlines: Sequence[_Outline], comma: bytes) -> tuple[Bytes, Places, Places]:
+    """All states, each with a comma behind it; where colons stand, and where lines end."""
+    parts = [part for one in outlines for part in (one.states, comma)]
+    whole = b"".join([b" " * PADDING, *parts, b" " * PADDING])
+    text = np.frombuffer(whole, np.uint8)
+    ends = PADDING + np.cumsum([len(one.states) + len(comma) for one in outlines])
+    return text, np.flatnonzero(text == ord(":")), ends
+
+
+def _taken(column: Column, rows: NDArray[np.bool_]) -> Column:
+    if isinstance(column, Coded):
+        return Coded(column.codes[rows], column.values)
+    return Numbers(column.numbers[rows], column.given[rows])

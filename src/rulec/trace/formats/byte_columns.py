@@ -1,0 +1,147 @@
+"""Values of JSON that stand somewhere in bytes, read as columns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.trace.formats.table_blocks import Coded, Column, Numbers
+
+Bytes = NDArray[np.uint8]
+Places = NDArray[np.int64]
+
+PADDING = 64
+"""So many bytes have to stand before the first value."""
+
+_MOST_DIGITS = 15
+"""Of so many digits every decimal is a float's own; so many fit into a float's 53 bits, too."""
+
+_LONGEST_NUMBER = 17
+_LONGEST_WRITTEN = 24
+"""Python writes no longer number."""
+
+_LONGEST_TEXT = PADDING
+_MOST_TEXTS = 32
+"""Of a column with more different texts the rest is read one by one, elsewhere."""
+
+_TINY = 1e-290
+_ZERO, _POINT, _MINUS, _QUOTE = b'0.-"'
+_TRUE, _FALSE = b"true", b"false"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReadColumn:
+    """A column, and where its values are ``read``; the others are arbitrary."""
+
+    column: Column
+    read: NDArray[np.bool_]
+
+
+def bytes_from(text: Bytes, starts: Places, width: int) -> NDArray[np.bytes_]:
+    """So many bytes from each place on, any where there are none; ``text`` has no null in it."""
+    windows = np.ndarray((len(text) - width + 1,), f"S{width}", text, strides=(1,))
+    # ``take`` would first write out all windows.
+    found: NDArray[np.bytes_] = windows[starts.clip(0, len(windows) - 1)]
+    return found
+
+
+def read_values(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
+    """The values of a column, all truth values, all numbers or all texts; others are not read."""
+    first = text[starts[0]]
+    if first == _QUOTE:
+        return _texts(text, starts, ends)
+    if first in (_TRUE[0], _FALSE[0]):
+        return _truths(text, starts, ends)
+    return _numbers(text, starts, ends)
+
+
+def _truths(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
+    is_true, is_false = (
+        (ends - starts == len(word)) & (bytes_from(text, starts, len(word)) == word)
+        for word in (_TRUE, _FALSE)
+    )
+    return ReadColumn(Coded(is_true.astype(np.int8), (False, True)), is_true | is_false)
+
+
+def _numbers(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
+    """Numbers of few digits together, exactly; others one by one."""
+    lengths = ends - starts
+    width = min(int(lengths.max()), _LONGEST_NUMBER)
+    # A column for each byte counted from the end, so that all digits of one weight lie together.
+    rows = bytes_from(text, ends - width, width).view(np.uint8).reshape(-1, width)
+    characters = np.ascontiguousarray(rows.T)
+    digits = characters - np.uint8(_ZERO)
+    is_inside = lengths > np.arange(width - 1, -1, -1)[:, None]
+    is_digit = (digits < 10) & is_inside
+    is_point = (characters == _POINT) & is_inside
+    mantissa = np.zeros(len(starts), dtype=np.int64)
+    behind = np.zeros(len(starts), dtype=np.int64)
+    is_behind = np.zeros(len(starts), dtype=bool)
+    for byte in range(width):
+        mantissa = np.where(is_digit[byte], mantissa * 10 + digits[byte], mantissa)
+        behind += is_behind
+        is_behind |= is_point[byte]
+    n_digits, n_points = is_digit.sum(axis=0), is_point.sum(axis=0)
+    is_negative = text[starts] == _MINUS
+    before = n_digits - behind
+    leads_with_zero = (text[starts + is_negative] == _ZERO) & (before > 1)
+    is_read = (
+        (n_digits + n_points + is_negative == lengths)
+        & (n_digits <= _MOST_DIGITS)
+        & (n_points <= 1)
+        & (before > 0)
+        & (behind >= n_points)
+        & ~leads_with_zero
+        & ~(is_negative & (mantissa == 0))
+    )
+    numbers = mantissa / 10.0 ** behind.clip(max=_MOST_DIGITS)
+    np.negative(numbers, out=numbers, where=is_negative)
+    for place in np.flatnonzero(~is_read & (lengths <= _LONGEST_WRITTEN)).tolist():
+        found = _own(bytes(text[starts[place] : ends[place]]))
+        if found is not None:
+            numbers[place], is_read[place] = found, True
+    return ReadColumn(Numbers(numbers, is_read), is_read)
+
+
+def _own(written: bytes) -> float | None:
+    """The number that is written, if its float stands for it; None for all that is unusual."""
+    try:
+        number = float(written)
+    except ValueError:
+        return None
+    # What Python writes is JSON, but for what is no number.
+    is_own = repr(number).encode() == written and abs(number) > _TINY
+    return number if is_own and number - number == 0 else None
+
+
+def _texts(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
+    """Few texts that are met again and again."""
+    lengths = ends - starts
+    codes = np.full(len(starts), -1, dtype=np.int64)
+    values: list[str] = []
+    left = np.flatnonzero(lengths <= _LONGEST_TEXT)
+    while len(left) and len(values) < _MOST_TEXTS:
+        start, end = int(starts[left[0]]), int(ends[left[0]])
+        written = text[start:end].tobytes()
+        alike = left[lengths[left] == end - start]
+        alike = alike[bytes_from(text, starts[alike], end - start) == written]
+        codes[alike] = _code(written, values)
+        left = left[codes[left] == -1]
+    return ReadColumn(Coded(codes.clip(min=0), values), codes >= 0)
+
+
+_NO_TEXT = -2
+
+
+def _code(written: bytes, values: list[str]) -> int:
+    """The place of one more text among ``values``, to which it is added if it is one."""
+    inner = written[1:-1]
+    if len(written) < 2 or written[:1] + written[-1:] != b'""' or b'"' in inner:
+        return _NO_TEXT
+    try:
+        values.append(inner.decode())
+    except UnicodeDecodeError:
+        return _NO_TEXT
+    return len(values) - 1
