@@ -47,9 +47,9 @@ def in_plain_words(answer):
 @given(seeds)
 @settings(phases=[Phase.generate], max_examples=settings().max_examples // 2)
 def test_together_they_get_the_verdicts_of_each(chance):
-    book = replace(with_some_constant(chance, rulebook(chance, Fraction(1))), axioms=())
+    book = with_some_constant(chance, rulebook(chance, Fraction(1)))
     compiled, constants = compile_here(book, Fraction(1)), book.vocabulary.constants
-    names = {name for rule in book.rules for name in names_in(rule.formula)}
+    names = {n for x in (*book.rules, *book.axioms) for n in names_in(x.formula)}
     arrays = []
     for whole in traces(chance, Fraction(1))[:5]:
         plain = without_pairs(whole, book.vocabulary)

@@ -18,6 +18,7 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
+from rulec.logic.free_names import variables_of
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, Variable
 from support.builders.full_vocabulary import WORLD
 from support.generators.random_priorities import LEVELS, PAIRS, closed
@@ -194,20 +195,29 @@ def placed(chance, name, variables, meant):
 
 
 def fact(chance, rules):
-    """A fact about the objects of a rule; mostly of what the rule reads, sometimes it counts."""
+    """A fact about the objects of a rule; mostly of what the rule reads, sometimes it counts.
+
+    About every other one is about values that are all of the same objects.
+    """
     about = chance.choice(rules)
+    variables = about.variables
     read = [
         one
         for one in atoms_of(about.formula)
         if isinstance(one, Atom) or isinstance(one.terms[0][1], QuantityTerm)
     ]
     leaves = [*read, *read, *WORLD_ATOMS[2:]]
-    if chance.random() < 0.2:
+    if chance.random() < 0.5:
+        variables = tuple(one for one in variables if chance.random() < 0.6)
+        names = {one.name for one in variables}
+        more = [*WORLD_ATOMS, *X_ATOMS, *Y_ATOMS]
+        leaves = [one for one in (*read, *read, *more) if set(variables_of(one)) == names]
+    elif chance.random() < 0.2:
         leaves = [comparison(chance, LOUD)]
     said = formula(
         chance, lambda chance: chance.choice(leaves), chance.randint(1, 3), (NO,), tuple(JOINING)
     )
-    return Axiom(about.variables, said)
+    return Axiom(variables, said)
 
 
 def rulebook(chance, step_s, for_graphs=False):

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, TypeAlias
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation, named
-from rulec.logic.free_names import names_in
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Cast, in_usual_order
 from rulec.monitoring.letter_reader import LetterReader
@@ -26,7 +25,6 @@ from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups
 from rulec.monitoring.state_validation import check_state, has_partial_values
 from rulec.resource_limits import CHOICES
 from rulec.trace import State
-from rulec.vocabulary import Quantity
 from rulec.vocabulary.vocabulary_model import choices
 
 if TYPE_CHECKING:
@@ -89,13 +87,6 @@ class BoundRules:
         self.groups = groups
         self._rulebook = rulebook
         self._counting = any(counts(axiom.formula) for axiom in rulebook.axioms)
-        declarations = rulebook.vocabulary.declarations
-        # What facts say of numbers is not among what tells encoded states apart.
-        self._weighing = any(
-            isinstance(declarations[name], Quantity)
-            for axiom in rulebook.axioms
-            for name in names_in(axiom.formula)
-        )
         self._partial: dict[KnownState, Letters] = {}
         self._letters: BoundLetters = {}
         self._readers: dict[tuple[str, ...], GroupLetters | None] = {}
@@ -173,7 +164,7 @@ class BoundRules:
         letters, is_partial = self._careful_letters(state, number, place)
         if not is_partial:
             return letters, known
-        if known is None or self._weighing:
+        if known is None:
             return letters, None
         if len(self._partial) >= MOST_STATES:
             self._partial.clear()

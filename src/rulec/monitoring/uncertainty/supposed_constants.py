@@ -26,7 +26,10 @@ MOST_ALTERNATIVES = 1 << 6
 
 
 class ConstantsReader:
-    """The constants that the rules of a rulebook read, of a trace's objects."""
+    """The constants that the rules of a rulebook read, of a trace's objects.
+
+    ``of_facts`` are those of which facts speak.
+    """
 
     def __init__(
         self, rulebook: CompiledRulebook, vocabulary: Vocabulary, objects: Mapping[str, str]
@@ -35,7 +38,7 @@ class ConstantsReader:
         self._everybody = StateView({}, objects, vocabulary)
         self._facts = [axiom.formula for axiom in rulebook.axioms]
         self._in_facts = {name for formula in self._facts for name in names_in(formula)}
-        self._of_facts = {
+        self.of_facts = {
             (name, items)
             for name in self._in_facts.intersection(vocabulary.constants)
             for items in choices(vocabulary.declarations[name].parameters, objects, vocabulary)
@@ -46,7 +49,7 @@ class ConstantsReader:
         if not self._vocabulary.constants:
             return set()
         declarations = self._vocabulary.declarations
-        return self._of_facts.union(
+        return self.of_facts.union(
             subject
             for read in rule.machine.reads
             if any(declarations[name].constant for name in names_of_read(read))

@@ -158,7 +158,7 @@ class StackReader:
         least: Array
         most: Array
         if read.counts_itself:
-            truth = self._truth(count, spots, read.variables[0])
+            truth = self.truth(count.body, spots, read.variables[0])
             suits = stack.of_type(count.type)[stack.object_of]
             least = (suits & truth.true).astype(np.uint8)
             most = (suits & ~truth.false).astype(np.uint8)
@@ -166,7 +166,7 @@ class StackReader:
             cells = stack.cells_of_type(count.type)
             states = stack.state_of[cells]
             own_spots = Spots(states, {count.variable: cells})
-            truth = self._truth(count, own_spots, count.variable)
+            truth = self.truth(count.body, own_spots, count.variable)
             there = np.ones(len(states), dtype=bool)
             least = np.bincount(states[there & truth.true], minlength=stack.n_states)
             most = np.bincount(states[there & ~truth.false], minlength=stack.n_states)
@@ -178,25 +178,28 @@ class StackReader:
         numbers: Array = pairs.take(least * least.dtype.type(n_counts) + most)
         return numbers
 
-    def _truth(self, count: ltl.Count, spots: Spots, counted: str) -> Truth:
-        """Where an object counts, and where it does not; any variable names the one counted."""
+    def truth(self, formula: ltl.Formula, spots: Spots, about: str = "") -> Truth:
+        """Where a formula without operators of time is true, and where it is false.
+
+        Any variable names the same object: the one that is here called ``about``.
+        """
 
         def proposition(part: ltl.Proposition) -> Truth:
             if isinstance(part, ltl.Comparison):
-                return self._compared(part, spots, counted)
-            arguments = [counted] * len(part.arguments)
+                return self._compared(part, spots, about)
+            arguments = [about] * len(part.arguments)
             return self._atom(replace(part, arguments=tuple(arguments)), spots)
 
         def identity(_: ltl.Same) -> Truth:
             return known(np.True_)
 
-        return fold(count.body, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
+        return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
 
-    def _compared(self, comparison: ltl.Comparison, spots: Spots, counted: str) -> Truth:
+    def _compared(self, comparison: ltl.Comparison, spots: Spots, about: str) -> Truth:
         terms = []
         for factor, term in comparison.terms:
             assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
-            own = (counted,) * len(term.arguments)
+            own = (about,) * len(term.arguments)
             terms.append((factor, ltl.QuantityTerm(term.name, own)))
         at, above = (Threshold(comparison.limit, inclusive) for inclusive in (True, False))
         read = NumberRead(tuple(terms), (at, above))

@@ -169,6 +169,9 @@ def _of_group(
                 else:
                     sets = [rule.letters.number_of(classes) for classes in entangled.classes]
                     letters[entangled.places] = np.array(sets, dtype=np.intp)[entangled.numbers]
+        if rule.facts:
+            nothing = [n for n, classes in enumerate(rule.letters.sets) if not classes]
+            odd |= np.isin(letters, nothing)
         every_entangled.append(entangled)
         every_numbers.append(own)
         every_letters.append(letters)

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.outcome_machine import VIOLATED
 from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
+from rulec.logic.free_names import names_in
 from rulec.logic.kleene import holds
 from rulec.monitoring.batch.uncertain.partial_reader import meanings_of
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import counts
@@ -22,6 +23,10 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     local_reads,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterSets
+from rulec.monitoring.uncertainty.state_letters.related_facts import (
+    keeps_to_its_objects,
+    related_facts,
+)
 from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
 from rulec.vocabulary import Enumeration, Vocabulary
 
@@ -61,6 +66,7 @@ class StackedRead:
 class StackedRule:
     """A rule with its machine for words of sets of letters.
 
+    ``facts`` are those that have to do with what it reads, ``names`` those of all of these.
     ``entangled`` are its entangled reads, if its own objects alone decide what these may be, and
     ``related`` the places of all reads that may have to do with each other. ``constants`` are those
     of reads of what never changes, ``hidden`` the names of such in sums and counts.
@@ -78,9 +84,14 @@ class StackedRule:
         self.variables = tuple([variable.name for variable in rule.variables])
         self.types = tuple([variable.type for variable in rule.variables])
         self.reads = tuple([_stacked(read, vocabulary) for read in rule.machine.reads])
-        self.names = frozenset(name for read in self.reads for name in read.names)
+        read_names = frozenset(name for read in self.reads for name in read.names)
+        self.facts = related_facts(read_names, rulebook.axioms)
+        in_facts = frozenset(name for fact in self.facts for name in names_in(fact.formula))
+        self.names = read_names | in_facts
         self.entangled: EntangledReads | None = local_reads(rule, rulebook)
-        self.related = _related(self.reads) if self.entangled is None else self.entangled.numbers
+        self.related = (
+            _related(self.reads, in_facts) if self.entangled is None else self.entangled.numbers
+        )
         constants = frozenset(vocabulary.constants)
         self.constants = tuple(
             [n for n, x in enumerate(self.reads) if _is_value(x) and x.names[0] in constants]
@@ -194,12 +205,13 @@ def _stacked(read: Read | NumberRead, vocabulary: Vocabulary) -> StackedRead:
     )
 
 
-def _related(reads: Sequence[StackedRead]) -> tuple[int, ...]:
-    """Reads that count, or share names."""
+def _related(reads: Sequence[StackedRead], in_facts: frozenset[str]) -> tuple[int, ...]:
+    """Reads that count, or share names with others or with facts."""
     return tuple(
         n
         for n, read in enumerate(reads)
         if read.count is not None
+        or not in_facts.isdisjoint(read.names)
         or any(not set(read.names).isdisjoint(other.names) for other in reads if other is not read)
     )
 
@@ -208,10 +220,15 @@ def _is_simple(rule: StackedRule) -> bool:
     """Whether the rule's reads are of the kinds that can be read from arrays."""
     return (
         len(rule.variables) <= 2
-        and IMPOSSIBLE not in rule.machine.machine.letters
+        and all(map(is_of_one, rule.facts))
         and all(_is_simple_read(read, rule) for read in rule.reads)
         and len({rule.reads[place].names for place in rule.constants}) == len(rule.constants)
     )
+
+
+def is_of_one(fact: CompiledAxiom) -> bool:
+    """Whether a fact is about the world alone, or about one object alone."""
+    return len(fact.variables) < 2 and keeps_to_its_objects(fact)
 
 
 def _is_value(read: StackedRead) -> bool:

@@ -11,11 +11,14 @@ from functools import cached_property, partial
 from operator import itemgetter
 from typing import TypeAlias
 
+from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.outcome_machine import VIOLATED
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
+from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.stacked.contradictions import contradicted
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
@@ -80,8 +83,10 @@ class _StackedRun:
         check_told(example.told, rules.vocabulary)
         for trace in traces:
             check_objects(trace.objects, rules.vocabulary)
-        if rules.axioms:
-            raise UnencodableError  # what facts say of values is looked up state by state
+        constants = rules.vocabulary.constants
+        for fact in rules.axioms:
+            if counts(fact.formula) or not set(constants).isdisjoint(names_in(fact.formula)):
+                raise UnencodableError  # what it says of values is looked up state by state
         self._judged = judged_rules(rules, example.told, cut=example.ends == "cut")
         self._stack = Stack(traces, self._judged.vocabulary)
         self._reader = StackReader(self._stack)
@@ -99,8 +104,13 @@ class _StackedRun:
                 StackedRule(rule, machine, self._rulebook, self._judged.vocabulary)
                 for rule, machine in self._judged.machines
             ]
-        for number, rule in enumerate(known[key]):
-            if rule.is_simple and all(map(self._stack.can_tell, rule.names)):
+        rules = known[key]
+        simple = [rule.is_simple and all(map(self._stack.can_tell, rule.names)) for rule in rules]
+        about = [rule.facts for rule, is_simple in zip(rules, simple, strict=True) if is_simple]
+        facts = tuple(dict.fromkeys(fact for own in about for fact in own))
+        self._odd |= contradicted(facts, self._reader)
+        for number, (rule, is_simple) in enumerate(zip(rules, simple, strict=True)):
+            if is_simple:
                 rule.forget_many()
                 for outcome in outcomes(rule, self._reader, self._rulebook):
                     self._add(number, outcome)
@@ -122,6 +132,8 @@ class _StackedRun:
         names = [stack.names[item] for item in chosen]
         binding = dict(zip(words.rule.variables, names, strict=True))
         found: Found | None
+        if number in self._odd:
+            return
         if outcome.answer is None:
             try:
                 found = self._closely[number].answer(rule.name, binding)

@@ -238,7 +238,7 @@ class _Engine:
             return [{}], np.flatnonzero(odd)
         supposed, _ = self._constants.suppositions(binding.rule, given)
         own = self._rule_letters(binding, machine).entangled.numbers
-        if (own and self._rulebook.axioms) or (supposed == [{}] and len(given) > 1):
+        if (own and self._constants.of_facts) or (supposed == [{}] and len(given) > 1):
             return [{}], np.flatnonzero(odd | dark)
         return supposed, np.flatnonzero(odd)
 

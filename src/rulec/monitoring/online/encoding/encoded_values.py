@@ -12,7 +12,6 @@ from functools import lru_cache, partial
 from operator import itemgetter
 from typing import Any, Final, TypeAlias
 
-from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import EXACT_IN_FLOATS, scale
@@ -64,8 +63,8 @@ def breakpoints_of(rulebook: CompiledRulebook) -> Breakpoints:
                     all_matter.update(threshold_scale.names)
                 else:
                     floors[threshold_scale.quantity.name].update(threshold_scale.floors)
-    if any(counts(axiom.formula) for axiom in rulebook.axioms):
-        all_matter.update(name for axiom in rulebook.axioms for name in names_in(axiom.formula))
+    # Facts may tell other numbers apart than rules do.
+    all_matter.update(name for axiom in rulebook.axioms for name in names_in(axiom.formula))
     # Beyond, whole numbers and floats are no longer told apart by the same floors.
     most = float(EXACT_IN_FLOATS)
     return {

@@ -6,7 +6,7 @@ one counted object or one axiom speaks of both.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
@@ -120,6 +120,12 @@ def joint_digits(
     return PossibleDigits(frozenset(digits), is_exact)
 
 
+def can_be(view: PartialView, axioms: Sequence[CompiledAxiom]) -> bool:
+    """Whether some completion of a state keeps all axioms; False, too, if they are very many."""
+    clusters = _joined_links(_links_of_axioms(axioms, view))
+    return all(_completed(cluster, (), view) for cluster in clusters)
+
+
 def _links_of_reads(
     reads: Sequence[Read | NumberRead],
     binding: Mapping[str, str],
@@ -157,17 +163,21 @@ def _clusters(
     links: Sequence[_Link], axioms: Sequence[CompiledAxiom], view: PartialView
 ) -> Iterator[_Cluster]:
     """The links in groups that share no subjects, with the axioms that bind these."""
-    waiting = [*links, *_links_of_axioms(axioms, view)]
+    clusters = _joined_links([*links, *_links_of_axioms(axioms, view)])
+    # Axioms about what no read depends on decide nothing.
+    return (cluster for cluster in clusters if any(x.read is not None for x in cluster.links))
+
+
+def _joined_links(links: Iterable[_Link]) -> list[_Cluster]:
     clusters: list[_Cluster] = []
-    for link in waiting:
+    for link in links:
         joined = _Cluster(set(link.subjects), [link])
         for cluster in [x for x in clusters if x.subjects & link.subjects]:
             clusters.remove(cluster)
             joined.subjects |= cluster.subjects
             joined.links = [*cluster.links, *joined.links]
         clusters.append(joined)
-    # Axioms about what no read depends on decide nothing.
-    return (cluster for cluster in clusters if any(x.read is not None for x in cluster.links))
+    return clusters
 
 
 def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: PartialView) -> Iterator[_Link]:
@@ -275,7 +285,8 @@ def _digit(
         return read.digit(value)
     total = weighted_sum(read.terms, binding, view)
     total = total.low if isinstance(total, Between) else total
-    assert not isinstance(total, Unknown), "it has been supposed, or is known"
+    if isinstance(total, Unknown):
+        raise MissingValueError(total.name, total.objects)  # all else has been supposed
     return read.digit(total)
 
 

@@ -15,7 +15,6 @@ from fractions import Fraction
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
-from rulec.logic.free_names import names_in
 from rulec.logic.kleene import Unknown, holds
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import joint_digits
@@ -24,6 +23,11 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     names_of_read,
     read_digits,
+)
+from rulec.monitoring.uncertainty.state_letters.related_facts import (
+    fits_or_not,
+    keeps_to_its_objects,
+    related_facts,
 )
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     Subject,
@@ -80,7 +84,7 @@ class EntangledReads:
         reads = rule.machine.reads
         self.is_local = is_local
         self._binding = binding
-        self._axioms = axioms
+        self._axioms = axioms = related_facts(names_read_by(rule), axioms)
         self._everybody = everybody
         deciding = _deciding_subjects if is_local else subjects_of_read
         about = [set(deciding(read, binding, everybody)) for read in reads]
@@ -170,14 +174,22 @@ def local_reads(rule: CompiledRule, rulebook: CompiledRulebook) -> EntangledRead
 def _local_reads(
     rule: CompiledRule, axioms: Sequence[CompiledAxiom], vocabulary: Vocabulary
 ) -> EntangledReads | None:
-    names = {name for read in rule.machine.reads for name in names_of_read(read)}
-    if any(not names.isdisjoint(names_in(axiom.formula)) for axiom in axioms):
+    facts = related_facts(names_read_by(rule), axioms)
+    if not all(
+        keeps_to_its_objects(fact) and fits_or_not(fact, rule.variables, vocabulary)
+        for fact in facts
+    ):
         return None
     if not all(_is_local(read, rule, vocabulary) for read in rule.machine.reads):
         return None
     own = {variable.name: variable.type for variable in rule.variables}
     binding = {name: name for name in own}
-    return EntangledReads(rule, binding, (), NothingKnown(own, vocabulary), is_local=True)
+    return EntangledReads(rule, binding, facts, NothingKnown(own, vocabulary), is_local=True)
+
+
+def names_read_by(rule: CompiledRule) -> frozenset[str]:
+    """The names that the reads of a rule depend on."""
+    return frozenset(name for read in rule.machine.reads for name in names_of_read(read))
 
 
 def _is_coarse(read: Read | NumberRead) -> bool:

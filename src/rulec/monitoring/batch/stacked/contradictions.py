@@ -1,0 +1,105 @@
+"""Traces in arrays whose states may contradict facts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
+from rulec.logic.free_names import names_in
+from rulec.monitoring.batch.stacked.stack import Places, Stack
+from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
+from rulec.monitoring.state_view import StateView, with_values
+from rulec.monitoring.uncertainty.state_letters.completions import can_be
+from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
+from rulec.trace.plain_arrays import distinct
+
+_OBJECT = "an object"
+
+
+def contradicted(facts: Sequence[CompiledAxiom], reader: StackReader) -> set[int]:
+    """All traces in which a state contradicts facts, each ``is_of_one``, and perhaps others.
+
+    Raises UnencodableError.
+    """
+    places = [
+        _contradicted_states(group, reader, spots, objects)
+        for linked in _linked(facts)
+        for group, spots, objects in _asked(linked, reader.stack)
+    ]
+    states = distinct(np.concatenate([np.empty(0, dtype=np.intp), *places]))
+    found: list[int] = distinct(
+        np.searchsorted(reader.stack.begins, states, side="right") - 1
+    ).tolist()
+    return set(found)
+
+
+def _linked(facts: Sequence[CompiledAxiom]) -> Iterator[tuple[CompiledAxiom, ...]]:
+    """The facts in groups that share no names."""
+    while facts:
+        group = related_facts(names_in(facts[0].formula), facts)
+        yield group
+        facts = [fact for fact in facts if fact not in group]
+
+
+_Asked = tuple[Sequence[CompiledAxiom], Spots, Mapping[str, str]]
+
+
+def _asked(linked: Sequence[CompiledAxiom], stack: Stack) -> Iterator[_Asked]:
+    """Facts that all hold at some spots, and the object that they are about, if any, by type."""
+    if not linked[0].variables:
+        yield linked, Spots(np.arange(stack.n_states), {}, whole=True), {}
+        return
+    by_facts: dict[tuple[CompiledAxiom, ...], list[str]] = {}
+    for kind in dict.fromkeys(stack.types):
+        own = [x for x in linked if stack.vocabulary.is_subtype(kind, x.variables[0].type)]
+        by_facts.setdefault(tuple(own), []).append(kind)
+    for group, kinds in by_facts.items():
+        if group:
+            suits = np.array([kind in kinds for kind in stack.types])
+            cells = np.flatnonzero(suits[stack.object_of])
+            spots = Spots(stack.state_of[cells], {_OBJECT: cells})
+            yield group, spots, {_OBJECT: kinds[0]}
+
+
+def _contradicted_states(
+    facts: Sequence[CompiledAxiom], reader: StackReader, spots: Spots, objects: Mapping[str, str]
+) -> Places:
+    """The states of those spots at which not all of some linked facts can be kept."""
+    holds = np.ones(len(spots.states), dtype=bool)
+    for fact in facts:
+        holds &= reader.truth(fact.formula, spots, _OBJECT).true
+    doubtful = np.flatnonzero(~holds)
+    if not len(doubtful):
+        return doubtful
+    spots = spots.part(doubtful)
+    names = sorted({name for fact in facts for name in names_in(fact.formula)})
+    kinds = _alike(names, reader.stack, spots)
+    examples = np.zeros(int(kinds.max()) + 1, dtype=np.intp)
+    examples[kinds] = np.arange(len(kinds))
+    items = tuple(objects)
+    columns = [reader.values_at(name, items, spots.part(examples)) for name in names]
+    broken = []
+    for values in zip(*columns, strict=True):
+        said = {(name, items): value for name, value in zip(names, values, strict=True)}
+        view = StateView(with_values({}, said), objects, reader.stack.vocabulary)
+        broken.append(not can_be(view, facts))
+    found: Places = spots.states[np.array(broken)[kinds]]
+    return found
+
+
+def _alike(names: Sequence[str], stack: Stack, spots: Spots) -> Places:
+    """Numbers from 0 for spots, equal for those of which the same is said."""
+    kinds = np.zeros(len(spots.states), dtype=np.intp)
+    where = spots.cells.get(_OBJECT, spots.states)
+    for name in names:
+        column = stack.column(name)
+        parts = [] if column is None else [column.values, column.upper, column.unknown]
+        for part in parts:
+            if part is not None:
+                own = part[where]
+                values = distinct(own)
+                kinds = kinds * len(values) + np.searchsorted(values, own)
+                kinds = np.searchsorted(distinct(kinds), kinds)
+    return kinds

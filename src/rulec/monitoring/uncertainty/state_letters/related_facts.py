@@ -1,0 +1,59 @@
+"""Facts that have to do with what a rule reads, and how far they reach beyond its own objects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from rulec.automata.axiom_instances import counts
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
+from rulec.logic import formula as ltl
+from rulec.logic.free_names import names_in
+from rulec.rulebook.rulebook_model import Variable
+from rulec.vocabulary import Vocabulary
+
+
+def related_facts(
+    names: Iterable[str], axioms: Sequence[CompiledAxiom]
+) -> tuple[CompiledAxiom, ...]:
+    """The facts that speak of some of these names, or of what such facts speak of."""
+    about = set(names)
+    found: set[int] = set()
+    waiting = [(number, set(names_in(axiom.formula))) for number, axiom in enumerate(axioms)]
+    while True:
+        met = [(number, own) for number, own in waiting if not own.isdisjoint(about)]
+        if not met:
+            return tuple([axiom for number, axiom in enumerate(axioms) if number in found])
+        found.update(number for number, _ in met)
+        about.update(*[own for _, own in met])
+        waiting = [each for each in waiting if each[0] not in found]
+
+
+def keeps_to_its_objects(fact: CompiledAxiom) -> bool:
+    """Whether each value of which a fact speaks is one of all of its objects together.
+
+    What such facts say of some objects then has nothing to do with any others.
+    """
+    own = {variable.name for variable in fact.variables}
+    return not counts(fact.formula) and all(
+        own == set(arguments) for arguments in _arguments_in(fact.formula)
+    )
+
+
+def fits_or_not(fact: CompiledAxiom, variables: Sequence[Variable], vocabulary: Vocabulary) -> bool:
+    """Whether the types of a rule's variables alone tell which of its objects a fact is about.
+
+    It is about a bus or not, whatever a rule knows as a car may turn out to be.
+    """
+    return all(
+        vocabulary.is_subtype(own.type, wanted.type)
+        or not vocabulary.is_subtype(wanted.type, own.type)
+        for wanted in fact.variables
+        for own in variables
+    )
+
+
+def _arguments_in(formula: ltl.Formula) -> Iterator[tuple[str, ...]]:
+    for atom in ltl.atoms_of(formula):
+        for part in (atom,) if isinstance(atom, ltl.Atom) else [term for _, term in atom.terms]:
+            assert not isinstance(part, ltl.Count), "the fact counts nothing"
+            yield part.arguments
