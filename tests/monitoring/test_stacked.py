@@ -188,6 +188,8 @@ type car
 type truck is car
 signal clear default true
 signal near(c: car) default false
+signal awake(c: car) default true
+fact near(c) implies awake(c)
 hard rule whatever { require always (clear or not some c: car (near(c) and clear)) }
 hard rule alone { require always (clear or not some c: car (near(c) and not clear)) }
 hard rule trucks { require always (clear or count c: truck (near(c) and not clear) <= 1) }
@@ -214,3 +216,36 @@ def test_of_a_crowd_of_whom_the_same_is_said_all_is_known(near, violated, undeci
     assert found(together) == (violated, undecided)
     assert all(one.exact for one in together.open)
     assert together == verify_or_reason(trace, compiled)
+
+
+@pytest.mark.parametrize(
+    ("awake", "undecided"),
+    [((), []), (("a0",), [("alone",)]), (("a7", "b7"), [("alone",)]),
+     (("b0", "b7"), [("alone",), ("trucks",)])],
+)  # fmt: skip
+def test_a_fact_says_of_each_of_a_crowd_whether_it_may_count(awake, undecided):
+    compiled = rulec.compile(rulec.parse_rulebook(CROWDED))
+    crowd = {f"a{n}": "car" for n in range(30)} | {f"b{n}": "truck" for n in range(30)}
+    state = {
+        "clear": UNKNOWN,
+        "near": dict.fromkeys(crowd, UNKNOWN),
+        "awake": {item: item in awake for item in crowd},
+    }
+    trace = Trace("crowd", 1.0, crowd, ({}, state, {}))
+    (together,) = verify_arrays([in_arrays(trace, compiled.vocabulary)], compiled)
+    assert found(together) == ([], undecided)
+    assert together == verify_or_reason(trace, compiled)
+
+
+@pytest.mark.parametrize("near", [{"a1": True}, {"b2": True, "b3": UNKNOWN}])
+def test_a_state_that_contradicts_a_fact_is_refused_as_by_itself(near):
+    asleep = "hard rule asleep (v: car) { require never (clear and near(v) and not awake(v)) }"
+    compiled = rulec.compile(rulec.parse_rulebook(CROWDED + asleep))
+    crowd = {"a1": "car", "b2": "truck", "b3": "truck"}
+    state = {"clear": False, "near": near, "awake": dict.fromkeys(crowd, False)}
+    traces = [Trace(str(n), 1.0, crowd, own) for n, own in enumerate([({},), ({}, state)])]
+    calm, refused = verify_arrays([in_arrays(x, compiled.vocabulary) for x in traces], compiled)
+    assert found(calm) == ([], [])
+    assert isinstance(refused, NotJudged)
+    assert "state 1 cannot be: `near(" in str(refused.error)
+    assert str(refused.error) == str(verify_or_reason(traces[1], compiled).error)

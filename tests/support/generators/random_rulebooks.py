@@ -208,7 +208,8 @@ def fact(chance, rules):
     ]
     leaves = [*read, *read, *WORLD_ATOMS[2:]]
     if chance.random() < 0.5:
-        variables = tuple(one for one in variables if chance.random() < 0.6)
+        some = tuple(one for one in variables if chance.random() < 0.6)
+        variables = chance.choice([some, some, (X,), (CAR_X,)])
         names = {one.name for one in variables}
         more = [*WORLD_ATOMS, *X_ATOMS, *Y_ATOMS]
         leaves = [one for one in (*read, *read, *more) if set(variables_of(one)) == names]

@@ -39,7 +39,9 @@ class CrowdedStates:
         enough = enough_alike(reads)
         self._enough = 0 if enough is None else enough
         self.is_known = enough is not None and not rule.variables
-        names = sorted({name for n in rule.related for name in rule.reads[n].names})
+        names = sorted(
+            rule.in_facts.union(name for n in rule.related for name in rule.reads[n].names)
+        )
         declared = self._stack.vocabulary.declarations
         self._world = [name for name in names if not declared[name].parameters]
         self._about = [name for name in names if declared[name].parameters]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.outcome_machine import VIOLATED
 from rulec.automata.thresholds import scale
@@ -24,7 +24,7 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
 )
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterSets
 from rulec.monitoring.uncertainty.state_letters.related_facts import (
-    keeps_to_its_objects,
+    is_of_one,
     related_facts,
 )
 from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
@@ -66,7 +66,8 @@ class StackedRead:
 class StackedRule:
     """A rule with its machine for words of sets of letters.
 
-    ``facts`` are those that have to do with what it reads, ``names`` those of all of these.
+    ``facts`` are those that have to do with what it reads, ``in_facts`` the names of which they
+    speak, ``names`` these and those that it reads.
     ``entangled`` are its entangled reads, if its own objects alone decide what these may be, and
     ``related`` the places of all reads that may have to do with each other. ``constants`` are those
     of reads of what never changes, ``hidden`` the names of such in sums and counts.
@@ -86,11 +87,13 @@ class StackedRule:
         self.reads = tuple([_stacked(read, vocabulary) for read in rule.machine.reads])
         read_names = frozenset(name for read in self.reads for name in read.names)
         self.facts = related_facts(read_names, rulebook.axioms)
-        in_facts = frozenset(name for fact in self.facts for name in names_in(fact.formula))
-        self.names = read_names | in_facts
+        self.in_facts = frozenset(name for fact in self.facts for name in names_in(fact.formula))
+        self.names = read_names | self.in_facts
         self.entangled: EntangledReads | None = local_reads(rule, rulebook)
         self.related = (
-            _related(self.reads, in_facts) if self.entangled is None else self.entangled.numbers
+            _related(self.reads, self.in_facts)
+            if self.entangled is None
+            else self.entangled.numbers
         )
         constants = frozenset(vocabulary.constants)
         self.constants = tuple(
@@ -121,7 +124,7 @@ class StackedRule:
         if self._crowd is None or not everybody.keys() <= self._everybody.keys():
             self._everybody |= everybody
             objects = NothingKnown(dict(self._everybody), self._vocabulary)
-            self._crowd = EntangledReads(self.rule, {}, (), objects)
+            self._crowd = EntangledReads(self.rule, {}, self.facts, objects)
         return self._crowd
 
     def _no_letters(self) -> LetterSets:
@@ -224,11 +227,6 @@ def _is_simple(rule: StackedRule) -> bool:
         and all(_is_simple_read(read, rule) for read in rule.reads)
         and len({rule.reads[place].names for place in rule.constants}) == len(rule.constants)
     )
-
-
-def is_of_one(fact: CompiledAxiom) -> bool:
-    """Whether a fact is about the world alone, or about one object alone."""
-    return len(fact.variables) < 2 and keeps_to_its_objects(fact)
 
 
 def _is_value(read: StackedRead) -> bool:

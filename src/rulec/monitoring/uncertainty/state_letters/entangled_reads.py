@@ -26,6 +26,7 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
 )
 from rulec.monitoring.uncertainty.state_letters.related_facts import (
     fits_or_not,
+    is_of_one,
     keeps_to_its_objects,
     related_facts,
 )
@@ -104,9 +105,9 @@ class EntangledReads:
         for n in self.numbers:
             if _is_coarse(reads[n]):
                 self.shared |= about[n]
-        # Facts may tell apart whom no read does.
+        # Facts about several objects tell how many of these may count.
         self._crowd = None
-        if not is_local and not axioms:
+        if not is_local and all(map(is_of_one, axioms)):
             asked = frozenset(binding.values())
             self._crowd = crowd_of(self._reads, self.subjects, asked, everybody.objects)
         self.found: list[tuple[Letters, bool]] = []

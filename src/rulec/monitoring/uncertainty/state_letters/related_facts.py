@@ -39,6 +39,11 @@ def keeps_to_its_objects(fact: CompiledAxiom) -> bool:
     )
 
 
+def is_of_one(fact: CompiledAxiom) -> bool:
+    """Whether a fact is about the world alone, or about one object alone."""
+    return len(fact.variables) < 2 and keeps_to_its_objects(fact)
+
+
 def fits_or_not(fact: CompiledAxiom, variables: Sequence[Variable], vocabulary: Vocabulary) -> bool:
     """Whether the types of a rule's variables alone tell which of its objects a fact is about.
 
