@@ -7,9 +7,9 @@ and greatest in what they can still come to need be kept: what lies between them
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -142,12 +142,15 @@ class OutcomeMachine:
         )
 
 
-def bits_of(mask: int) -> Iterator[int]:
+@lru_cache(maxsize=1 << 14)
+def bits_of(mask: int) -> tuple[int, ...]:
     """The places of the bits that are set, ascending."""
+    places = []
     while mask:
         lowest = mask & -mask
-        yield lowest.bit_length() - 1
+        places.append(lowest.bit_length() - 1)
         mask ^= lowest
+    return tuple(places)
 
 
 def _foremost(states: int, beyond: Sequence[int], before: Sequence[int]) -> int:
@@ -274,6 +277,20 @@ class SetMonitor:
             if step.best == VIOLATED and lost.issuperset(self._sets[here]):
                 return VIOLATED, VIOLATED, index
         return step.best, step.worst, None
+
+    def run_stretches(self, stretches: Iterable[tuple[int, int]]) -> tuple[int, int]:
+        """The best and the worst outcome of a word of sets of classes, each for so many letters."""
+        here, lost = self.start, self.machine.lost
+        step = OutcomeRange(here, KEPT, KEPT)
+        for classes, length in stretches:
+            for _ in range(length):
+                before, step = here, self.step(here, classes)
+                here = step.states
+                if step.best == VIOLATED and lost.issuperset(self._sets[here]):
+                    return VIOLATED, VIOLATED
+                if here == before:
+                    break  # the same again, however often
+        return step.best, step.worst
 
     def number(self, *states: int) -> int:
         """The number of a set of states, reduced to its extremes."""

@@ -43,10 +43,11 @@ _Stretch: TypeAlias = tuple[tuple[int, int], int]
 class PossibleAlternative:
     """The possible letters of a word, for some values of what does not change.
 
+    ``stretches`` are the letters in their order, and in how many states on end they are possible.
     ``constants`` are the values by name, as text to compare them by.
     """
 
-    letters: tuple[Letters, ...]
+    stretches: tuple[tuple[Letters, int], ...]
     constants: Mapping[str, object]
 
 
@@ -95,16 +96,17 @@ class RunPairs:
         if most > MOST_REMEMBERED or len(self._along) > MOST_WORDS:
             self._forget()
 
-    def word(self, states: Sequence[Letters]) -> _Word:
+    def word(self, stretches: Sequence[tuple[Letters, int]]) -> _Word:
         """A word in numbers."""
-        numbers = self._numbers
-        for letters in dict.fromkeys(states):
-            if letters not in numbers:
-                numbers[letters] = len(self._letters)
+        word: list[int] = []
+        for letters, length in stretches:
+            number = self._numbers.setdefault(letters, len(self._letters))
+            if number == len(self._letters):
                 self._letters.append(letters)
                 digits = [_united(masks) for masks in zip(*letters, strict=True)]
                 self._open.append(frozenset(n for n, own in enumerate(digits) if own & own - 1))
-        return tuple([numbers[letters] for letters in states])
+            word += [number] * length
+        return tuple(word)
 
     def prospects(self, word: _Word) -> list[bytes]:
         """For each letter of a word what may come of each state: see ``Prospects``."""
@@ -283,7 +285,7 @@ class Dependence:
         runs.forget_many()
         self._runs = runs
         self._unknown = unknown
-        self._alternatives = [(runs.word(own.letters), own.constants) for own in alternatives]
+        self._alternatives = [(runs.word(own.stretches), own.constants) for own in alternatives]
         self._stretches: dict[tuple[_Word, _Word], list[_Stretch]] = {}
 
     def smallest(self, names: Sequence[str]) -> tuple[str, ...] | None:

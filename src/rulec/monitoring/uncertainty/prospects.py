@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,13 +39,19 @@ class Prospects:
             self._forget()
         found: list[bytes] = []
         here = -1
-        for classes in reversed(word):
-            key = here, classes
-            known = self._before.get(key)
-            if known is None:
-                known = self._before[key] = self._number(here, classes)
-            here = known
-            found.append(self._tables[here])
+        for classes, stretch in groupby(reversed(word)):
+            length = len(list(stretch))
+            for done in range(length):
+                key = here, classes
+                known = self._before.get(key)
+                if known is None:
+                    known = self._before[key] = self._number(here, classes)
+                if known == here:
+                    # The same again, however often.
+                    found += [self._tables[here]] * (length - done)
+                    break
+                here = known
+                found.append(self._tables[here])
         return found[::-1]
 
     def _number(self, after: int, classes: int) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from functools import cached_property
-from itertools import product, zip_longest
+from itertools import groupby, product, zip_longest
 from math import prod
 from typing import NamedTuple, TypeAlias
 
@@ -47,7 +47,7 @@ _NAMES: Mapping[tuple[int, int], OutcomeName] = {
     (VIOLATED, VIOLATED): "violated",
 }
 
-_Word: TypeAlias = Sequence[Letters]
+_Stretches: TypeAlias = tuple[tuple[Letters, int], ...]
 
 
 class Answer(NamedTuple):
@@ -101,7 +101,7 @@ class UncertainMachine:
         """Why the answer is open; ``order`` is that of names in the vocabulary."""
         alternatives = tuple(
             [
-                PossibleAlternative(word.states, own)
+                PossibleAlternative(_stretches(word.states), own)
                 for word, own in zip(words, constants, strict=True)
             ]
         )
@@ -109,7 +109,7 @@ class UncertainMachine:
             frozenset().union(*names)
             for names in zip(*(word.unknown for word in words), strict=True)
         )
-        key = tuple([(x.letters, tuple(x.constants.items())) for x in alternatives]), unknown
+        key = tuple([(x.stretches, tuple(x.constants.items())) for x in alternatives]), unknown
         found = self._reasons.get(key)
         if found is None:
             if len(self._reasons) > _MOST_REMEMBERED:
@@ -144,8 +144,9 @@ class UncertainMachine:
         cases = () if before else tuple(self._outcomes(depends_on, alternatives, unknown))
         return OpenReasons((*told, *before, *pending), depends_on, cases, found is not None)
 
-    def _run(self, word: _Word) -> tuple[int, int, int | None]:
-        return self.monitor.run([self.classes.of(letters) for letters in word])
+    def _run(self, word: _Stretches) -> tuple[int, int]:
+        own = [(self.classes.of(letters), length) for letters, length in word]
+        return self.monitor.run_stretches(own)
 
     def _outcomes(
         self,
@@ -164,7 +165,7 @@ class UncertainMachine:
             allowed: dict[int, int] = {}
             for _, masks in chosen:
                 allowed |= masks
-            words = [self._narrowed(x.letters, allowed) for x in alternatives]
+            words = [self._narrowed(x.stretches, allowed) for x in alternatives]
             runs = [self._run(word) for word in words if word is not None]
             if runs:
                 result = min(run[0] for run in runs), max(run[1] for run in runs)
@@ -183,7 +184,7 @@ class UncertainMachine:
             value = alternative.constants.get(names[0])
             if not isinstance(value, bool | str):
                 return
-            best, worst, _ = self._run(alternative.letters)
+            best, worst = self._run(alternative.stretches)
             yield ConditionalOutcome({names[0]: value}, _NAMES.get((best, worst), "open"))
 
     def _options(
@@ -216,10 +217,10 @@ class UncertainMachine:
             ]
         return []
 
-    def _narrowed(self, word: _Word, allowed: Mapping[int, int]) -> _Word | None:
+    def _narrowed(self, word: _Stretches, allowed: Mapping[int, int]) -> _Stretches | None:
         """The word with no other digits than these of some reads, where they are not known."""
-        narrowed: dict[Letters, Letters] = {}
-        for letters in dict.fromkeys(word):
+        narrowed: list[tuple[Letters, int]] = []
+        for letters, length in word:
             cubes = []
             for cube in letters:
                 masks = [
@@ -230,8 +231,8 @@ class UncertainMachine:
                     cubes.append(tuple(masks))
             if not cubes or not self.classes.of(tuple(cubes)):
                 return None
-            narrowed[letters] = tuple(cubes)
-        return [narrowed[letters] for letters in word]
+            narrowed.append((tuple(cubes), length))
+        return tuple(narrowed)
 
     def untold(self, untold: frozenset[str]) -> tuple[str, ...]:
         """Names of these for want of which no word can be known to violate the rule.
@@ -302,6 +303,10 @@ class UncertainMachine:
             masks = [mask | more << first for mask, more in zip_longest(masks, united, fillvalue=0)]
         every = frozenset(masks) - {0}
         return frozenset(x for x in every if not any(y & x == y != x for y in every))
+
+
+def _stretches(states: Sequence[Letters]) -> _Stretches:
+    return tuple([(letters, len(list(alike))) for letters, alike in groupby(states)])
 
 
 def _is_open(letters: Letters, read: int) -> bool:

@@ -62,16 +62,32 @@ def outcomes(
     if not len(instances.traces):
         return
     for words in _words(rule, reader, instances, rulebook):
-        bounds, odd = words.bounds.tolist(), words.odd
-        for place in range(len(bounds) - 1):
-            own = slice(bounds[place], bounds[place + 1])
-            if odd[own].any():
+        is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1]).tolist()
+        alternatives = [_stretches(letters, words.bounds) for letters in words.letters]
+        for place, odd in enumerate(is_odd):
+            if odd:
                 yield StackedOutcome(words, place, None)
                 continue
-            answers = [rule.answer(letters[own]) for letters in words.letters]
-            answer = _joined(answers)
+            answer = _joined(
+                [rule.answer(rows[ends[place] : ends[place + 1]]) for rows, ends in alternatives]
+            )
             if answer.worst != KEPT:
                 yield StackedOutcome(words, place, answer)
+
+
+def _stretches(
+    letters: NDArray[np.intp], bounds: NDArray[np.intp]
+) -> tuple[NDArray[np.intp], list[int]]:
+    """The letters of all words with how often each stays, in rows, and where each word has its own.
+
+    Words begin and end at ``bounds``.
+    """
+    is_new = np.ones(len(letters), dtype=bool)
+    np.not_equal(letters[1:], letters[:-1], out=is_new[1:])
+    is_new[bounds[:-1]] = True
+    starts = np.flatnonzero(is_new)
+    rows = np.column_stack([letters[starts], np.diff(starts, append=len(letters))])
+    return rows, np.searchsorted(starts, bounds).tolist()
 
 
 def _joined(answers: Sequence[Answer]) -> Answer:

@@ -144,27 +144,23 @@ class StackedRule:
             self._idle_flags = np.concatenate([self._idle_flags, np.array(more, dtype=bool)])
         return self._idle_flags
 
-    def answer(self, word: NDArray[np.intp]) -> Answer:
-        """What a word of numbers of letter sets comes to."""
-        key = word.tobytes()
+    def answer(self, stretches: NDArray[np.intp]) -> Answer:
+        """What a word comes to: rows of the number of a letter set, and for how long it stays."""
+        key = stretches.tobytes()
         found = self._answers.get(key)
         if found is None:
             self._bytes += len(key)
             if self._bytes > MOST_BYTES:
                 self._answers.clear()
                 self._bytes = len(key)
-            found = self._answers[key] = self._run(word)
+            found = self._answers[key] = self._run(stretches.tolist())
         return found
 
-    def _run(self, word: NDArray[np.intp]) -> Answer:
+    def _run(self, stretches: Sequence[tuple[int, int]]) -> Answer:
         monitor, sets = self.machine.monitor, self.letters.sets
         lost = monitor.machine.lost
-        starts = np.flatnonzero(np.concatenate([[True], word[1:] != word[:-1]]))
-        lengths = np.diff(starts, append=len(word)).tolist()
-        here = monitor.start
-        for start, length, number in zip(
-            starts.tolist(), lengths, word[starts].tolist(), strict=True
-        ):
+        here, start = monitor.start, 0
+        for number, length in stretches:
             classes = sets[number]
             for place in range(start, start + length):
                 before, step = here, monitor.step(here, classes)
@@ -173,6 +169,7 @@ class StackedRule:
                     return Answer(VIOLATED, VIOLATED, place)
                 if here == before:
                     break  # the same again, however often
+            start += length
         return Answer(step.best, step.worst)
 
 

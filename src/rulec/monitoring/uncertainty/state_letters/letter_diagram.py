@@ -9,6 +9,7 @@ are met.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -94,13 +95,17 @@ class LetterSets:
         # Places of sets of nodes behind each read, and before all.
         self._places: list[dict[int, int]] = [{} for _ in range(len(meanings))]
         self._places.append({diagram.start: 0})
+        self._sets: list[int] = []
         self._several = [np.array([mask & (mask - 1) != 0 for mask in row]) for row in meanings]
         self._tables = [np.full((0, len(row)), -1, dtype=np.intp) for row in meanings]
 
     @property
     def sets(self) -> list[int]:
         """Sets of classes, as bits, by number."""
-        return [nodes >> 1 for nodes in self._places[0]]
+        own, places = self._sets, self._places[0]
+        if len(own) < len(places):
+            own += [nodes >> 1 for nodes in islice(places, len(own), None)]
+        return own
 
     def number_of(self, classes: int) -> int:
         """The number of a set of classes, given as bits."""
