@@ -60,12 +60,12 @@ class DriveContext:
         """How well the source knows places and speeds."""
         return self.surroundings.tolerances
 
-    @property
+    @cached_property
     def states(self) -> int:
         """The number of states of the drive."""
         return int(self.ego_extents.s.shape[1])
 
-    @property
+    @cached_property
     def first_step(self) -> int:
         """The recording's time step of the first state."""
         return self.ego.first

@@ -15,6 +15,7 @@ from numpy import int8, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
@@ -272,11 +273,17 @@ def stays(context: DriveContext, rows: NDArray[intp]) -> Flags:
 
     Boxes of one that stands drift by up to ``_DRIFT_M``.
     """
-    tracks, whole = context.surroundings.tracks, context.tracks.rows[rows]
-    there = tracks.present[whole]
+    still: Flags = _who_stays(context)[context.tracks.rows[rows]]
+    return still
+
+
+@once_a_recording
+def _who_stays(context: DriveContext) -> Flags:
+    """The same flags of everybody."""
+    tracks = context.surroundings.tracks
     spreads = [
-        np.where(there, places[whole], -np.inf).max(axis=1, initial=-np.inf)
-        - np.where(there, places[whole], np.inf).min(axis=1, initial=np.inf)
+        np.where(tracks.present, places, -np.inf).max(axis=1, initial=-np.inf)
+        - np.where(tracks.present, places, np.inf).min(axis=1, initial=np.inf)
         for places in (tracks.x, tracks.y)
     ]
     still: Flags = np.hypot(spreads[0], spreads[1]) <= _DRIFT_M

@@ -59,8 +59,12 @@ class ReferenceLine:
 
     def headings_at(self, s: _Values) -> _Values:
         """The directions of the pieces at places, in radians."""
-        ahead = self.ahead[self._piece(s)]
-        return np.arctan2(ahead[..., 1], ahead[..., 0])
+        return self._headings[self._piece(s)]
+
+    @cached_property
+    def _headings(self) -> _Values:
+        headings: _Values = np.arctan2(self.ahead[:, 1], self.ahead[:, 0])
+        return headings
 
     def heading_at(self, s: float) -> float:
         """The direction of the piece at ``s``, in radians."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.recordings.recording import Lamp
@@ -30,7 +30,7 @@ def _headlamps(context: DriveContext) -> SignalColumns:
     (ego,) = context.ego.participants
     if not ego.lamps or not ego.shows >= _BEAMS:
         return SignalColumns()
-    lit = _by_state(context)
+    lit = ego_lamps(context)
     codes = [2 if "main_beam" in (x or ()) else "dipped_beam" in (x or ()) for x in lit]
     dark = [x is None or not (x & _BEAMS or context.recording.weather.night) for x in lit]
     return SignalColumns(
@@ -43,7 +43,7 @@ def _headlamps(context: DriveContext) -> SignalColumns:
 def _fog_lamps(context: DriveContext) -> SignalColumns:
     (ego,) = context.ego.participants
     told = [(name, lamp) for name, lamp in _FOG_LAMPS if ego.lamps and lamp in ego.shows]
-    lit = _by_state(context)
+    lit = ego_lamps(context) if told else ()
     unknown = np.array([x is None for x in lit], dtype=bool)
     return SignalColumns(
         {name: np.array([lamp in (x or ()) for x in lit], dtype=bool) for name, lamp in told},
@@ -51,10 +51,12 @@ def _fog_lamps(context: DriveContext) -> SignalColumns:
     )
 
 
-def _by_state(context: DriveContext) -> list[frozenset[Lamp] | None]:
+@once
+def ego_lamps(context: DriveContext) -> list[frozenset[Lamp] | None]:
     """Ego's lamps that are lit, by state; None where the recording does not tell."""
     (ego,) = context.ego.participants
-    return [ego.lamps.get(context.first_step + state) for state in range(context.states)]
+    first = context.first_step
+    return list(map(ego.lamps.get, range(first, first + context.states)))
 
 
 _PASSES: Passes = {

@@ -12,12 +12,14 @@ import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.measured_numbers import moves
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, next_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.plain_arrays import distinct
 
 _REACH_S, _GENTLE_MPS2, _REACH_M = 3.0, 4.0, 20.0
 """What makes ego brake is no farther ahead than it drives in so long, brakes so hard, and this."""
@@ -69,11 +71,10 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
 
 def _shows_no_hazard(context: DriveContext) -> Flags:
     (ego,) = context.ego.participants
-    steps = [ego.lamps.get(context.first_step + state) for state in range(context.states)]
-    told = "hazard_lights" in ego.shows
-    return np.array(
-        [told and x is not None and "hazard_lights" not in x for x in steps], dtype=bool
-    )
+    if not ego.lamps or "hazard_lights" not in ego.shows:
+        return np.zeros(context.states, dtype=bool)
+    lit = ego_lamps(context)
+    return np.array([x is not None and "hazard_lights" not in x for x in lit], dtype=bool)
 
 
 def _reach(context: DriveContext) -> Floats:
@@ -96,16 +97,18 @@ def _by_map(context: DriveContext) -> Flags:
     width = context.existing_lanes.shape[1]
     lanes, turned = context.ego_lane, np.radians(context.thresholds.turned_deg)
     before = road.line.headings_at(np.nan_to_num(context.ego_extents.s[0]))
-    for ahead in np.arange(0.0, float(np.nanmax(reach, initial=0.0)) + _EVERY_M, _EVERY_M).tolist():
-        counts, place = ahead <= reach, np.nan_to_num(front + ahead)
-        bends = np.abs(turn(before, road.line.headings_at(place))) > _BEND_RAD
-        there = road.lanes.existing_at(place)[np.arange(context.states), lanes]
-        caused |= counts & (bends | ~there)
-        codes, number = np.unique(road.piece(place) * width + lanes, return_inverse=True)
-        keys = [divmod(code, width) for code in codes.tolist()]
-        told = [road.limit_mps(piece, lane, turned) for piece, lane in keys]
-        limits = np.array([np.inf if limit is None else limit for limit in told])[number]
-        caused |= counts & ((limits < speed) | (limits < context.limit_mps))
+    # Rows of places ahead, a column for each state
+    ahead = np.arange(0.0, float(np.nanmax(reach, initial=0.0)) + _EVERY_M, _EVERY_M)[:, None]
+    place = np.nan_to_num(front + ahead)
+    bends = np.abs(turn(before, road.line.headings_at(place))) > _BEND_RAD
+    there = road.lanes.existing_at(place)[:, np.arange(context.states), lanes]
+    codes = road.piece(place) * width + lanes
+    different = distinct(codes)
+    told = [road.limit_mps(code // width, code % width, turned) for code in different.tolist()]
+    known = np.array([np.inf if limit is None else limit for limit in told])
+    limits = known[np.searchsorted(different, codes)]
+    lower = (limits < speed) | (limits < context.limit_mps)
+    caused |= ((ahead <= reach) & (bends | ~there | lower)).any(axis=0)
     return caused
 
 
@@ -164,7 +167,7 @@ def _others(context: DriveContext) -> _Others:
         left=y * cos - x * sin,
         along=vx * cos + vy * sin,
         sideways=vy * cos - vx * sin,
-        turned=np.angle(np.exp(1j * (heading - own.heading[0]))),
+        turned=turn(own.heading[0], heading),
         moves=np.hypot(vx, vy) * KMH >= context.thresholds.standing_kmh,
     )
 
