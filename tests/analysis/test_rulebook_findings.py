@@ -209,6 +209,18 @@ def test_findings(rules, expected, tmp_path):
         assert all(word in text for word in words.split(" ")), text
 
 
+def test_no_trace_shows_what_only_a_change_of_what_cannot_change_would(tmp_path):
+    """Who tows in the first state tows in the second one, too."""
+    path = tmp_path / "example.rules"
+    path.write_text(
+        f"{HEAD}signal towed default false constant towed "
+        "hard rule r { require never (wet and towed then fog and not towed) }"
+    )
+    (found,) = analyze(path)
+    assert found.code == "R0807"
+    assert "`towed`, which cannot change, would have to" in found.message
+
+
 def test_weaker_than_what_is_extended(tmp_path):
     (tmp_path / "base.rules").write_text(
         HEAD.replace("example", "base") + "hard rule r { require never wet }\n"

@@ -151,3 +151,26 @@ def test_what_further_objects_make_impossible_is_no_mistake():
         synthesize_trace([state((PARKED, 1))], UNIVERSE, Fraction(1), refuses)
     with pytest.raises(RulecError):
         synthesize_trace([state()], UNIVERSE, Fraction(1), refuses)
+
+
+HEAVY = Vocabulary(
+    "heavy",
+    {},
+    {"heavy": Signal("heavy", (), False, constant=True), "fog": Signal("fog", (), False)},
+)
+
+
+def test_what_cannot_change_has_one_value_in_all_states():
+    """The states say it of the first one alone; what is to be shown needs it to be false."""
+    alone = ObjectUniverse({}, HEAVY)
+    states = [JointState({("heavy", ()): True}), JointState({("fog", ()): True})]
+    trace = synthesize_trace(
+        states, alone, Fraction(1), lambda one: not any("heavy" in said for said in one.states)
+    )
+    assert trace.states == ({}, {"fog": True})
+
+
+def test_a_trace_that_needs_what_cannot_change_to_change_is_left_open():
+    states = [JointState({("heavy", ()): True}), JointState({("heavy", ()): False})]
+    with pytest.raises(UndecidedError, match="`heavy`, which cannot change, would have to"):
+        synthesize_trace(states, ObjectUniverse({}, HEAVY), Fraction(1), lambda _: False)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import count
+from itertools import count, product
 from typing import Any
 
 from rulec.diagnostics import RulecError
@@ -62,24 +62,62 @@ def synthesize_trace(
 ) -> Trace:
     """Synthesise a trace through these states for which ``shows`` holds.
 
-    Raises UndecidedError if the objects that are there to be counted are in the way.
+    Raises UndecidedError if the objects that are there to be counted are in the way, or if what
+    cannot change would have to.
     """
     objects, placed = place_objects(states, universe, str)
     all_objects = {**universe.objects, **objects}
     types = list(objects.values())
-    for fill in _fills(universe, types):
-        written = tuple(_written(values, universe, all_objects, fill) for values in placed)
+    changing = _changing_constants(placed, universe)
+    variants = product(_settled(placed, changing), _fills(universe, types))
+    for settled, fill in variants:
+        written = tuple(_written(values, universe, all_objects, fill) for values in settled)
         trace = Trace("witness", float(step_s), all_objects, written)
         try:
             if shows(trace):
                 return trace
         except RulecError:
-            # Objects that are there to be counted may be what facts of several objects rule out.
-            if not types:
+            # Objects that are there to be counted may be what facts of several objects rule out; so may
+            # be a value that what cannot change was given.
+            if not types and not changing:
                 raise
+    if changing:
+        names = ", ".join(sorted({f"`{name}`" for name, _ in changing}))
+        raise UndecidedError(f"{names}, which cannot change, would have to")
     if types:
         raise UndecidedError("further objects, there to be counted, are subject to the rule, too")
     raise AssertionError(f"a trace does not do what it is to show: {trace.states}")
+
+
+def _changing_constants(
+    placed: Sequence[Mapping[Subject, Value]], universe: ObjectUniverse
+) -> dict[Subject, tuple[Value, ...]]:
+    """What states differ in though it cannot change, with its values, in the order of the states.
+
+    Automata read each state for itself, and what a state does not say has its default.
+    """
+    declarations = universe.vocabulary.declarations
+    constants = set(universe.vocabulary.constants)
+    said = {
+        subject: tuple(
+            dict.fromkeys(
+                values.get(subject, default_value(declarations[subject[0]])) for values in placed
+            )
+        )
+        for subject in dict.fromkeys(subject for values in placed for subject in values)
+        if subject[0] in constants
+    }
+    return {subject: values for subject, values in said.items() if len(values) > 1}
+
+
+def _settled(
+    placed: list[dict[Subject, Value]], changing: Mapping[Subject, Sequence[Value]]
+) -> Iterator[list[dict[Subject, Value]]]:
+    """The states as they are, then with one value throughout for what cannot change."""
+    yield placed
+    for chosen in product(*changing.values()) if changing else ():
+        settled = dict(zip(changing, chosen, strict=True))
+        yield [{**values, **settled} for values in placed]
 
 
 def _fills(universe: ObjectUniverse, types: Sequence[str]) -> Iterable[Mapping[str, Value]]:
