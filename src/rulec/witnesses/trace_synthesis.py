@@ -77,8 +77,8 @@ def synthesize_trace(
             if shows(trace):
                 return trace
         except RulecError:
-            # Objects that are there to be counted may be what facts of several objects rule out; so may
-            # be a value that what cannot change was given.
+            # Facts of several objects may rule out objects that are there to be counted, or the
+            # value that what cannot change was given.
             if not types and not changing:
                 raise
     if changing:
