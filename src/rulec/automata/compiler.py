@@ -31,7 +31,7 @@ from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_
 from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
 from rulec.rulebook.elaborate.rule_messages import no_multiple
-from rulec.rulebook.rulebook_model import Rule, Rulebook
+from rulec.rulebook.rulebook_model import Rule, Rulebook, parts_of
 from rulec.rulebook.rules.exemptions import rule_trigger
 from rulec.version import __version__
 
@@ -230,4 +230,5 @@ def _compiled(rule: Rule, step: Fraction | None, done: Done) -> CompiledRule:
         step_s=step,
         weight=rule.weight,
         trigger=rule_trigger(rule),
+        parts=parts_of(rule),
     )

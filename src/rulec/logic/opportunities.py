@@ -26,6 +26,8 @@ from rulec.logic.formula import (
 
 _TRUE = Constant(True)
 
+_GUARDING = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
+
 BEGINNING: Formula = Unary(UnaryOperator.WEAK_PREVIOUSLY, Constant(False))
 """What holds in the first state alone."""
 
@@ -55,6 +57,25 @@ def trigger_of(
     parts += map(_at_first_once, initially)
     found = fold_constants(_all(parts)) if parts else None
     return None if found == _TRUE else found
+
+
+def trigger_of_parts(
+    required: Formula,
+    exceptions: Iterable[tuple[Formula, bool]] = (),
+    condition: Formula | None = None,
+) -> Formula | None:
+    """``trigger_of`` a rule of these parts: its exceptions, those of the first state marked so.
+
+    The exceptions of a sequence are about what comes after its first phase, so they are left out.
+    """
+    apart: list[Formula] = []
+    initially: list[Formula] = []
+    for exception, is_initial in exceptions:
+        (initially if is_initial else apart).append(_negated(exception))
+    if condition is not None:
+        guards = isinstance(required, Unary) and required.operator in _GUARDING
+        (apart if guards else initially).append(condition)
+    return trigger_of(required, apart=apart, initially=initially)
 
 
 def guards_one_state(formula: Formula) -> bool:

@@ -63,6 +63,18 @@ class Exemption:
 
 
 @dataclass(frozen=True, slots=True)
+class RuleParts:
+    """What a rule requires, where it is exempt from that, and the condition under which it counts.
+
+    The rule's formula has all of them worked in.
+    """
+
+    required: Formula
+    exemptions: tuple[Exemption, ...] = ()
+    condition: Formula | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Rule:
     """One rule. Without variables it speaks of ego and the world alone.
 
@@ -97,6 +109,13 @@ class Rule:
     condition: Formula | None = None
     inherited_from: str = ""
     topics: tuple[str, ...] = ()
+
+
+def parts_of(rule: Rule) -> RuleParts | None:
+    """The parts of a rule; None if it is nothing but what it requires."""
+    if rule.required is None:
+        return None
+    return RuleParts(rule.required, rule.exemptions, rule.condition)
 
 
 def cited_law(cite: str, inherited_from: str) -> str:

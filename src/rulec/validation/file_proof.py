@@ -16,6 +16,7 @@ from rulec.validation.formula_progression import FormulaProgression
 from rulec.validation.formula_words import formula_words
 from rulec.validation.hoa_proof import prove_hoa
 from rulec.validation.letter_sets import Letters
+from rulec.validation.parts_proof import prove_parts
 from rulec.validation.table_proof import FormulaMachine, prove_table
 from rulec.validation.unprovable import UnprovableError, exact, require
 
@@ -115,6 +116,7 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
     prove_table(formula, machine, letters)
     if rule.get("cut") is not None:
         prove_cut_table(formula, rule["cut"], letters)
+    prove_parts(rule)
     prove_hoa(formula, rule["hoa"], tree, letters, ends=book["semantics"] == "finite")
 
 

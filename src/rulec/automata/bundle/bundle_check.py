@@ -25,9 +25,16 @@ from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
-from rulec.logic.opportunities import trigger_of
+from rulec.logic.opportunities import trigger_of_parts
 from rulec.logic.printing import formula_text, term_text
-from rulec.rulebook.rulebook_model import Rule, Rulebook, SourceFile, Variable
+from rulec.rulebook.rulebook_model import (
+    Exemption,
+    Rule,
+    Rulebook,
+    RuleParts,
+    SourceFile,
+    Variable,
+)
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 
@@ -266,6 +273,7 @@ def _rule(
 ) -> CompiledRule:
     reads = tuple([_read(item) for item in rule.machine.reads])
     formula = from_data(rule.tree)
+    parts = None if rule.parts is None else _rule_parts(rule.parts)
     compiled = CompiledRule(
         **alike(Rule, rule),
         hoa=rule.hoa,
@@ -274,7 +282,8 @@ def _rule(
         machine=monitors.MealyMonitor(reads, *astuple(rule.machine)[1:]),
         step_s=None if rule.step_s is None else number_from_data(rule.step_s),
         weight=number_from_data(rule.weight),
-        trigger=trigger_of(formula) if rule.trigger is None else from_data(rule.trigger),
+        trigger=trigger_of_parts(formula) if parts is None else _trigger_of(parts),
+        parts=parts,
     )
     if not own:
         _check_rule(compiled, rule, vocabulary, levels)
@@ -296,10 +305,24 @@ def _check_rule(
     _require(fits, f"rule `{name}` is for a wrong step")
     if rule.step_s is not None:
         in_steps(formula, rule.step_s)
-    if rule.trigger is not None:
+    if rule.parts is not None:
         variables = {variable.name for variable in rule.variables}
-        of = f"the trigger of rule `{name}`"
-        _check_formula(rule.trigger, vocabulary, variables, of, counted=False)
+        formulas = [rule.parts.required, *(part.formula for part in rule.parts.exemptions)]
+        for part in (*formulas, rule.parts.condition):
+            if part is not None:
+                of = f"a part of rule `{name}`"
+                _check_formula(part, vocabulary, variables, of, counted=False)
+
+
+def _rule_parts(read: schema.PartsEntry) -> RuleParts:
+    condition = None if read.condition is None else from_data(read.condition)
+    exemptions = tuple([Exemption(from_data(tree), scope) for scope, tree in read.exemptions])
+    return RuleParts(from_data(read.required), exemptions, condition)
+
+
+def _trigger_of(parts: RuleParts) -> ltl.Formula | None:
+    exceptions = [(part.formula, part.scope == "initially") for part in parts.exemptions]
+    return trigger_of_parts(parts.required, exceptions, parts.condition)
 
 
 def _check_machine(read: schema.MachineEntry, rule: str) -> None:

@@ -38,9 +38,8 @@ from rulec.diagnostics.json_problems import json_words
 from rulec.file_sets import write_together
 from rulec.files import make_folder, opened
 from rulec.logic.codec import terms_to_data, to_data
-from rulec.logic.opportunities import trigger_of
 from rulec.logic.printing import formula_text, number_in_words
-from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
+from rulec.rulebook.rulebook_model import Rule, Rulebook, RuleParts, Variable
 
 
 def to_json(rulebook: CompiledRulebook) -> str:
@@ -131,7 +130,7 @@ def _rule(
         step_s=None if rule.step_s is None else str(rule.step_s),
         formula=formula_text(rule.formula),
         tree=to_data(rule.formula),
-        trigger=_trigger(rule),
+        parts=None if rule.parts is None else _parts(rule.parts),
         machine=schema.MachineEntry(
             reads=[_read(read) for read in machine.reads],
             letters=machine.letters,
@@ -143,11 +142,10 @@ def _rule(
     )
 
 
-def _trigger(rule: CompiledRule) -> Any:
-    """The tree of a trigger; none if it is what the formula's form names, as most are."""
-    if rule.trigger is None or rule.trigger == trigger_of(rule.formula):
-        return None
-    return to_data(rule.trigger)
+def _parts(parts: RuleParts) -> schema.PartsEntry:
+    condition = None if parts.condition is None else to_data(parts.condition)
+    exemptions = [(part.scope, to_data(part.formula)) for part in parts.exemptions]
+    return schema.PartsEntry(to_data(parts.required), exemptions, condition)
 
 
 def _read(read: Read | NumberRead) -> schema.ReadEntry | schema.NumberReadEntry:

@@ -6,7 +6,13 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from rulec.rulebook.rulebook_model import Certainty, Semantics, Strength, Traffic
+from rulec.rulebook.rulebook_model import (
+    Certainty,
+    ExemptionScope,
+    Semantics,
+    Strength,
+    Traffic,
+)
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 FORMAT = "rulec compiled rulebook"
@@ -128,10 +134,18 @@ class CutMachineEntry(_Strict, rename={"successors": "following", "outputs": "ou
     starts: tuple[int, ...]
 
 
+class PartsEntry(_Strict, omit_defaults=True):
+    """What a rule requires, its exceptions with their scopes, and its condition, as trees."""
+
+    required: Any
+    exemptions: list[tuple[ExemptionScope, Any]] = []
+    condition: Any = None
+
+
 class BundleRule(_Strict, omit_defaults=True):
     """One rule; ``cut`` is null if that machine would be too large, and left out if none was made.
 
-    Without a ``trigger`` that is what the formula's form names.
+    Without ``parts`` it is nothing but what it requires.
     """
 
     name: str
@@ -150,7 +164,7 @@ class BundleRule(_Strict, omit_defaults=True):
     machine: MachineEntry
     hoa: str
     cut: CutMachineEntry | msgspec.UnsetType | None = msgspec.UNSET
-    trigger: Any = None
+    parts: PartsEntry | None = None
     inherited_from: str = ""
 
 

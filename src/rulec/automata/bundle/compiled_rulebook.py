@@ -27,7 +27,8 @@ class CompiledRule:
 
     ``step_s`` is the step of the traces that the machine can judge; None if it can judge any,
     because the formula has no bounds in seconds. ``trigger`` is what has to hold for the rule to
-    ask for anything, None where its form names nothing (``logic.opportunities``).
+    ask for anything, None where its form names nothing (``logic.opportunities``); ``parts`` are
+    what it is read off, None if that is the formula.
     """
 
     __repr__ = short_repr
@@ -47,6 +48,7 @@ class CompiledRule:
     certainty: model.Certainty = ""
     book: str = ""
     trigger: Formula | None = None
+    parts: model.RuleParts | None = None
     inherited_from: str = ""
 
 

@@ -17,7 +17,7 @@ from math import comb
 from typing import Literal
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
-from rulec.logic.opportunities import trigger_of
+from rulec.logic.opportunities import trigger_of_parts
 from rulec.rulebook.arithmetic.linear_arithmetic import all_of, any_of, negated
 from rulec.rulebook.rulebook_model import Exemption, ExemptionScope, Rule
 
@@ -60,23 +60,9 @@ def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
 
 
 def rule_trigger(rule: Rule) -> Formula | None:
-    """What has to hold in a state for the rule to be breached there; None where nothing is named.
-
-    The exceptions of a sequence are about what comes after its first phase, so they are left out.
-    """
-    required, condition = rule.required or rule.formula, rule.condition
-    apart: list[Formula] = []
-    initially: list[Formula] = []
-    for exemption in rule.exemptions:
-        among = initially if exemption.scope == "initially" else apart
-        among.append(negated(exemption.formula))
-    if condition is not None:
-        guards = isinstance(required, Unary) and required.operator in _GUARDING
-        (apart if guards else initially).append(condition)
-    return trigger_of(required, apart=apart, initially=initially)
-
-
-_GUARDING = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
+    """What has to hold in a state for the rule to be breached there; None if nothing is named."""
+    exceptions = [(part.formula, part.scope == "initially") for part in rule.exemptions]
+    return trigger_of_parts(rule.required or rule.formula, exceptions, rule.condition)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +103,7 @@ def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
         return _border(
             phases, all_of([at_start, everywhere]), all_of([at_end, everywhere]), throughout
         )
-    return _Inner(phases, at_start, at_end, everywhere).whole(frozenset(throughout))
+    return _Inner(phases, at_start, at_end, everywhere).whole(tuple(dict.fromkeys(throughout)))
 
 
 def _border(
@@ -167,18 +153,18 @@ class _Inner:
     at_end: Formula
     everywhere: Formula
 
-    def whole(self, somewhere: frozenset[Formula]) -> Formula:
+    def whole(self, somewhere: tuple[Formula, ...]) -> Formula:
         """Formula of all phases, with each of ``somewhere`` to hold somewhere in the stretch."""
         first = self.phases[0]
         return Binary(_THEN, first.formula, self._enter(1, somewhere), first.bound)
 
-    def _enter(self, index: int, rest: frozenset[Formula]) -> Formula:
+    def _enter(self, index: int, rest: tuple[Formula, ...]) -> Formula:
         if index == len(self.phases) - 1:
             return self.phases[-1].formula
         inside = self._inside(index, rest)
         return all_of([self.at_start, inside]) if index == 1 else inside
 
-    def _inside(self, index: int, rest: frozenset[Formula]) -> Formula:
+    def _inside(self, index: int, rest: tuple[Formula, ...]) -> Formula:
         """From some instant of an inner phase on."""
         phase = replace(
             self.phases[index], formula=all_of([self.phases[index].formula, self.everywhere])
@@ -188,10 +174,9 @@ class _Inner:
             at_last = self.at_end if is_last else all_of([])
             return _ends(phase, at_last, self._enter(index + 1, rest))
         ways: list[Formula] = []
-        ordered = sorted(rest, key=repr)
-        for n in range(len(ordered) + 1):
-            for now in combinations(ordered, n):
-                left = rest - frozenset(now)
+        for n in range(len(rest) + 1):
+            for now in combinations(rest, n):
+                left = tuple([one for one in rest if one not in now])
                 onward = []
                 if not (is_last and left):
                     step = Unary(UnaryOperator.NEXT, self._enter(index + 1, left))

@@ -1,0 +1,163 @@
+"""A rule's parts held against its formula: what it requires, its exceptions, its condition.
+
+Its trigger is read off the parts, so they have to be those of the formula. They are put together
+here anew, as docs/language.md says, and what comes out has to be the formula, word by word, for
+formulas that mean the same have other triggers: `never (p and not q)` and `never (not q and p)`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import combinations
+from typing import Any, TypeAlias
+
+from rulec.validation.unprovable import require
+
+SCOPES = ("initially", "at start", "at end", "throughout", "at some point")
+_GUARDING = ("always", "never")
+_MOST_THROUGHOUT = 4
+_MOST_PHASES = 8
+"""Formulas grow exponentially in exceptions that hold throughout; longer ones are not proved."""
+
+
+def prove_parts(rule: Mapping[str, Any]) -> None:
+    """Raise UnprovableError unless a rule's parts, if it has any, are those of its formula."""
+    parts = rule.get("parts")
+    if parts is None:
+        return
+    built = _put_together(
+        parts["required"], parts.get("exemptions", []), parts.get("condition", True)
+    )
+    require(rule["tree"] == built, "its formula is not what its parts come to")
+
+
+def _put_together(required: Any, exemptions: Iterable[tuple[str, Any]], condition: Any) -> Any:
+    """The formula of a rule: its condition is an exception where it does not hold."""
+    named = list(exemptions)
+    require(all(scope in SCOPES for scope, _ in named), "it has an exception of no scope")
+    initially = [tree for scope, tree in named if scope == "initially"]
+    inside = [(scope, tree) for scope, tree in named if scope != "initially"]
+    formula = required
+    if condition is not True:
+        if _operator(required) in _GUARDING:
+            inside.append(("at some point", _not(condition)))
+        else:
+            formula = ["implies", condition, required]
+    if inside:
+        require(_operator(formula) in _GUARDING, "it has exceptions and guards nothing")
+        operator, operand, *bound = formula
+        if operator == "always":
+            operand = _any([_any(tree for _, tree in inside), operand])
+        else:
+            operand = _counted(_phases(operand), inside)
+        formula = [operator, operand, *bound]
+    return _any([*initially, formula])
+
+
+def _operator(tree: Any) -> Any:
+    return tree[0] if isinstance(tree, list) and tree else None
+
+
+def _not(tree: Any) -> Any:
+    if isinstance(tree, bool):
+        return not tree
+    return tree[1] if _operator(tree) == "not" else ["not", tree]
+
+
+def _joined(operator: str, neutral: bool, trees: Iterable[Any]) -> Any:
+    whole: Any = neutral
+    for tree in trees:
+        if tree is (not neutral):
+            return tree
+        if tree is not neutral:
+            whole = tree if whole is neutral else [operator, whole, tree]
+    return whole
+
+
+def _all(trees: Iterable[Any]) -> Any:
+    return _joined("and", True, trees)
+
+
+def _any(trees: Iterable[Any]) -> Any:
+    return _joined("or", False, trees)
+
+
+Phase: TypeAlias = tuple[Any, list[Any]]
+"""The tree of a phase, and its bound, if it has one."""
+
+
+def _phases(tree: Any) -> list[Phase]:
+    phases: list[Phase] = []
+    while _operator(tree) == "then":
+        _, first, rest, *bound = tree
+        phases.append((first, bound))
+        tree = rest
+    return [*phases, (tree, [])]
+
+
+def _counted(phases: Sequence[Phase], exemptions: Sequence[tuple[str, Any]]) -> Any:
+    """The sequences that no exception exempts.
+
+    The stretch that is guarded is what is between the first phase and the last; of two phases it
+    is the last instant of the first and the first one of the second.
+    """
+    if len(phases) == 1:
+        return _all([phases[0][0], *(_not(tree) for _, tree in exemptions)])
+    denied = {scope: [_not(tree) for own, tree in exemptions if own == scope] for scope in SCOPES}
+    start, end = _all(denied["at start"]), _all(denied["at end"])
+    all_along, failing = _all(denied["at some point"]), denied["throughout"]
+    bounded = any(bound for _, bound in phases)
+    few = len(failing) <= _MOST_THROUGHOUT and len(phases) <= _MOST_PHASES
+    require(not failing or (few and not bounded), "its exceptions are too many for this checker")
+    if len(phases) == 2:
+        return _any(
+            _left(
+                phases[0],
+                _all([_all([start, all_along]), *now]),
+                _all([phases[1][0], _all([end, all_along]), *(e for e in failing if e not in now)]),
+            )
+            for now in _choices(failing)
+        )
+    (first, bound), last = phases[0], len(phases) - 1
+    failing = [one for number, one in enumerate(failing) if one not in failing[:number]]
+
+    def entered(number: int, due: Sequence[Any]) -> Any:
+        """From the first instant of a phase on; ``due`` are to fail in what is left."""
+        if number == last:
+            return phases[number][0]
+        here = within(number, due)
+        return _all([start, here]) if number == 1 else here
+
+    def within(number: int, due: Sequence[Any]) -> Any:
+        tree, own = phases[number]
+        phase, is_last = _all([tree, all_along]), number == last - 1
+        if not due:
+            return _left((phase, own), end if is_last else True, entered(number + 1, due))
+        ways = []
+        for now in _choices(due):
+            rest = [one for one in due if one not in now]
+            onward = []
+            if not (is_last and rest):
+                step = ["next", entered(number + 1, rest)]
+                onward.append(_all([end, step]) if is_last else step)
+            if now:
+                onward.append(["next", within(number, rest)])
+            if onward:
+                ways.append(_all([*now, _any(onward)]))
+        return ["until", phase, _all([phase, _any(ways)])]
+
+    return ["then", first, entered(1, failing), *bound]
+
+
+def _choices(trees: Sequence[Any]) -> list[tuple[Any, ...]]:
+    return [chosen for n in range(len(trees) + 1) for chosen in combinations(trees, n)]
+
+
+def _left(phase: Phase, at_last: Any, behind: Any) -> Any:
+    """The rest of a phase and the instant behind it; ``at_last`` holds in the phase's last one."""
+    tree, bound = phase
+    if at_last is True:
+        return ["then", tree, behind, *bound]
+    if bound:
+        return ["then", tree, _all([["previously", at_last], behind]), *bound]
+    return ["until", tree, _all([tree, at_last, ["next", behind]])]
