@@ -8,11 +8,13 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import islice, product
 
-from hypothesis import assume, given
+import pytest
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from rulec import compile_rulebook
 from rulec.diagnostics import RulecError
+from rulec.monitoring import bindings
 from rulec.monitoring.verify import verify
 from rulec.partition import navigation_graph
 from rulec.planning import evaluate
@@ -407,3 +409,32 @@ def test_what_was_before_counts_whatever_comes_true():
     (other,) = alternative_counts(found)
     # Where o1 is still ahead, nothing is to its right
     assert other.satisfying == other.traces > 0
+
+
+THREES = compile_rulebook(
+    parse_rulebook(
+        """
+        rulebook threes
+        use road
+        hard rule amid (u: vehicle, v: vehicle, w: vehicle) {
+          require always not (beside(u) and behind(v) and (oncoming(w) or in_front_of(w)))
+        }
+        """
+    )
+)
+
+
+@given(beside_a_queue(), st.data())
+@settings(max_examples=settings().max_examples // 4)
+def test_of_many_choices_those_that_may_be_lost_are_enough(scenario, data):
+    graph = navigation_graph(scenario, partition="fine")
+    found = evaluate(graph, THREES)
+    assume(found.traces)
+    path = data.draw(st.sampled_from(list(islice(paths(graph.trace_graph()), 100))))
+    maneuver = Maneuver(path, 0.0, None)
+    told = []
+    for many in (0, bindings.MANY):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(bindings, "MANY", many)
+            told.append(rule_probabilities(found, maneuver))
+    assert told[0] == told[1]

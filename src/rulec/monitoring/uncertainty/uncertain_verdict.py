@@ -15,7 +15,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.outcome_machine import KEPT, VIOLATED
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
-from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings
+from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.possible_letters import (
     PossibleLetters,
     PossibleWord,
@@ -94,6 +94,10 @@ class UncertainRun:
         machine = uncertain_machine(rule, None, starts)
         best, worst, _ = machine.answer(self._words(rule, machine, binding)[0])
         return best, worst
+
+    def bits_of(self, rule: CompiledRule) -> ReadBits:
+        """Reader of the digits, as bits, that reads of the rule may have."""
+        return self._letters.bits_of(rule)
 
     def _answers(
         self, rule: CompiledRule, machine: UncertainMachine

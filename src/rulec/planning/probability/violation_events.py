@@ -14,10 +14,16 @@ from rulec.automata.outcome_machine import KEPT
 from rulec.logic.formula import Count, Formula
 from rulec.logic.free_names import names_in, variables_of
 from rulec.logic.kleene import holds
-from rulec.monitoring.bindings import Binding, Cast
+from rulec.monitoring.bindings import Binding, Cast, types_of
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.lazy_bindings import (
+    ReadBits,
+    doubtful_bindings,
+    known_bits,
+)
 from rulec.monitoring.uncertainty.suppositions import spelled_out
+from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.verify import run
 from rulec.partition.prediction_worlds import PredictedPath
@@ -160,14 +166,32 @@ class ViolationEvents:
         return unknown or rule.name in self._past.doubtful_rules
 
     def _bindings(self, rule: CompiledRule) -> Iterator[Binding]:
-        """Bindings whose objects' predictions can come true together."""
+        """Bindings whose objects' predictions can come true together.
+
+        Of many only those that may not be kept, unless more than their states decides that.
+        """
         words = self._words
         cast = Cast(words.objects, self._book.vocabulary, len(self._states), words.present)
-        for binding in cast.bindings(rule):
+        bindings = cast.bindings(rule)
+        if cast.has_many(types_of(rule)) and self._is_told_by_states(rule):
+            idle = uncertain_machine(rule, None).idle
+            bindings = doubtful_bindings(rule, cast, self._bits(rule), idle)
+        for binding in bindings:
             who = [self._path.predicted[name] for name in binding.objects.values()]
             chosen = {(predicted.of, predicted.number) for predicted in who}
             if len({of for of, _ in chosen}) == len(chosen):
                 yield binding
+
+    def _is_told_by_states(self, rule: CompiledRule) -> bool:
+        """Whether states alone decide for whom a rule is lost: no collision, count or past."""
+        is_hit = any(self._concerns(rule, name) for name in self._path.hit)
+        return not (is_hit or counts(rule.formula) or self._past.begun(rule.name))
+
+    def _bits(self, rule: CompiledRule) -> ReadBits:
+        columns = self._everybody
+        if columns.uncertain is not None and self._is_in_doubt(rule):
+            return columns.uncertain.bits_of(rule)
+        return known_bits(columns.known, rule)
 
     def _keeps(self, rule: CompiledRule, binding: Binding, columns: _Columns) -> bool:
         names = binding.objects.values()
