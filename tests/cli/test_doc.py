@@ -1,12 +1,22 @@
 """``rulec doc`` as its user meets it."""
 
+import ast
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
+from rulec.analysis.audit.provision_coverage import ProvisionState
+from rulec.analysis.lineage.rule_lineage import ConstantKind
 from rulec.cli.main import main
+from rulec.report.rulebooks import book_document
+from rulec.report.rulebooks.document_language import document_language
+from rulec.rulebook.files.catalogue import list_rulebooks
+from rulec.rulebook.loader import load_rulebook
 from support.builders import rulebook_family as island
+
+SOURCES = Path(book_document.__file__).parent
 
 
 @pytest.fixture
@@ -50,10 +60,11 @@ def test_the_beginning(page):
 
 
 def test_a_rule_that_overrides(page):
-    rule = section(page, "### changed (§ 10a)")
+    rule = section(page, "### Changed (§ 10a)")
     assert rule.startswith("\n> Be slow.\n\n")
     for line in (
         "- **Provision:** § 10a",
+        "- **Rule:** `changed`",
         "- **Kind of rule:** hard, it must never be violated",
         "- **Certainty:** ◐ taken from a secondary source",
         "- **Origin:** overrides mainland: cite, source, require",
@@ -69,11 +80,11 @@ def test_a_rule_that_overrides(page):
         assert f"\n{line}\n" in rule
     assert "```rulec\nrequire always[<= 3 s] slow\n```" in rule
     assert "```rulec\nrequire always[<= 3 s] speed < 20 km/h\n```" in rule
-    assert "says" not in section(page, "### changed (§ 10a)").split("```diff")[1]
+    assert "says" not in section(page, "### Changed (§ 10a)").split("```diff")[1]
 
 
 def test_its_examples(page):
-    rule = section(page, "### changed (§ 10a)")
+    rule = section(page, "### Changed (§ 10a)")
     assert "**Example 1: allowed ✔**\n\n| state | 0 |\n| --- | --- |\n| speed, km/h | 20 |" in rule
     assert (
         "**Example 2: forbidden ✘**\n\n| state | 0 |\n| --- | --- |\n| speed, km/h | 40 |" in rule
@@ -81,20 +92,20 @@ def test_its_examples(page):
 
 
 def test_inherited_and_softened(page):
-    kept = section(page, "### kept (§ 9)")
+    kept = section(page, "### Kept (§ 9)")
     assert "\n- **Provision:** § 9 of: Mainland Act; inherited, not confirmed\n" in kept
     assert "\n- **Origin:** inherited from mainland, not confirmed\n" in kept
     assert "\n- **Certainty:** ✔ verified in the law itself; that is mainland's\n" in kept
     # As written and as meant it is the same.
     assert kept.count("```rulec") == 1
-    softer = section(page, "### softer (§ 2)")
+    softer = section(page, "### Softer (§ 2)")
     assert "\n- **Kind of rule:** soft, it may yield; weight 2\n" in softer
     assert "\n- **Origin:** softened, not confirmed, because only recommended\n" in softer
     assert "#### Examples\n\nNone.\n" in softer
 
 
 def test_confirmed(page):
-    agreed = section(page, "### agreed (§ 11, custom)")
+    agreed = section(page, "### Agreed (§ 11, custom)")
     assert "\n- **Provision:** § 11, custom\n" in agreed
     assert "\n- **Certainty:** ✔ verified in the law itself\n" in agreed
     assert "\n- **Origin:** confirms mainland: cite, source, certainty, examples\n" in agreed
@@ -118,7 +129,7 @@ def test_exceptions_are_said_one_by_one(folder, capsys):
         "  unless built_up at start\n"
         "}\n"
     )
-    rule = section(written(capsys, "excepted.rules", "--format", "markdown"), "### r")
+    rule = section(written(capsys, "excepted.rules", "--format", "markdown"), "### R")
     assert (
         "```rulec\n"
         "require never passes(v, right_of)\n"
@@ -158,15 +169,15 @@ def test_the_index_leads_to_the_rules(page):
     index = section(page, "## Index of provisions")
     places = [index.index(one) for one in ("Island Act:", "§ 10a", "Mainland Act:", "§ 2", "§ 9")]
     assert places == sorted(places)
-    assert "| § 9 | [`kept`](#kept--9) |" in index
-    assert "\n  - [kept (§ 9)](#kept--9)\n" in section(page, "## Contents")
+    assert "| § 9 | [Kept](#kept--9) |" in index
+    assert "\n  - [Kept (§ 9)](#kept--9)\n" in section(page, "## Contents")
 
 
 def test_a_rule_that_is_not_in_force(folder, capsys):
     page = written(capsys, "village.rules", "--format", "markdown", "--at", "2024-05-31")
     out = section(page, "## What this rulebook leaves out")
     assert "\n| `own` | not in force on 2024-05-31 | in force from 2024-06-01 |\n" in out
-    assert "### own" not in page
+    assert "### Own" not in page
 
 
 def test_words_with_their_descriptions(capsys):
@@ -202,6 +213,92 @@ def test_every_link_of_the_page_leads_somewhere(folder, book, capsys):
 def test_a_file(folder, name, options, beginning, capsys):
     assert written(capsys, "island.rules", "-o", name, *options) == f"wrote {name}\n"
     assert (folder / name).read_text(encoding="utf-8").startswith(beginning)
+
+
+def test_german_and_french(capsys):
+    """Sentences, headings and titles are in the language, what the author wrote is as it is."""
+    german = written(capsys, "de", "--language", "de", "--format", "markdown")
+    rule = section(german, "### Überholt werden (§ 5(6) s. 1)")
+    assert "\n- **Art der Regel:** hart, sie darf nie verletzt werden\n" in rule
+    assert (
+        "\n#### In Worten\n\nNie kommt vor: beides: Ego wird überholt und Ego wird schneller."
+        in rule
+    )
+    assert "**Beispiel 1" in rule
+    assert "\n## Verzeichnis der Vorschriften\n" in german
+    french = written(capsys, "de", "--language", "fr")
+    assert french.startswith('<!DOCTYPE html>\n<html lang="fr">')
+    assert "Jamais ceci : les deux à la fois : ego est dépassé et ego accélère." in french
+    assert '<nav aria-label="Sommaire">' in french
+
+
+def test_numbers_have_the_comma_of_their_language(folder, capsys):
+    (folder / "slow.rules").write_text(
+        "rulebook slow\nuse road\nhard rule r { require always speed < 1.5 km/h\n"
+        "  accept { speed = 0.25 km/h } }\n"
+    )
+    page = written(capsys, "slow.rules", "--language", "de", "--format", "markdown")
+    rule = section(page, "### R")
+    assert "Immer gilt: Egos Geschwindigkeit beträgt weniger als 1,5 km/h." in rule
+    assert "| speed, km/h | 0,25 |" in rule
+    # A formula is what it is.
+    assert "```rulec\nrequire always speed < 1.5 km/h\n```" in rule
+
+
+def test_examples_are_drawn_where_there_is_something_to_see(folder, capsys):
+    (folder / "drawn.rules").write_text(
+        "rulebook drawn\nuse road\n"
+        "hard rule passes (v: vehicle) {\n"
+        "  require never (behind(v) then beside(v) and right_of(v) then in_front_of(v))\n"
+        '  accept "one is there" { behind(v) and right_of(v) and speed = 30 km/h }\n'
+        '  reject "passed" {\n'
+        "    behind(v) and same_lane(v); beside(v) and right_of(v);\n"
+        "    in_front_of(v) and same_lane(v)\n"
+        "  }\n"
+        "}\n"
+        "hard rule light {\n"
+        "  require never red_light accept { speed = 1 km/h } reject { red_light }\n"
+        "}\n"
+    )
+    page = written(capsys, "drawn.rules")
+    assert page.count('<svg aria-label="Example ') == 3
+    (passing,) = re.findall(
+        r"<svg aria-label=\"Example 2 \(by_a_bus\): forbidden ✘\".*?</svg>", page
+    )
+    # Ego and v in each of the three states; v is ahead, then at ego's left, then behind.
+    assert passing.count('class="ego"') == 3
+    places = re.findall(r'class="other" x="([\d.]+)" y="([\d.]+)"', passing)
+    (x1, y1), (x2, y2), (x3, y3) = [(float(x), float(y)) for x, y in places]
+    assert y1 < y2 < y3
+    assert x2 < x1 == x3
+    assert 'class="light red"' in page
+    markdown = written(capsys, "drawn.rules", "--format", "markdown")
+    assert "![" not in markdown
+    assert "<svg" not in markdown
+
+
+@pytest.mark.parametrize("language", ["de", "fr"])
+def test_every_text_and_title_is_there_in_each_language(language):
+    """What documents say in English, rules and topics that ship: all is said in the others."""
+    texts = document_language(load_rulebook("vienna"), language)
+    said, constants = set(), {*get_args(ProvisionState), *get_args(ConstantKind)}
+    for name in ("book_document", "book_rule", "rule_provenance", "audit_report"):
+        for node in ast.walk(ast.parse((SOURCES / f"{name}.py").read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Constant):
+                constants.add(node.value)
+            elif isinstance(node, ast.Call) and "say" in ast.unparse(node.func).split("."):
+                inner = ast.walk(node.args[0])
+                said |= {one.value for one in inner if isinstance(one, ast.Constant)}
+    assert len(said) > 80
+    assert said <= texts.texts.keys() <= constants
+    for text, instead in texts.texts.items():
+        assert text.count("{}") == instead.count("{}"), text
+    books = [load_rulebook(entry.name) for entry in list_rulebooks()]
+    # The paper's rules have numbers.
+    rules = {rule.name for book in books for rule in book.rules if book.name != "esterle2019"}
+    assert rules - texts.titles.keys() == set()
+    topics = {topic.name for book in books for topic in book.topics}
+    assert topics == texts.topics.keys()
 
 
 def test_no_path_of_this_machine_is_in_it(folder, capsys):

@@ -6,8 +6,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.logic.english.sentence import phrase, sentence
-from rulec.logic.english.sentence_layout import in_one_line, lines
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -21,6 +19,11 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
+from rulec.logic.sentences.english import ENGLISH
+from rulec.logic.sentences.french import FRENCH
+from rulec.logic.sentences.german import GERMAN
+from rulec.logic.sentences.sentence import phrase, sentence
+from rulec.logic.sentences.sentence_layout import in_one_line, lines
 from support.generators.random_formulas import ATOMS
 
 NOT, ALWAYS, NEVER = UnaryOperator.NOT, UnaryOperator.ALWAYS, UnaryOperator.NEVER
@@ -230,13 +233,16 @@ formulas = st.recursive(
 )
 
 
-def said(formula):
-    return in_one_line(phrase(formula, inside=False))
+LANGUAGES = (ENGLISH, GERMAN, FRENCH)
 
 
-@given(formulas, formulas)
-def test_different_formulas_have_different_sentences(one, other):
-    assert (said(one) == said(other)) == (one == other)
+def said(formula, language=ENGLISH):
+    return in_one_line(phrase(formula, language, inside=False), language)
+
+
+@given(formulas, formulas, st.sampled_from(LANGUAGES))
+def test_different_formulas_have_different_sentences(one, other, language):
+    assert (said(one, language) == said(other, language)) == (one == other)
 
 
 def smallest():
@@ -258,9 +264,10 @@ def smallest():
     return [*leaves, *one, *two, *chains]
 
 
-def test_all_small_formulas_have_different_sentences():
+@pytest.mark.parametrize("language", LANGUAGES, ids=lambda language: language.code)
+def test_all_small_formulas_have_different_sentences(language):
     every = smallest()
-    assert len({said(one) for one in every}) == len(set(every)) > 4000
+    assert len({said(one, language) for one in every}) == len(set(every)) > 4000
 
 
 BOUNDS = [None, seconds(0, 3), steps(0, 3), seconds(1, 3), seconds(1, None), seconds(3, 3)]
@@ -295,7 +302,7 @@ def mutants(formula):
             yield Unary(ALWAYS, formula)
 
 
-@given(formulas)
-def test_whatever_is_changed_in_a_formula_changes_its_sentence(formula):
+@given(formulas, st.sampled_from(LANGUAGES))
+def test_whatever_is_changed_in_a_formula_changes_its_sentence(formula, language):
     for one in mutants(formula):
-        assert (said(one) == said(formula)) == (one == formula), one
+        assert (said(one, language) == said(formula, language)) == (one == formula), one

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.report.text.html_page import as_html
+from rulec.report.text.html_page import PageTexts, as_html
 from rulec.report.text.markdown import Heading, code, escaped, fenced, table, written
 
 VOID = {"meta", "hr", "br"}
@@ -53,28 +53,28 @@ PAGE = written(
 
 
 def test_the_contents_are_navigation_and_nothing_else_is():
-    read = Read(as_html(PAGE, "A book", "Contents"))
+    read = Read(as_html(PAGE, PageTexts("A book", "Contents")))
     assert len(read.named("nav")) == 1
     inside = ["nav" in inside for _, inside in read.named("li")]
     assert inside == [True, True, False, False]
 
 
 def test_links_lead_somewhere():
-    read = Read(as_html(PAGE, "A book", "Contents"))
+    read = Read(as_html(PAGE, PageTexts("A book", "Contents")))
     names = [attrs["id"] for _, attrs, _ in read.elements if "id" in attrs]
     assert names == ["a-book", "contents", "rules", "r"]
     assert [attrs["href"] for attrs, _ in read.named("a")] == ["#rules", "#r"]
 
 
 def test_tables_say_what_is_a_header_of_what():
-    read = Read(as_html(PAGE, "A book", "Contents"))
+    read = Read(as_html(PAGE, PageTexts("A book", "Contents")))
     assert [attrs["scope"] for attrs, _ in read.named("th")] == ["col", "col", "row", "row"]
     assert len(read.named("td")) == 2
     assert all("div" in inside for _, inside in read.named("table"))
 
 
 def test_formulas_and_differences_are_coloured_by_class():
-    page = as_html(PAGE, "A book", "Contents")
+    page = as_html(PAGE, PageTexts("A book", "Contents"))
     assert '<span class="k">require</span>' in page
     assert '<span class="gd">-old</span>' in page
     assert '<span class="gi">+new</span>' in page
@@ -82,7 +82,7 @@ def test_formulas_and_differences_are_coloured_by_class():
 
 
 def test_it_is_one_file_for_light_and_dark_and_paper():
-    page = as_html(PAGE, "A book", "Contents")
+    page = as_html(PAGE, PageTexts("A book", "Contents"))
     read = Read(page)
     assert [one for one in read.elements if one[0] in ("script", "link", "img", "iframe")] == []
     for wanted in ("prefers-color-scheme: dark", "@media print", '<html lang="en">'):
@@ -105,7 +105,7 @@ def contrast(one, other):
 
 @pytest.mark.parametrize("theme", ["light", "dark", "print"])
 def test_everything_can_be_read(theme):
-    page = as_html("", "", "Contents")
+    page = as_html("", PageTexts("", "Contents"))
     blocks = page.split(":root {")[1:]
     block = dict(zip(("light", "dark", "print"), blocks, strict=True))[theme].split("}")[0]
     colors = {
@@ -133,14 +133,16 @@ def test_no_text_becomes_a_part_of_the_page(heading, cell, formula):
             "> " + escaped(cell),
         ]
     )
-    read = Read(as_html(page, heading, "Contents"))
+    read = Read(as_html(page, PageTexts(heading, "Contents")))
     known = {"html", "head", "meta", "title", "style", "body", "main", "h2", "p", "div", "table"}
     known |= {"thead", "tbody", "tr", "th", "td", "code", "pre", "span", "blockquote"}
     assert {tag for tag, _, _ in read.elements} <= known
 
 
 def test_html_in_the_markdown_is_text():
-    page = as_html("<script>alert(1)</script>\n\n[x](javascript:alert(1))", "<b>", "Contents")
+    page = as_html(
+        "<script>alert(1)</script>\n\n[x](javascript:alert(1))", PageTexts("<b>", "Contents")
+    )
     assert "<script" not in page
     assert "href" not in page
     assert "<title>&lt;b&gt;</title>" in page

@@ -2,8 +2,9 @@
 
 import pytest
 
-from rulec.logic.english.spoken_words import forms, spoken_formula
-from rulec.logic.english.wording import atom_in_english
+from rulec.logic.sentences.english import ENGLISH
+from rulec.logic.sentences.spoken_words import forms, spoken_formula
+from rulec.logic.sentences.wording import atom_clause
 from rulec.rulebook.loader import load_rulebook, load_vocabulary
 from rulec.rulebook.vocabulary_phrases import LANGUAGES, phrases_in, phrases_of
 from rulec.vocabulary import Enumeration, Quantity
@@ -32,9 +33,9 @@ def test_sentences_speak_in_phrases_and_keep_their_reading():
     rule = next(rule for rule in load_rulebook("vienna").rules if rule.name == "near_side_passing")
     phrases = phrases_of(load_rulebook("vienna"))
     formula = spoken_formula(rule.exemptions[0].formula, phrases)
-    assert atom_in_english(formula, holds=False) == (
+    assert atom_clause(formula, ENGLISH, holds=False) == (
         "queues do not fill all lanes of ego's direction"
     )
     raining = spoken_formula(type(formula)("raining"), phrases)
     # What holds a comma or an `or` of its own stays apart from what it is joined with.
-    assert atom_in_english(raining, holds=True) == "“rain, snow or hail falls”"
+    assert atom_clause(raining, ENGLISH, holds=True) == "“rain, snow or hail falls”"

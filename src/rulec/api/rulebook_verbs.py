@@ -300,16 +300,35 @@ class RulebookVerbs(SessionSettings):
         page = replace(page, rule=spoken)
         return rule_page.as_text(page, book.name, book.vocabulary, width)
 
-    def doc(self, reference: str | Path, form: Literal["html", "markdown"] = "html") -> str:
-        """A rulebook as a lawyers' document, HTML or Markdown. Raises RulecError."""
+    def doc(
+        self,
+        reference: str | Path,
+        form: Literal["html", "markdown"] = "html",
+        language: Literal["en", "de", "fr"] = "en",
+    ) -> str:
+        """A rulebook as a lawyers' document, HTML or Markdown. Raises RulecError.
+
+        The page in HTML has its examples as pictures. What authors wrote stays in their language.
+        """
         from rulec.analysis.lineage.book_lineage import read_with_lineage
-        from rulec.report.rulebooks.book_document import CONTENTS, as_markdown, title_of
-        from rulec.report.text.html_page import as_html
+        from rulec.report.rulebooks.book_document import (
+            as_markdown,
+            contents_heading,
+            title_of,
+        )
+        from rulec.report.rulebooks.document_language import document_language
+        from rulec.report.rulebooks.example_picture import ExampleFigures
+        from rulec.report.text.html_page import PageTexts, as_html
 
         loaded, lineage = read_with_lineage(reference, self.search_path, self.at)
         self._warn(loaded.warnings)
-        text = as_markdown(loaded, lineage)
-        return as_html(text, title_of(loaded.rulebook), CONTENTS) if form == "html" else text
+        words = document_language(loaded.rulebook, language)
+        if form == "markdown":
+            return as_markdown(loaded, lineage, words)
+        figures = ExampleFigures(loaded.rulebook.vocabulary)
+        text = as_markdown(loaded, lineage, words, figures.add)
+        page = PageTexts(title_of(loaded.rulebook), contents_heading(words), language)
+        return as_html(text, page, figures.by_address)
 
     def new_rulebook(self, name: str, extends: str | None = None) -> str:
         """The text of a new rulebook, perhaps extending another. Raises RulecError."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from rulec.diagnostics import Source
+from rulec.logic.sentences.language import TypeWords
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.rulebook_model import Rulebook
@@ -24,18 +26,54 @@ def phrases_of(rulebook: Rulebook, language: str = "en") -> Mapping[str, str]:
     for words of its own.
     """
     phrases: dict[str, str] = {}
-    for source in rulebook.sources:
-        path = rulebooks_folder() / "vocabulary" / Path(source.name).name
-        if path.is_file() and sha256(path.read_bytes()).hexdigest() == source.sha256:
-            phrases.update(phrases_in(path.stem, language))
+    for name in _vocabularies(rulebook):
+        phrases.update(phrases_in(name, language))
     return phrases
 
 
-@cache
+def types_of(rulebook: Rulebook, language: str) -> Mapping[str, TypeWords]:
+    """How to speak of the types of a rulebook; none for types of its own."""
+    types: dict[str, TypeWords] = {}
+    for name in _vocabularies(rulebook):
+        types.update(types_in(name, language))
+    return types
+
+
+def _vocabularies(rulebook: Rulebook) -> Iterator[str]:
+    """The vocabularies that ship and that a rulebook uses as they are."""
+    for source in rulebook.sources:
+        path = rulebooks_folder() / "vocabulary" / Path(source.name).name
+        if path.is_file() and sha256(path.read_bytes()).hexdigest() == source.sha256:
+            yield path.stem
+
+
 def phrases_in(vocabulary: str, language: str) -> Mapping[str, str]:
     """The phrases of a vocabulary that ships; none if it has none in that language."""
-    folder = rulebooks_folder() / "vocabulary" / "phrases"
-    path = folder / f"{vocabulary}.{language}.toml"
+    words = _file(f"{vocabulary}.{language}.toml").items()
+    return {name: phrase for name, phrase in words if isinstance(phrase, str)}
+
+
+def types_in(vocabulary: str, language: str) -> Mapping[str, TypeWords]:
+    """How to speak of the types of a vocabulary that ships; none in English, which has rules."""
+    types = _file(f"{vocabulary}.{language}.toml").get("types", {})
+    return {name: TypeWords(*words) for name, words in types.items()}
+
+
+def titles_in(language: str) -> Mapping[str, str]:
+    """The titles of the rules that ship, by their names; in English those that need one."""
+    titles = _file(f"titles.{language}.toml").items()
+    return {name: title for name, title in titles if isinstance(title, str)}
+
+
+def topics_in(language: str) -> Mapping[str, str]:
+    """The titles of the topics that ship, by their names; none in English, where they have one."""
+    topics: Mapping[str, str] = _file(f"titles.{language}.toml").get("topics", {})
+    return topics
+
+
+@cache
+def _file(name: str) -> Mapping[str, Any]:
+    path = rulebooks_folder() / "vocabulary" / "phrases" / name
     if not path.is_file():
         return MappingProxyType({})
     text = path.read_text(encoding="utf-8")

@@ -12,6 +12,10 @@ from rulec.cli.output import open_session, put_answer
 
 Format: TypeAlias = Literal["html", "markdown"]
 
+Language: TypeAlias = Literal["en", "de", "fr"]
+
+LANGUAGES: tuple[Language, ...] = ("en", "de", "fr")
+
 
 @click.command()
 @shared.rulebook_argument
@@ -21,12 +25,21 @@ Format: TypeAlias = Literal["html", "markdown"]
     former="--format",
     instead="A browser prints the page and saves it as PDF.",
 )
+@click.option(
+    "--language",
+    type=click.Choice(LANGUAGES),
+    default="en",
+    show_default=True,
+    help="The language of its sentences and headings. What an author wrote stays as it is.",
+)
 @shared.at_option
-def command(rulebook: str, to: Output, at: str) -> None:
+def command(rulebook: str, to: Output, language: str, at: str) -> None:
     """Write a RULEBOOK (a name, or the path of a source) as a document for lawyers.
 
-    It has every rule with its provision, in plain English, as a formula and by its examples; what
-    was changed of inherited rules and what was left out; values, definitions, words and an index.
+    It has every rule with its provision, in plain language, as a formula and by its examples, in
+    the page with pictures; what was changed of inherited rules and what was left out; values,
+    definitions, words and an index.
     """
     shared.only_sources([rulebook], "cannot be made a document of")
-    put_answer(open_session(at).doc(rulebook, cast("Format", to.form)), to)
+    session = open_session(at)
+    put_answer(session.doc(rulebook, cast("Format", to.form), cast("Language", language)), to)

@@ -15,6 +15,7 @@ from rulec.analysis.audit.rulebook_audit import Audit, AuditChanges, AuditFindin
 from rulec.analysis.audit.source_audit import SourceAudit
 from rulec.report.json_document import JsonDocument, as_indented
 from rulec.report.rulebooks import source_report
+from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.markdown import code, escaped, table
 from rulec.report.text.terminal_text import fact_lines, styled, visible
@@ -82,31 +83,38 @@ def counts(audit: Audit) -> Iterator[tuple[str, str]]:
     yield "words of the vocabulary in use", f"{n.words_used:,} of {n.words:,}"
 
 
-def progress(provisions: Sequence[ListedProvision]) -> str:
+def progress(provisions: Sequence[ListedProvision], words: DocumentLanguage = IN_ENGLISH) -> str:
     """How much of the listed articles is dealt with, in percent, as a bar, and how."""
     states = Counter(article.state for article in provisions)
     done = len(provisions) - states["to do"]
     filled = _BAR * done // len(provisions)
     bar = "█" * filled + "░" * (_BAR - filled)
-    numbers = ", ".join(f"{states[state]:,} {state}" for state in get_args(ProvisionState))
-    return f"{100 * done // len(provisions)} % {bar} {done:,} of {len(provisions):,}: {numbers}"
+    numbers = ", ".join(f"{states[x]:,} {words.say(x)}" for x in get_args(ProvisionState))
+    counted = words.say("{} of {}", f"{done:,}", f"{len(provisions):,}")
+    return f"{100 * done // len(provisions)} % {bar} {counted}: {numbers}"
 
 
 _BAR = 20
 """Characters of a progress bar."""
 
 
-def provision_row(article: ListedProvision) -> tuple[str, str, str]:
+def provision_row(
+    article: ListedProvision, words: DocumentLanguage = IN_ENGLISH
+) -> tuple[str, str, str]:
     """Number, heading, and what has become of a listed article."""
-    rules = f" by {', '.join(article.rules)}" if article.rules else ""
-    because = f", because {article.because}" if article.because else ""
-    return article.number, article.heading, f"{article.state}{rules}{because}"
+    say = words.say
+    rules = say(" by {}", ", ".join(article.rules)) if article.rules else ""
+    because = say(", because {}", article.because) if article.because else ""
+    return article.number, article.heading, f"{say(article.state)}{rules}{because}"
 
 
-def provision_table(provisions: Sequence[ListedProvision]) -> str:
+def provision_table(
+    provisions: Sequence[ListedProvision], words: DocumentLanguage = IN_ENGLISH
+) -> str:
     """The listed articles as a Markdown table."""
-    rows = [[*map(escaped, provision_row(article))] for article in provisions]
-    return table(["article", "heading", "what has become of it"], rows)
+    rows = [[*map(escaped, provision_row(article, words))] for article in provisions]
+    head = [words.say("article"), words.say("heading"), words.say("what has become of it")]
+    return table(head, rows)
 
 
 def law_of(audit: Audit) -> str:

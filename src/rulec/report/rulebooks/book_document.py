@@ -8,10 +8,17 @@ from itertools import groupby
 from rulec.analysis.audit.provision_coverage import provisions_of
 from rulec.analysis.audit.rulebook_audit import articles_of, used_declarations
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
-from rulec.logic.english.wording import listed, spoken
 from rulec.logic.printing import formula_text
+from rulec.logic.sentences.wording import listed, spoken
 from rulec.report.rulebooks.audit_report import progress, provision_table
-from rulec.report.rulebooks.book_rule import WIDTH, rule_heading, rule_section
+from rulec.report.rulebooks.book_rule import (
+    WIDTH,
+    ExamplePicture,
+    rule_heading,
+    rule_section,
+    time_in_force,
+)
+from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage
 from rulec.report.rulebooks.spoken_rules import spoken_book
 from rulec.report.text import markdown
 from rulec.report.text.formula_lines import formula_lines
@@ -21,7 +28,6 @@ from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.syntax import tree
-from rulec.syntax.tree_printer import print_in_force
 from rulec.version import __version__
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
@@ -30,7 +36,16 @@ NO_ADVICE = (
     "the law itself."
 )
 
-CONTENTS = "Contents"
+ABOUT_RULES = (
+    "A hard rule must never be violated, a soft rule may yield to others. In the examples a value "
+    "in parentheses is not mentioned: it is the default."
+)
+
+_SIDES = {
+    "right": "drives on the right",
+    "left": "drives on the left",
+    "": "side not stated",
+}
 
 _ENDS = {
     "stutter": "judged as if its last state went on for ever",
@@ -43,12 +58,23 @@ def title_of(rulebook: Rulebook) -> str:
     return rulebook.title or rulebook.name
 
 
-def as_markdown(loaded: Loaded, inherited: BookLineage) -> str:
-    """The whole document."""
+def contents_heading(words: DocumentLanguage) -> str:
+    """The heading below which the list of contents stands."""
+    return words.say("Contents")
+
+
+def as_markdown(
+    loaded: Loaded,
+    inherited: BookLineage,
+    words: DocumentLanguage = IN_ENGLISH,
+    picture: ExamplePicture | None = None,
+) -> str:
+    """The whole document; ``picture`` draws its examples, each as the address of an image."""
     rulebook = loaded.rulebook
-    top: list[Block] = [Heading(1, title_of(rulebook)), *_top(rulebook), Heading(2, CONTENTS)]
-    body = list(_body(loaded, inherited))
-    index = Heading(2, "Index of provisions")
+    contents_here = Heading(2, contents_heading(words))
+    top: list[Block] = [Heading(1, title_of(rulebook)), *_top(rulebook, words), contents_here]
+    body = list(_body(loaded, inherited, words, picture))
+    index = Heading(2, words.say("Index of provisions"))
     headings = [heading for heading in (*top, *body, index) if isinstance(heading, Heading)]
     names = markdown.anchors([heading.text for heading in headings])
     places = {id(heading): name for heading, name in zip(headings, names, strict=True)}
@@ -59,70 +85,85 @@ def as_markdown(loaded: Loaded, inherited: BookLineage) -> str:
     )
     rules = {heading.text: places[id(heading)] for heading in headings if heading.level == 3}
     sources = ", ".join(code(source.name) for source in rulebook.sources)
-    made_from = f"Made by rulec {__version__} from {sources}. {NO_ADVICE}"
-    end = (*_index(rulebook, inherited, index, rules), "---", made_from)
+    made_from = words.say("Made by rulec {} from {}.", __version__, sources)
+    advice = f"{made_from} {words.say(NO_ADVICE)}"
+    end = (*_index(rulebook, inherited, (index, rules), words), "---", advice)
     return markdown.written([*top, contents, *body, *end])
 
 
-def _top(rulebook: Rulebook) -> Iterator[Block]:
-    law = f"{rulebook.law}, as of {rulebook.as_of}" if rulebook.as_of else rulebook.law
+def _top(rulebook: Rulebook, words: DocumentLanguage) -> Iterator[Block]:
+    say = words.say
+    law = escaped(rulebook.law)
+    if rulebook.as_of:
+        law = say("{}, as of {}", law, rulebook.as_of)
     n_hard = sum(rule.strength == "hard" for rule in rulebook.rules)
-    yield NO_ADVICE
+    n_soft = len(rulebook.rules) - n_hard
+    bases = say(", then ").join(map(code, rulebook.extends))
+    yield say(NO_ADVICE)
     rows = [
-        ["rulebook", code(rulebook.name)],
-        ["law", escaped(law) if law else "none is named"],
-        ["shown as of", rulebook.at],
-        ["builds upon", ", then ".join(map(code, rulebook.extends)) or "no other rulebook"],
-        ["traffic", f"drives on the {rulebook.traffic}" if rulebook.traffic else "side not stated"],
-        ["a trace is", _ENDS[rulebook.semantics]],
-        ["rules", f"{n_hard:,} hard, {len(rulebook.rules) - n_hard:,} soft"],
+        [say("rulebook"), code(rulebook.name)],
+        [say("law"), law or say("none is named")],
+        [say("shown as of"), rulebook.at],
+        [
+            say("builds upon"),
+            bases or say("no other rulebook"),
+        ],
+        [say("traffic"), say(_SIDES[rulebook.traffic])],
+        [say("a trace is"), say(_ENDS[rulebook.semantics])],
+        [say("rules"), say("{} hard, {} soft", f"{n_hard:,}", f"{n_soft:,}")],
     ]
     if rulebook.extends:
-        inherited = sum(bool(rule.inherited_from) for rule in rulebook.rules)
-        own = f"{len(rulebook.rules) - inherited:,} rules; {inherited:,} inherited, not confirmed"
-        rows.append(["own law", own])
-    yield table(["about", "this rulebook"], rows)
+        n_inherited = sum(bool(rule.inherited_from) for rule in rulebook.rules)
+        n_own = len(rulebook.rules) - n_inherited
+        own = say("{} rules; {} inherited, not confirmed", f"{n_own:,}", f"{n_inherited:,}")
+        rows.append([say("own law"), own])
+    yield table([say("about"), say("this rulebook")], rows)
 
 
-def _body(loaded: Loaded, inherited: BookLineage) -> Iterator[Block]:
-    rulebook = spoken_book(loaded.rulebook)
-    yield Heading(2, "Rules")
-    yield (
-        "A hard rule must never be violated, a soft rule may yield to others. In the examples a "
-        "value in parentheses is not mentioned: it is the default."
-        if rulebook.rules
-        else "None."
-    )
+def _body(
+    loaded: Loaded,
+    inherited: BookLineage,
+    words: DocumentLanguage,
+    picture: ExamplePicture | None,
+) -> Iterator[Block]:
+    rulebook = spoken_book(loaded.rulebook, words.language)
+    yield Heading(2, words.say("Rules"))
+    yield words.say(ABOUT_RULES if rulebook.rules else "None.")
     for rule in rulebook.rules:
-        yield from rule_section(rule, inherited, rulebook)
-    yield from _values_section(inherited, rulebook.at)
-    yield from _definitions_section(inherited)
-    yield from _left_out_section(inherited, rulebook.at)
-    yield from _words_section(loaded)
-    yield from _articles_section(rulebook)
+        yield from rule_section(rule, inherited, rulebook, words, picture)
+    yield from _values_section(inherited, rulebook.at, words)
+    yield from _definitions_section(inherited, words)
+    yield from _left_out_section(inherited, rulebook.at, words)
+    yield from _words_section(loaded, words)
+    yield from _articles_section(rulebook, words)
 
 
-def _articles_section(rulebook: Rulebook) -> Iterator[Block]:
+def _articles_section(rulebook: Rulebook, words: DocumentLanguage) -> Iterator[Block]:
     provisions = provisions_of(rulebook)
     if provisions:
-        yield Heading(2, "Articles of the law")
+        yield Heading(2, words.say("Articles of the law"))
         pages = dict.fromkeys((article.link, article.as_of) for article in provisions)
         for link, as_of in pages:
-            yield linked(f"{link} , as of {as_of}" if as_of else link)
-        yield f"Dealt with: {progress(provisions)}."
-        yield provision_table(provisions)
+            yield linked(words.say("{} , as of {}", link, as_of) if as_of else link)
+        yield words.say("Dealt with: {}.", progress(provisions, words))
+        yield provision_table(provisions, words)
 
 
 def _index(
-    rulebook: Rulebook, inherited: BookLineage, heading: Heading, places: Mapping[str, str]
+    rulebook: Rulebook,
+    inherited: BookLineage,
+    places: tuple[Heading, Mapping[str, str]],
+    words: DocumentLanguage,
 ) -> Iterator[Block]:
+    heading, anchors = places
     yield heading
     laws = {book.name: book.law or book.title or book.name for book in inherited.books}
     articles = articles_of(rulebook.rules, inherited)
     if not articles:
-        yield "No provision is cited."
+        yield words.say("No provision is cited.")
     links = {
-        rule.name: f"[{code(rule.name)}](#{places[rule_heading(rule)]})" for rule in rulebook.rules
+        rule.name: f"[{escaped(words.title(rule.name))}](#{anchors[rule_heading(rule, words)]})"
+        for rule in rulebook.rules
     }
     for book, cited in groupby(articles, key=lambda article: article.book):
         yield f"{escaped(laws[book])}:"
@@ -130,51 +171,51 @@ def _index(
             [escaped(article.cite), ", ".join(links[name] for name in article.rules)]
             for article in cited
         ]
-        yield table(["provision", "rules"], rows)
+        yield table([words.say("provision"), words.say("rules")], rows)
 
 
-def _values_section(inherited: BookLineage, at: str) -> Iterator[Block]:
+def _values_section(inherited: BookLineage, at: str, words: DocumentLanguage) -> Iterator[Block]:
     rows = [
         row
         for provision in inherited.provisions
         if provision.kind != "definition" and provision.used
-        for row in _values(provision)
+        for row in _values(provision, words)
     ]
     if rows:
-        yield Heading(2, "Options and parameters")
-        yield f"The value that counts on {at} is the one with a mark."
+        yield Heading(2, words.say("Options and parameters"))
+        yield words.say("The value that counts on {} is the one with a mark.", at)
         head = ["name", "kind", "value", "counts", "in force", "given by", "note"]
-        yield table(head, rows)
+        yield table([*map(words.say, head)], rows)
 
 
-def _values(constant_history: ConstantHistory) -> Iterator[list[str]]:
+def _values(constant_history: ConstantHistory, words: DocumentLanguage) -> Iterator[list[str]]:
     for setting in constant_history.settings:
-        dates = print_in_force(tree.InForce(setting.since, setting.until))
         yield [
             code(constant_history.name),
-            constant_history.kind,
+            words.say(constant_history.kind),
             code(setting.text),
             "✔" if setting.current else "",
-            dates.removeprefix("in force").strip() or "always",
+            time_in_force(setting.since, setting.until, words) or words.say("always"),
             code(setting.book),
             escaped(setting.note),
         ]
 
 
-def _definitions_section(inherited: BookLineage) -> Iterator[Block]:
+def _definitions_section(inherited: BookLineage, words: DocumentLanguage) -> Iterator[Block]:
     definitions = [
         provision
         for provision in inherited.provisions
         if provision.kind == "definition" and provision.used
     ]
     if definitions:
-        yield Heading(2, "Definitions")
+        yield Heading(2, words.say("Definitions"))
     for definition in definitions:
         *earlier, last = definition.settings
-        before = [f"in {code(setting.book)} {code(setting.text)}" for setting in earlier]
-        was = f" It was {listed(before)}." if before else ""
+        before = [words.say("in {} {}", code(one.book), code(one.text)) for one in earlier]
+        said = words.say("{} is defined by {}.", code(definition.name), code(last.book))
+        was = words.say(" It was {}.", listed(before, words.language)) if before else ""
         note = f" {escaped(last.note)}" if last.note else ""
-        yield f"{code(definition.name)} is defined by {code(last.book)}.{was}{note}"
+        yield f"{said}{was}{note}"
         written = f"define {definition.head} = {last.text}"
         if len(written) > WIDTH:
             meaning = "\n  ".join(formula_lines(last.text, WIDTH - 2))
@@ -182,42 +223,45 @@ def _definitions_section(inherited: BookLineage) -> Iterator[Block]:
         yield fenced(written, "rulec")
 
 
-def _left_out_section(inherited: BookLineage, at: str) -> Iterator[Block]:
-    rows = list(_left_out(inherited, at))
+def _left_out_section(inherited: BookLineage, at: str, words: DocumentLanguage) -> Iterator[Block]:
+    rows = list(_left_out(inherited, at, words))
     if rows:
-        yield Heading(2, "What this rulebook leaves out")
-        yield table(["rule or topic", "what happened", "why"], rows)
+        yield Heading(2, words.say("What this rulebook leaves out"))
+        yield table([*map(words.say, ("rule or topic", "what happened", "why"))], rows)
 
 
-def _left_out(inherited: BookLineage, at: str) -> Iterator[list[str]]:
+def _left_out(inherited: BookLineage, at: str, words: DocumentLanguage) -> Iterator[list[str]]:
+    say = words.say
     for rule in inherited.rules:
         last = rule.last
         if last.deed == "dropped":
-            yield [code(rule.name), f"dropped by {code(last.book)}", escaped(last.because)]
+            yield [code(rule.name), say("dropped by {}", code(last.book)), escaped(last.because)]
         elif last.deed == "silent":
-            yield [code(rule.name), f"{code(last.book)} is silent on it", escaped(last.because)]
+            how = say("{} is silent on it", code(last.book))
+            yield [code(rule.name), how, escaped(last.because)]
         elif rule.rule is not None and not in_force(rule.rule.in_force, at):
             assert rule.rule.in_force is not None, "what has no dates is in force"
-            dates = print_in_force(rule.rule.in_force)
-            yield [code(rule.name), f"not in force on {at}", dates]
+            dates = rule.rule.in_force
+            when = say("in force {}", time_in_force(dates.since, dates.until, words))
+            yield [code(rule.name), say("not in force on {}", at), when]
 
 
-def _words_section(loaded: Loaded) -> Iterator[Block]:
-    rulebook = loaded.rulebook
+def _words_section(loaded: Loaded, words: DocumentLanguage) -> Iterator[Block]:
+    rulebook, say = loaded.rulebook, words.say
     used = used_declarations(rulebook)
     described = _descriptions(loaded)
     rows = [
-        [code(name), _about(word), _kind(word) + _marks(word), escaped(described.get(name, ""))]
-        for name, word in rulebook.vocabulary.declarations.items()
+        [code(name), _about(item, words), _kind(item, words), escaped(described.get(name, ""))]
+        for name, item in rulebook.vocabulary.declarations.items()
         if name in used
     ]
     if rows:
-        yield Heading(2, "Vocabulary")
-        yield "What the rules speak of, and what it can be; the default is in parentheses."
-        yield table(["word", "is about", "what it can be", "description"], rows)
+        yield Heading(2, say("Vocabulary"))
+        yield say("What the rules speak of, and what it can be; the default is in parentheses.")
+        yield table([*map(say, ("word", "is about", "what it can be", "description"))], rows)
     if rulebook.axioms:
-        yield Heading(2, "What always holds")
-        yield "Whatever the rules say, this is so in every state:"
+        yield Heading(2, say("What always holds"))
+        yield say("Whatever the rules say, this is so in every state:")
         axioms = [f"fact {formula_text(axiom.formula)}" for axiom in rulebook.axioms]
         yield fenced("\n".join(axioms), "rulec")
 
@@ -234,24 +278,25 @@ def _descriptions(loaded: Loaded) -> Mapping[str, str]:
     return result
 
 
-def _about(item: Declaration) -> str:
-    types = " and ".join(code(spoken(parameter)) for parameter in item.parameters)
-    return f"every {types}" if types else "the world"
+def _about(item: Declaration, words: DocumentLanguage) -> str:
+    types = words.say(" and ").join(code(spoken(parameter)) for parameter in item.parameters)
+    return words.say("every {}", types) if types else words.say("the world")
 
 
-def _marks(item: Declaration) -> str:
-    """What else is declared of it, behind its values."""
-    said = {"never changes": item.constant, "presumed": item.presumed}
-    return "".join(f"; {mark}" for mark, holds in said.items() if holds)
+def _kind(item: Declaration, words: DocumentLanguage) -> str:
+    """What a word can be, and what else is declared of it."""
+    said = {"; never changes": item.constant, "; presumed": item.presumed}
+    return _values_of(item, words) + "".join(words.say(x) for x, holds in said.items() if holds)
 
 
-def _kind(item: Declaration) -> str:
+def _values_of(item: Declaration, words: DocumentLanguage) -> str:
     match item:
         case Enumeration(values=values, default=default):
             shown = [f"({code(value)})" if value == default else code(value) for value in values]
-            return f"one of {listed(shown)}"
+            return words.say("one of {}", listed(shown, words.language))
         case Signal(default=default):
-            return {None: "yes or no", True: "(yes) or no", False: "yes or (no)"}[default]
+            texts = {None: "yes or no", True: "(yes) or no", False: "yes or (no)"}
+            return words.say(texts[default])
         case Quantity(unit=unit, default=default):
             usual = "" if default is None else f" ({repr(default).removesuffix('.0')})"
-            return f"a number of {code(unit)}{usual}"
+            return words.say("a number of {}", code(unit)) + words.language.decimals(usual)

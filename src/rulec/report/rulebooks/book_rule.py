@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import unified_diff
 from textwrap import wrap
+from typing import TypeAlias
 
 from rulec.analysis.lineage.rule_lineage import BookLineage, RuleHistory
 from rulec.logic.bounds import has_seconds
-from rulec.logic.english.sentence import Phrase
-from rulec.logic.english.sentence_layout import lines
-from rulec.logic.english.wording import amount, listed, number_text, spoken
 from rulec.logic.printing import formula_text
+from rulec.logic.sentences.language import Language
+from rulec.logic.sentences.sentence import Phrase
+from rulec.logic.sentences.sentence_layout import lines
+from rulec.logic.sentences.wording import amount, listed, number_text, spoken
+from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage
 from rulec.report.rulebooks.rule_page import phrase_of, restrictions_of
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
 from rulec.rulebook.rulebook_model import Example, Rule, Rulebook
 from rulec.syntax import tree
-from rulec.syntax.tree_printer import clauses_of, print_in_force
+from rulec.syntax.tree_printer import clauses_of
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
 WIDTH = 84
@@ -37,77 +40,114 @@ NOTHING = "–"
 _FORMULAS = ("when", "require", "unless")
 
 
-def rule_heading(rule: Rule) -> str:
+ExamplePicture: TypeAlias = Callable[[Example, Rule], str]
+"""The address of an image of a rule's example, as data; empty if there is nothing to draw."""
+
+
+def rule_heading(rule: Rule, words: DocumentLanguage) -> str:
     """The heading of its section."""
-    return f"{rule.name} ({rule.cite})" if rule.cite else rule.name
+    title = words.title(rule.name)
+    return f"{title} ({rule.cite})" if rule.cite else title
 
 
-def rule_section(rule: Rule, inherited: BookLineage, rulebook: Rulebook) -> Iterator[Block]:
+def time_in_force(since: str | None, until: str | None, words: DocumentLanguage) -> str:
+    """``from DATE until DATE``; empty if always."""
+    begins = words.say("from {}", since) if since else ""
+    ends = words.say("until {}", until) if until else ""
+    return f"{begins} {ends}".strip()
+
+
+def rule_section(
+    rule: Rule,
+    inherited: BookLineage,
+    rulebook: Rulebook,
+    words: DocumentLanguage,
+    picture: ExamplePicture | None,
+) -> Iterator[Block]:
     """The section on a rule of the rulebook at a chain's end."""
+    say = words.say
     book, vocabulary = inherited.book, rulebook.vocabulary
     history = next(history for history in inherited.rules if history.name == rule.name)
     laws = {book.name: book.law or book.title or book.name for book in inherited.books}
-    elsewhere = "" if history.cited_by == book else f" of: {laws[history.cited_by]}"
-    yield Heading(3, rule_heading(rule))
+    elsewhere = "" if history.cited_by == book else say(" of: {}", laws[history.cited_by])
+    yield Heading(3, rule_heading(rule, words))
     if rule.says:
         yield f"> {escaped(rule.says)}"
-    facts = _facts(rule, history, inherited, elsewhere)
-    titles = [escaped(topic.title) for topic in rulebook.topics if topic.name in rule.topics]
-    topics = [("Topic", listed(titles))] if titles else []
+    facts = _facts(rule, history, inherited, (elsewhere, words))
+    titles = [
+        escaped(words.topics.get(topic.name, topic.title))
+        for topic in rulebook.topics
+        if topic.name in rule.topics
+    ]
+    topics = [(say("Topic"), listed(titles, words.language))] if titles else []
     yield "\n".join(f"- **{name}:** {text}" for name, text in (*facts, *topics))
-    yield Heading(4, "In plain English")
-    for phrase in (phrase_of(rule, vocabulary), *restrictions_of(rule)):
-        yield _sentence(phrase)
-    yield Heading(4, "Formula")
-    yield from _formula(rule, history.rule)
-    yield Heading(4, "Examples")
+    yield Heading(4, say("In plain English"))
+    language = words.language
+    for phrase in (phrase_of(rule, vocabulary, language), *restrictions_of(rule, language)):
+        yield _sentence(phrase, language)
+    yield Heading(4, say("Formula"))
+    yield from _formula(rule, history.rule, words)
+    yield Heading(4, say("Examples"))
     if not rule.examples:
-        yield "None."
+        yield say("None.")
     elif has_seconds(rule.formula):
-        yield f"The states are {amount(rule.step_s, 's')} apart."
+        yield say("The states are {} apart.", amount(rule.step_s, "s", language))
     for number, example in enumerate(rule.examples, 1):
-        yield from _example(example, number, vocabulary)
+        drawn = "" if picture is None else picture(example, rule)
+        yield from _example(example, (number, drawn), vocabulary, words)
     base = history.before(book)
     if (
         history.last.deed in ("overridden", "confirmed")
         and history.last.book == book
         and base is not None
     ):
-        yield Heading(4, f"What differs from {history.steps[-2].book}")
-        yield from _difference(base, history)
+        yield Heading(4, say("What differs from {}", history.steps[-2].book))
+        yield from _difference(base, history, words)
 
 
 def _facts(
-    rule: Rule, history: RuleHistory, inherited: BookLineage, elsewhere: str
+    rule: Rule,
+    history: RuleHistory,
+    inherited: BookLineage,
+    told: tuple[str, DocumentLanguage],
 ) -> Iterator[tuple[str, str]]:
-    open_law = "; inherited, not confirmed" if rule.inherited_from else ""
-    cited = f"{rule.cite}{elsewhere}" if rule.cite else "none is cited"
-    yield "Provision", escaped(f"{cited}{open_law}")
+    elsewhere, words = told
+    say, language = words.say, words.language
+    open_law = say("; inherited, not confirmed") if rule.inherited_from else ""
+    cited = f"{rule.cite}{elsewhere}" if rule.cite else say("none is cited")
+    yield say("Provision"), escaped(f"{cited}{open_law}")
+    yield say("Rule"), code(rule.name)
     hard = rule.strength == "hard"
-    weight = f"; weight {number_text(rule.weight)}" if not hard or rule.weight != 1 else ""
+    weight = ""
+    if not hard or rule.weight != 1:
+        weight = say("; weight {}", number_text(rule.weight, language))
     kind = "hard, it must never be violated" if hard else "soft, it may yield"
-    yield "Kind of rule", f"{kind}{weight}"
+    yield say("Kind of rule"), f"{say(kind)}{weight}"
     if rule.level:
-        yield "Level", code(rule.level)
-    objects = [f"every {spoken(item.type)} {code(item.name)}" for item in rule.variables]
-    yield "Speaks of", listed(objects) if objects else "the road user in question and the world"
-    of_whose = f"; that is {rule.inherited_from}'s" if rule.inherited_from else ""
-    yield "Certainty", escaped(f"{CERTAINTY[rule.certainty]}{of_whose}")
+        yield say("Level"), code(rule.level)
+    objects = [
+        f"{language.type_of(item.type, spoken(item.type)).every} {code(item.name)}"
+        for item in rule.variables
+    ]
+    nobody = say("the road user in question and the world")
+    yield say("Speaks of"), listed(objects, language) if objects else nobody
+    of_whose = say("; that is {}'s", rule.inherited_from) if rule.inherited_from else ""
+    yield say("Certainty"), escaped(f"{say(CERTAINTY[rule.certainty])}{of_whose}")
     if rule.source:
-        yield "Read in", linked(rule.source)
+        yield say("Read in"), linked(rule.source)
     if rule.in_force_from or rule.in_force_until:
-        dates = print_in_force(tree.InForce(rule.in_force_from, rule.in_force_until))
-        yield "In force", dates.removeprefix("in force ")
-    yield "Origin", escaped(provenance(history, inherited))
+        dates = time_in_force(rule.in_force_from, rule.in_force_until, words)
+        yield say("In force"), dates
+    yield say("Origin"), escaped(provenance(history, inherited, words))
 
 
-def _sentence(phrase: Phrase) -> str:
-    first, *rest = lines(phrase)
+def _sentence(phrase: Phrase, language: Language) -> str:
+    first, *rest = lines(phrase, language)
     items = [f"{'  ' * (line.depth - 1)}- {line.label} {escaped(line.text)}" for line in rest]
     return escaped(first.text) + ("\n\n" + "\n".join(items) if items else "")
 
 
-def _formula(rule: Rule, written: tree.RuleItem | None) -> Iterator[str]:
+def _formula(rule: Rule, written: tree.RuleItem | None, words: DocumentLanguage) -> Iterator[str]:
     clauses = [] if written is None else clauses_of(written)
     original = [(word, text) for word, text in clauses if word in _FORMULAS]
     expanded = [] if rule.condition is None else [("when", formula_text(rule.condition))]
@@ -118,7 +158,7 @@ def _formula(rule: Rule, written: tree.RuleItem | None) -> Iterator[str]:
     ]
     yield _fenced(original)
     if original != expanded:
-        yield "With definitions, options and parameters put in:"
+        yield words.say("With definitions, options and parameters put in:")
         yield _fenced(expanded)
 
 
@@ -133,20 +173,32 @@ def _clause(word: str, text: str) -> list[str]:
     return wrap(shown, WIDTH, subsequent_indent="  ", break_long_words=False)
 
 
-def _example(example: Example, number: int, vocabulary: Vocabulary) -> Iterator[str]:
-    word = "allowed ✔" if example.accepts else "forbidden ✘"
+def _example(
+    example: Example, told: tuple[int, str], vocabulary: Vocabulary, words: DocumentLanguage
+) -> Iterator[str]:
+    say, language = words.say, words.language
+    number, drawn = told
+    verdict = say("allowed ✔") if example.accepts else say("forbidden ✘")
     name = f" ({escaped(example.label)})" if example.label else ""
-    objects = [f"{code(object_.name)}, a {spoken(object_.type)}" for object_ in example.objects]
-    there = f" Also there: {listed(objects)}." if objects else ""
-    yield f"**Example {number}{name}: {word}**{there}"
-    rows = [[*map(escaped, row)] for row in example_rows(example, vocabulary)]
+    objects = [
+        f"{code(item.name)}, {language.type_of(item.type, spoken(item.type)).one}"
+        for item in example.objects
+    ]
+    there = say(" Also there: {}.", listed(objects, language)) if objects else ""
+    title = say("Example {}{}: {}", number, name, verdict)
+    yield f"**{title}**{there}"
+    if drawn:
+        yield f"![{title.replace('[', '(').replace(']', ')')}]({drawn})"
+    rows = [[*map(escaped, row)] for row in example_rows(example, vocabulary, words)]
     if rows:
-        yield table(["state", *map(str, range(len(example.states)))], rows)
+        yield table([say("state"), *map(str, range(len(example.states)))], rows)
     else:
-        yield "Nothing is mentioned: everything has its default."
+        yield say("Nothing is mentioned: everything has its default.")
 
 
-def example_rows(example: Example, vocabulary: Vocabulary) -> Iterator[list[str]]:
+def example_rows(
+    example: Example, vocabulary: Vocabulary, words: DocumentLanguage = IN_ENGLISH
+) -> Iterator[list[str]]:
     """A row for each subject, in order of mention: its value in each state.
 
     A value in parentheses is a default: the state does not mention it.
@@ -154,29 +206,34 @@ def example_rows(example: Example, vocabulary: Vocabulary) -> Iterator[list[str]
     for name, objects in dict.fromkeys(key for state in example.states for key in state):
         item = vocabulary.declarations[name]
         unit = f", {item.unit}" if isinstance(item, Quantity) else ""
-        of = f" of {listed(objects)}" if objects else ""
-        default = NOTHING if item.default is None else f"({_value(item, item.default)})"
+        about = spoken(name)
+        if objects:
+            about = words.say("{} of {}", about, listed(objects, words.language))
+        default = NOTHING if item.default is None else f"({_value(item, item.default, words)})"
         values = [state.get((name, objects)) for state in example.states]
-        cells = [default if value is None else _value(item, value) for value in values]
-        yield [f"{spoken(name)}{of}{unit}", *cells]
+        cells = [default if value is None else _value(item, value, words) for value in values]
+        yield [f"{about}{unit}", *cells]
 
 
-def _value(item: Declaration, value: bool | str | float) -> str:
+def _value(item: Declaration, value: bool | str | float, words: DocumentLanguage) -> str:
     match item, value:
         case Signal(), _:
-            return "yes" if value else "no"
+            return words.say("yes") if value else words.say("no")
         case Enumeration(), _:
             return spoken(str(value))
         case _:
-            return repr(float(value)).removesuffix(".0")
+            return words.language.decimals(repr(float(value)).removesuffix(".0"))
 
 
-def _difference(base: tree.RuleItem, history: RuleHistory) -> Iterator[str]:
+def _difference(
+    base: tree.RuleItem, history: RuleHistory, words: DocumentLanguage
+) -> Iterator[str]:
     assert history.rule is not None, "an overridden rule is there"
     before, after = _by_word(base), _by_word(history.rule)
     changed = [word for word in {**before, **after} if before.get(word) != after.get(word)]
     clauses = history.last.clauses
-    yield f"Changed: {listed(clauses)}." if clauses else "Nothing: it says the same again."
+    same = words.say("Nothing: it says the same again.")
+    yield words.say("Changed: {}.", listed(clauses, words.language)) if clauses else same
     if changed:
         old = [line for word in changed for line in before.get(word, [])]
         new = [line for word in changed for line in after.get(word, [])]

@@ -23,10 +23,10 @@ def render(diff: RulebookDiff, output_format: str) -> str:
             return as_json(diff)
         case "html":
             # markdown-it and Pygments take 0.1 s.
-            from rulec.report.text.html_page import as_html
+            from rulec.report.text.html_page import PageTexts, as_html
 
             title = f"{diff.first.name} compared to {diff.second.name}"
-            return as_html(_as_markdown(diff), title, "")
+            return as_html(_as_markdown(diff), PageTexts(title))
         case "markdown":
             return _as_markdown(diff)
         case "csv":

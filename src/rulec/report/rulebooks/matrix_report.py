@@ -82,9 +82,9 @@ def render(matrix: ComparisonMatrix, output_format: str) -> str:
             return _as_markdown(matrix)
         case "html":
             # markdown-it and Pygments take 0.1 s.
-            from rulec.report.text.html_page import as_html
+            from rulec.report.text.html_page import PageTexts, as_html
 
-            return as_html(_as_markdown(matrix), TITLE, "")
+            return as_html(_as_markdown(matrix), PageTexts(TITLE))
         case _:
             return _as_text(matrix)
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from msgspec import UNSET, UnsetType
 from msgspec.structs import replace
 
-from rulec.logic.english.sentence_layout import in_one_line
 from rulec.logic.printing import formula_text
+from rulec.logic.sentences.sentence_layout import in_one_line
 from rulec.report.automata.automaton_model import Fate, Transition
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.rulebooks.rule_page import RulePage, ShortestTrace, phrase_of, restrictions_of

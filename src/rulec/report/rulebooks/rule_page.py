@@ -8,13 +8,15 @@ from fractions import Fraction
 from textwrap import wrap
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.logic.english.sentence import Phrase, Shape, condition, exemption, sentence
-from rulec.logic.english.sentence_layout import lines
-from rulec.logic.english.wording import amount, number_text, plural, spoken
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Constant, Unary, UnaryOperator
 from rulec.logic.free_names import names_in
 from rulec.logic.printing import formula_text
+from rulec.logic.sentences.english import ENGLISH, plural
+from rulec.logic.sentences.language import Language
+from rulec.logic.sentences.sentence import Phrase, Shape, condition, exemption, sentence
+from rulec.logic.sentences.sentence_layout import lines
+from rulec.logic.sentences.wording import amount, number_text, spoken
 from rulec.report.automata import automaton_text
 from rulec.report.automata.automaton_model import Automaton, automaton_of
 from rulec.report.text.formula_lines import formula_lines
@@ -85,19 +87,20 @@ def _remarks(trace: WitnessTrace) -> Iterator[str]:
             )
 
 
-def phrase_of(rule: Rule, vocabulary: Vocabulary) -> Phrase:
+def phrase_of(rule: Rule, vocabulary: Vocabulary, language: Language = ENGLISH) -> Phrase:
     """The rule as a sentence, without its exceptions."""
     return sentence(
         fold_constants(rule.required or rule.formula),
         [(variable.name, variable.type) for variable in rule.variables],
         lambda one, other: vocabulary.is_subtype(one, other) or vocabulary.is_subtype(other, one),
+        language,
     )
 
 
-def restrictions_of(rule: Rule) -> list[Phrase]:
+def restrictions_of(rule: Rule, language: Language = ENGLISH) -> list[Phrase]:
     """The rule's condition and exceptions as sentences, unless options exclude them."""
     phrases = [
-        exemption(formula, exemption_.scope)
+        exemption(formula, exemption_.scope, language)
         for exemption_ in rule.exemptions
         if (formula := fold_constants(exemption_.formula)) != Constant(False)
     ]
@@ -105,11 +108,10 @@ def restrictions_of(rule: Rule) -> list[Phrase]:
     if applies == Constant(True):
         return phrases
     if applies == Constant(False):
-        never = "it never counts, for its condition is false as options are set"
-        return [Phrase(never, Shape.CLAUSE)]
+        return [Phrase(language.counts_never, Shape.CLAUSE)]
     guarding = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
     guards = isinstance(rule.required, Unary) and rule.required.operator in guarding
-    return [condition(applies, guards=guards), *phrases]
+    return [condition(applies, language, guards=guards), *phrases]
 
 
 def _sentences(rule: Rule, vocabulary: Vocabulary, width: int) -> str:

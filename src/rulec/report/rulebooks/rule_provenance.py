@@ -3,33 +3,40 @@
 from __future__ import annotations
 
 from rulec.analysis.lineage.rule_lineage import BookLineage, LineageStep, RuleHistory
+from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage
 
 
-def provenance(rule_history: RuleHistory, inherited: BookLineage) -> str:
+def provenance(
+    rule_history: RuleHistory, inherited: BookLineage, words: DocumentLanguage = IN_ENGLISH
+) -> str:
     """Provenance of a rule in a chain's last book: own, inherited, overriding, gone; and why."""
+    say = words.say
     book, last = inherited.book, rule_history.last
-    open_law = ", not confirmed" if inherited.inherited_from(rule_history) else ""
-    because = f"{open_law}, because {last.because}" if last.because else open_law
+    open_law = say(", not confirmed") if inherited.inherited_from(rule_history) else ""
+    because = open_law + say(", because {}", last.because) if last.because else open_law
     here = last.book == book
     base = rule_history.steps[-2].book if len(rule_history.steps) > 1 else ""
+    clauses = _clauses(last, words)
     match last.deed:
         case "declared":
-            return "own" if here else f"inherited from {last.book}{because}"
+            return say("own") if here else say("inherited from {}", last.book) + because
         case "overridden" if here:
-            return f"overrides {base}: {_clauses(last)}{because}"
+            return say("overrides {}: {}", base, clauses) + because
         case "overridden":
-            return f"inherited from {last.book}, which overrides {base}: {_clauses(last)}{because}"
+            how = say("inherited from {}, which overrides {}: {}", last.book, base, clauses)
+            return how + because
         case "confirmed" if here:
-            return f"confirms {base}: {_clauses(last)}"
+            return say("confirms {}: {}", base, clauses)
         case "confirmed":
-            return f"inherited from {last.book}, which confirms {base}: {_clauses(last)}{because}"
+            how = say("inherited from {}, which confirms {}: {}", last.book, base, clauses)
+            return how + because
         case "softened":
-            return f"softened{'' if here else f' by {last.book}'}{because}"
+            return (say("softened") if here else say("softened by {}", last.book)) + because
         case "dropped":
-            return f"dropped{'' if here else f' by {last.book}'}{because}"
+            return (say("dropped") if here else say("dropped by {}", last.book)) + because
         case "silent":
-            return f"silent{'' if here else f', as {last.book} is'}{because}"
+            return (say("silent") if here else say("silent, as {} is", last.book)) + because
 
 
-def _clauses(step: LineageStep) -> str:
-    return ", ".join(step.clauses) if step.clauses else "nothing changes"
+def _clauses(step: LineageStep, words: DocumentLanguage) -> str:
+    return ", ".join(step.clauses) if step.clauses else words.say("nothing changes")

@@ -5,26 +5,32 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from rulec.logic.english.spoken_words import spoken_formula
+from rulec.logic.formula import Formula
+from rulec.logic.sentences.english import ENGLISH
+from rulec.logic.sentences.language import Language
+from rulec.logic.sentences.spoken_words import spoken_formula
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.rulebook.vocabulary_phrases import phrases_of
 
 
-def spoken_book(rulebook: Rulebook) -> Rulebook:
+def spoken_book(rulebook: Rulebook, language: Language = ENGLISH) -> Rulebook:
     """The rulebook with phrases in all that its rules require and except; they mean the same."""
-    phrases = phrases_of(rulebook)
+    phrases = phrases_of(rulebook, language.code)
     if not phrases:
         return rulebook
-    return replace(rulebook, rules=tuple(_spoken(rule, phrases) for rule in rulebook.rules))
+    return replace(
+        rulebook, rules=tuple(_spoken(rule, phrases, language) for rule in rulebook.rules)
+    )
 
 
-def _spoken(rule: Rule, phrases: Mapping[str, str]) -> Rule:
+def _spoken(rule: Rule, phrases: Mapping[str, str], language: Language) -> Rule:
+    def said(formula: Formula) -> Formula:
+        return spoken_formula(formula, phrases, language)
+
     return replace(
         rule,
-        formula=spoken_formula(rule.formula, phrases),
-        required=None if rule.required is None else spoken_formula(rule.required, phrases),
-        condition=None if rule.condition is None else spoken_formula(rule.condition, phrases),
-        exemptions=tuple(
-            replace(one, formula=spoken_formula(one.formula, phrases)) for one in rule.exemptions
-        ),
+        formula=said(rule.formula),
+        required=None if rule.required is None else said(rule.required),
+        condition=None if rule.condition is None else said(rule.condition),
+        exemptions=tuple(replace(one, formula=said(one.formula)) for one in rule.exemptions),
     )

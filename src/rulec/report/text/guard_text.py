@@ -10,8 +10,8 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics.phrases import any_of
-from rulec.logic.english.wording import comparison_text, number_text, terms_text
 from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm, Relation, atoms_of
+from rulec.logic.sentences.wording import comparison_text, number_text, terms_text
 from rulec.report.text.terminal_text import visible
 from rulec.rulebook.rulebook_model import ExampleState
 from rulec.vocabulary import Enumeration, Vocabulary

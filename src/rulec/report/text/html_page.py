@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
 from pathlib import Path
@@ -22,24 +23,34 @@ _STYLE = Path(__file__).with_name("html_page.css")
 _LEXERS: dict[str, type[Lexer]] = {"rulec": RulecLexer, "diff": DiffLexer}
 
 
-def as_html(markdown: str, title: str, contents: str) -> str:
+@dataclass(frozen=True, slots=True)
+class PageTexts:
+    """A page's title, the heading below which its list of contents stands, and its language."""
+
+    title: str
+    contents: str = ""
+    language: str = "en"
+
+
+def as_html(markdown: str, page: PageTexts, figures: Mapping[str, str] | None = None) -> str:
     """The page; HTML in the Markdown is shown as text.
 
-    ``contents`` is the heading below which the list of contents stands.
+    ``figures`` are the SVG elements that stand for images, by their addresses.
     """
     parser = MarkdownIt("commonmark", {"html": False, "highlight": _highlighted}).enable("table")
     tokens = parser.parse(markdown)
     _name_headings(tokens)
     _scope_cells(tokens)
-    body = parser.renderer.render(list(_wrapped(tokens, contents)), parser.options, {})
+    _draw_figures(tokens, figures or {})
+    body = parser.renderer.render(list(_wrapped(tokens, page.contents)), parser.options, {})
     return (
         "<!DOCTYPE html>\n"
-        '<html lang="en">\n'
+        f'<html lang="{page.language}">\n'
         "<head>\n"
         '<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<meta name="color-scheme" content="light dark">\n'
-        f"<title>{escape(title)}</title>\n"
+        f"<title>{escape(page.title)}</title>\n"
         f"<style>\n{_STYLE.read_text(encoding='utf-8')}</style>\n"
         "</head>\n"
         f"<body>\n<main>\n{body}</main>\n</body>\n"
@@ -76,6 +87,16 @@ def _scope_cells(tokens: Sequence[Token]) -> None:
             if token.type == "td_open":
                 token.attrSet("scope", "row")
             first = token.type == "td_open"
+
+
+def _draw_figures(tokens: Sequence[Token], figures: Mapping[str, str]) -> None:
+    for token in tokens:
+        for child in token.children or ():
+            svg = figures.get(str(child.attrGet("src"))) if child.type == "image" else None
+            if svg is not None:
+                child.type, child.tag = "html_inline", ""
+                name = f'<svg aria-label="{escape(child.content)}" '
+                child.content = svg.replace("<svg ", name, 1)
 
 
 def _wrapped(tokens: Sequence[Token], contents: str) -> Iterator[Token]:

@@ -8,7 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rulec.logic.english.sentence import Phrase, label
+from rulec.logic.sentences.english import ENGLISH
+from rulec.logic.sentences.language import Language
+from rulec.logic.sentences.sentence import Phrase, label
 
 _ROMAN = ((50, "l"), (40, "xl"), (10, "x"), (9, "ix"), (5, "v"), (4, "iv"), (1, "i"))
 
@@ -22,19 +24,20 @@ class Line:
     text: str
 
 
-def lines(phrase: Phrase) -> list[Line]:
+def lines(phrase: Phrase, language: Language = ENGLISH) -> list[Line]:
     """The sentence from its capital letter to its full stop."""
-    result = list(_lines(phrase, 0, "", "."))
+    result = list(_lines(phrase, (0, ""), ".", language.semicolon))
     first = result[0]
     return [Line(0, "", f"{first.text[:1].upper()}{first.text[1:]}"), *result[1:]]
 
 
-def in_one_line(phrase: Phrase) -> str:
+def in_one_line(phrase: Phrase, language: Language = ENGLISH) -> str:
     """The sentence as one line of text, labels included."""
-    return " ".join(f"{line.label} {line.text}".strip() for line in lines(phrase))
+    return " ".join(f"{line.label} {line.text}".strip() for line in lines(phrase, language))
 
 
-def _lines(phrase: Phrase, depth: int, own: str, end: str) -> Iterator[Line]:
+def _lines(phrase: Phrase, place: tuple[int, str], end: str, semicolon: str) -> Iterator[Line]:
+    depth, own = place
     labels = [_label(depth, index, own) for index in range(len(phrase.items))]
     text = phrase.text
     for index, label_ in enumerate(labels):
@@ -42,8 +45,9 @@ def _lines(phrase: Phrase, depth: int, own: str, end: str) -> Iterator[Line]:
     yield Line(depth, own, text if phrase.items else f"{text}{end}")
     for index, (one, item) in enumerate(zip(labels, phrase.items, strict=True)):
         left = len(labels) - index - 1
-        after = end if not left else f"; {phrase.joint}" if left == 1 and phrase.joint else ";"
-        yield from _lines(item, depth + 1, one, after)
+        joint = f" {phrase.joint}" if left == 1 and phrase.joint else ""
+        after = f"{semicolon}{joint}" if left else end
+        yield from _lines(item, (depth + 1, one), after, semicolon)
 
 
 def _label(depth: int, index: int, above: str) -> str:

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rulec.logic import formula as ltl
+from rulec.logic.sentences.english import ENGLISH
+from rulec.logic.sentences.language import Language
 
 _FORMS = re.compile(r"\[([^\]|]*)\|([^\]]*)\]")
-
-_JOINED = re.compile(r",| and | or ")
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,22 +28,28 @@ class SpokenQuantity(ltl.QuantityTerm):
     noun: str = ""
 
 
-def spoken_formula(formula: ltl.Formula, phrases: Mapping[str, str]) -> ltl.Formula:
+def spoken_formula(
+    formula: ltl.Formula, phrases: Mapping[str, str], language: Language = ENGLISH
+) -> ltl.Formula:
     """The same formula, its atoms and quantities with their phrases, as far as there are any.
 
     A phrase is such as ``ego [is|is not] behind {}``, that of a quantity a noun.
     """
+
+    def inside(operand: ltl.Formula) -> ltl.Formula:
+        return spoken_formula(operand, phrases, language)
+
     match formula:
         case ltl.Unary() | ltl.Binary():
-            return ltl.with_operands(formula, lambda operand: spoken_formula(operand, phrases))
+            return ltl.with_operands(formula, inside)
         case ltl.Comparison(terms):
-            spoken = tuple((factor, _spoken_term(term, phrases)) for factor, term in terms)
-            return replace(formula, terms=spoken)
+            spoken = [(factor, _spoken_term(term, phrases, language)) for factor, term in terms]
+            return replace(formula, terms=tuple(spoken))
         case ltl.Atom(name, arguments, value):
             phrase = phrases.get(value or name)
             if phrase is None:
                 return formula
-            affirmed, denied = (_with_objects(form, arguments) for form in forms(phrase))
+            affirmed, denied = (_with_objects(form, arguments, language) for form in forms(phrase))
             return SpokenAtom(name, arguments, value, affirmed, denied)
     return formula
 
@@ -53,17 +59,18 @@ def forms(phrase: str) -> tuple[str, str]:
     return _FORMS.sub(r"\1", phrase), _FORMS.sub(r"\2", phrase)
 
 
-def _spoken_term(term: ltl.Term, phrases: Mapping[str, str]) -> ltl.Term:
+def _spoken_term(term: ltl.Term, phrases: Mapping[str, str], language: Language) -> ltl.Term:
     if isinstance(term, ltl.Count):
-        return replace(term, body=spoken_formula(term.body, phrases))
+        return replace(term, body=spoken_formula(term.body, phrases, language))
     phrase = phrases.get(term.name)
     if phrase is None:
         return term
-    return SpokenQuantity(term.name, term.arguments, _with_objects(phrase, term.arguments))
+    noun = _with_objects(phrase, term.arguments, language)
+    return SpokenQuantity(term.name, term.arguments, noun)
 
 
-def _with_objects(text: str, arguments: tuple[str, ...]) -> str:
+def _with_objects(text: str, arguments: tuple[str, ...], language: Language) -> str:
     for argument in arguments:
         text = text.replace("{}", argument, 1)
     # Where clauses are joined, one that has an `and` of its own would be read as two.
-    return f"“{text}”" if _JOINED.search(text) else text
+    return language.quoted.format(text) if language.inner_joints.search(text) else text

@@ -1,0 +1,161 @@
+"""English."""
+
+from __future__ import annotations
+
+import re
+
+from rulec.logic.formula import BinaryOperator, UnaryOperator
+from rulec.logic.sentences.language import (
+    AdverbWords,
+    BinaryWords,
+    Language,
+    SpanWords,
+    TypeWords,
+)
+
+
+def plural(noun: str) -> str:
+    """The plural of a type's name, by the rules for regular nouns."""
+    if re.search(r"(s|x|ch|sh|z)$", noun):
+        return f"{noun}es"
+    return f"{noun[:-1]}ies" if re.search(r"[^aeiou]y$", noun) else f"{noun}s"
+
+
+ENGLISH = Language(
+    code="en",
+    quoted="“{}”",
+    inner_joints=re.compile(r",| and | or "),
+    no_pause_after=("that", "which", ","),
+    runs_on=("it ", "there "),
+    and_="and",
+    or_="or",
+    then="then",
+    the_name="the {}",
+    the_name_of="the {} of {}",
+    value=("{} is “{}”", "{} is not “{}”"),
+    atom=("“{}” holds", "“{}” does not hold"),
+    atom_of=("“{}” holds of {}", "“{}” does not hold of {}"),
+    truth=("“{}” is true", "“{}” is not true"),
+    truth_names=("true", "false"),
+    same=("{} is the same as {}", "{} is not the same as {}"),
+    relations={
+        "<": ("{} is less than {}", "{} is not less than {}"),
+        "<=": ("{} is at most {}", "{} is not at most {}"),
+        "=": ("{} is exactly {}", "{} is not exactly {}"),
+        "!=": ("{} differs from {}", "{} does not differ from {}"),
+        ">=": ("{} is at least {}", "{} is not at least {}"),
+        ">": ("{} is more than {}", "{} is not more than {}"),
+    },
+    times="times",
+    counted={
+        "<": "fewer than {}",
+        "<=": "at most {}",
+        "=": "exactly {}",
+        "!=": "any number other than {}",
+        ">=": "at least {}",
+        ">": "more than {}",
+    },
+    there_is="there is {} {} for which",
+    there_is_no="there is {} {} for which",
+    there_are="there are {} {} for which",
+    type_words=TypeWords("every {}", "every other {}", "a {}", "no {}", "{}", "{}"),
+    plural=plural,
+    for_every="for {}: ",
+    step="step",
+    steps="steps",
+    span=SpanWords("{} or more", "up to {}", "from {} to {}", "exactly {}"),
+    later="later",
+    after_start="after the start",
+    before="before",
+    lasting=SpanWords("for at least {}", "for at most {}", "for {} to {}", "for exactly {}"),
+    at_start="{} at the start",
+    there_at_start="at the start {}",
+    stretches={
+        "initially": "at the start of the trace",
+        "at start": "at the start of the stretch that the rule guards",
+        "throughout": "throughout the stretch that the rule guards",
+        "at some point": "at some point of the stretch that the rule guards",
+        "at end": "at the end of the stretch that the rule guards",
+    },
+    exempt="it does not count if, {},",
+    counts_only="it counts only if, {},",
+    counts_never="it never counts, for its condition is false as options are set",
+    not_so="it is not the case that",
+    adverbs={
+        UnaryOperator.ALWAYS: AdverbWords(
+            "from that time on always", "at all times", "at all times {}"
+        ),
+        UnaryOperator.NEVER: AdverbWords(
+            "from that time on it never happens that",
+            "it never happens that",
+            "at no time {} does it happen that",
+        ),
+        UnaryOperator.EVENTUALLY: AdverbWords(
+            "at that time or later", "at some time", "at some time {}"
+        ),
+        UnaryOperator.NEXT: AdverbWords("at the next moment", "at the next moment", "{}"),
+        UnaryOperator.WEAK_NEXT: AdverbWords(
+            "at the next moment, if there is one,",
+            "at the next moment, if there is one,",
+            "{}, if the trace lasts that long,",
+        ),
+        UnaryOperator.ONCE: AdverbWords(
+            "at that time or before", "at the start or before", "at some time {}"
+        ),
+        UnaryOperator.HISTORICALLY: AdverbWords(
+            "up to that time always", "up to the start always", "at all times {}"
+        ),
+        UnaryOperator.PREVIOUSLY: AdverbWords("at the moment before", "at the moment before", "{}"),
+        UnaryOperator.WEAK_PREVIOUSLY: AdverbWords(
+            "at the moment before, if there was one,",
+            "at the moment before, if there was one,",
+            "{}, if the trace had begun,",
+        ),
+    },
+    binary={
+        BinaryOperator.UNTIL: BinaryWords(
+            "{left} until, sooner or later, {right}",
+            "{left} until, at some time {span}, {right}",
+            "{left} until, at some time {span}, {right}",
+        ),
+        BinaryOperator.WEAK_UNTIL: BinaryWords(
+            "{left} for ever, or only until, at some time, {right}",
+            "{left} at all times {first}, or only until, at some time {span}, {right}",
+            "{left} for ever, or only until, at some time {span}, {right}",
+        ),
+        BinaryOperator.RELEASE: BinaryWords(
+            "unless released before by a moment at which {left}, at all times {right}",
+            "unless released before by a moment at which {left}, at all times {span} {right}",
+            "unless released before by a moment at which {left}, at all times {span} {right}",
+        ),
+        BinaryOperator.STRONG_RELEASE: BinaryWords(
+            "unless released before by a moment, which must come, at which {left}, at all times "
+            "{right}",
+            "unless released before by a moment, which must come {first}, at which {left}, at all "
+            "times {span} {right}",
+            "unless released before by a moment, which must come, at which {left}, at all times "
+            "{span} {right}",
+        ),
+        BinaryOperator.SINCE: BinaryWords(
+            "{left} ever since {right}",
+            "{left} ever since a moment {span} at which {right}",
+            "{left} ever since a moment {span} at which {right}",
+        ),
+    },
+    iff="{} if and only if {}",
+    xor="either {} or {}, but not both",
+    implies="if {}, then {}",
+    where="{}, where:",
+    either="either {}",
+    both="both {}",
+    all_="all of this is so: {}",
+    both_of="both of these hold:",
+    all_of="all of these hold:",
+    one_of="at least one of these holds:",
+    phase_line="without a break first{}",
+    phase=" {}",
+    phase_joint=", then",
+    lasting_phase=" {} {}",
+    lasting_item="{}: {}",
+    phases="these phases follow one another without a break, each for at least one moment:",
+)

@@ -1,0 +1,168 @@
+"""French. Phrases are main clauses, so that they stand behind a colon."""
+
+from __future__ import annotations
+
+import re
+
+from rulec.logic.formula import BinaryOperator, UnaryOperator
+from rulec.logic.sentences.language import (
+    AdverbWords,
+    BinaryWords,
+    Language,
+    SpanWords,
+    TypeWords,
+)
+
+FRENCH = Language(
+    code="fr",
+    semicolon=" ;",
+    decimal_mark=",",
+    quoted="« {} »",
+    inner_joints=re.compile(r",| et | ou "),
+    no_pause_after=(" :", ","),
+    runs_on=(),
+    and_="et",
+    or_="ou",
+    then="puis",
+    the_name="« {} »",
+    the_name_of="« {} » de {}",
+    value=("{} est « {} »", "{} n'est pas « {} »"),
+    atom=("« {} » est vrai", "« {} » n'est pas vrai"),
+    atom_of=("« {} » est vrai de {}", "« {} » n'est pas vrai de {}"),
+    truth=("la relation « {} » est vraie", "la relation « {} » n'est pas vraie"),
+    truth_names=("vrai", "faux"),
+    same=("{} est le même que {}", "{} n'est pas le même que {}"),
+    relations={
+        "<": ("{} est de moins de {}", "{} n'est pas de moins de {}"),
+        "<=": ("{} est d'au plus {}", "{} n'est pas d'au plus {}"),
+        "=": ("{} est exactement de {}", "{} n'est pas exactement de {}"),
+        "!=": ("{} diffère de {}", "{} ne diffère pas de {}"),
+        ">=": ("{} est d'au moins {}", "{} n'est pas d'au moins {}"),
+        ">": ("{} est de plus de {}", "{} n'est pas de plus de {}"),
+    },
+    times="fois",
+    counted={
+        "<": "moins de {}",
+        "<=": "au plus {}",
+        "=": "exactement {}",
+        "!=": "un nombre autre que {}",
+        ">=": "au moins {}",
+        ">": "plus de {}",
+    },
+    there_is="il y a {} {} avec ceci :",
+    there_is_no="il n'y a {} {} avec ceci :",
+    there_are="il y a {} {} avec ceci :",
+    type_words=TypeWords(
+        "tout objet « {} »",
+        "tout autre objet « {} »",
+        "un objet « {} »",
+        "aucun objet « {} »",
+        "objet « {} »",
+        "objets « {} »",
+    ),
+    for_every="pour {} : ",
+    step="pas",
+    steps="pas",
+    span=SpanWords("{} ou davantage", "jusqu'à {}", "de {} à {}", "exactement {}"),
+    later="plus tard",
+    after_start="après le début",
+    before="auparavant",
+    lasting=SpanWords(
+        "pendant au moins {}", "pendant au plus {}", "pendant {} à {}", "pendant exactement {}"
+    ),
+    at_start="{} (au début)",
+    there_at_start="au début : {}",
+    stretches={
+        "initially": "au début du déroulement",
+        "at start": "au début de la partie que la règle protège",
+        "throughout": "pendant toute la partie que la règle protège",
+        "at some point": "à un moment de la partie que la règle protège",
+        "at end": "à la fin de la partie que la règle protège",
+    },
+    exempt="cela ne compte pas si, {} :",
+    counts_only="cela ne compte que si, {} :",
+    counts_never="cela ne compte jamais, car la condition est fausse avec ces options",
+    not_so="ceci n'est pas le cas :",
+    adverbs={
+        UnaryOperator.ALWAYS: AdverbWords(
+            "à partir de là, toujours :", "à tout moment :", "à tout moment {} :"
+        ),
+        UnaryOperator.NEVER: AdverbWords(
+            "à partir de là, jamais ceci :", "jamais ceci :", "à aucun moment {}, ceci :"
+        ),
+        UnaryOperator.EVENTUALLY: AdverbWords(
+            "à ce moment ou plus tard :", "à un moment :", "à un moment {} :"
+        ),
+        UnaryOperator.NEXT: AdverbWords("à l'instant suivant :", "à l'instant suivant :", "{} :"),
+        UnaryOperator.WEAK_NEXT: AdverbWords(
+            "à l'instant suivant, s'il y en a un :",
+            "à l'instant suivant, s'il y en a un :",
+            "{}, si le déroulement dure jusque-là :",
+        ),
+        UnaryOperator.ONCE: AdverbWords(
+            "à ce moment ou avant :", "au début ou avant :", "à un moment {} :"
+        ),
+        UnaryOperator.HISTORICALLY: AdverbWords(
+            "jusqu'à ce moment, toujours :", "jusqu'au début, toujours :", "à tout moment {} :"
+        ),
+        UnaryOperator.PREVIOUSLY: AdverbWords(
+            "à l'instant précédent :", "à l'instant précédent :", "{} :"
+        ),
+        UnaryOperator.WEAK_PREVIOUSLY: AdverbWords(
+            "à l'instant précédent, s'il y en avait un :",
+            "à l'instant précédent, s'il y en avait un :",
+            "{}, si le déroulement avait commencé :",
+        ),
+    },
+    binary={
+        BinaryOperator.UNTIL: BinaryWords(
+            "ceci : {left}, jusqu'à ce que, tôt ou tard, ceci : {right}",
+            "ceci : {left}, jusqu'à ce que, à un moment {span}, ceci : {right}",
+            "ceci : {left}, jusqu'à ce que, à un moment {span}, ceci : {right}",
+        ),
+        BinaryOperator.WEAK_UNTIL: BinaryWords(
+            "ceci : {left}, pour toujours, ou seulement jusqu'à ce que, à un moment, ceci : "
+            "{right}",
+            "ceci : {left}, à tout moment {first}, ou seulement jusqu'à ce que, à un moment "
+            "{span}, ceci : {right}",
+            "ceci : {left}, pour toujours, ou seulement jusqu'à ce que, à un moment {span}, "
+            "ceci : {right}",
+        ),
+        BinaryOperator.RELEASE: BinaryWords(
+            "sauf libération préalable par un instant avec ceci : {left}, à tout moment : {right}",
+            "sauf libération préalable par un instant avec ceci : {left}, à tout moment {span} : "
+            "{right}",
+            "sauf libération préalable par un instant avec ceci : {left}, à tout moment {span} : "
+            "{right}",
+        ),
+        BinaryOperator.STRONG_RELEASE: BinaryWords(
+            "sauf libération préalable par un instant, qui doit venir, avec ceci : {left}, à tout "
+            "moment : {right}",
+            "sauf libération préalable par un instant, qui doit venir {first}, avec ceci : "
+            "{left}, à tout moment {span} : {right}",
+            "sauf libération préalable par un instant, qui doit venir, avec ceci : {left}, à tout "
+            "moment {span} : {right}",
+        ),
+        BinaryOperator.SINCE: BinaryWords(
+            "ceci : {left}, depuis que ceci : {right}",
+            "ceci : {left}, depuis un instant {span} où ceci : {right}",
+            "ceci : {left}, depuis un instant {span} où ceci : {right}",
+        ),
+    },
+    iff="ceci : {}, si et seulement si ceci : {}",
+    xor="ou bien ceci : {}, ou bien ceci : {}, mais pas les deux",
+    implies="si ceci : {}, alors ceci : {}",
+    where="{}, où :",
+    either="au moins l'un de ceux-ci : {}",
+    both="les deux à la fois : {}",
+    all_="tout cela : {}",
+    both_of="ces deux choses sont vraies :",
+    all_of="toutes ces choses sont vraies :",
+    one_of="au moins une de ces choses est vraie :",
+    phase_line="sans interruption d'abord{}",
+    phase=" : {}",
+    phase_joint=", puis",
+    lasting_phase=" {} : {}",
+    lasting_item="{} : {}",
+    phases="ces phases se suivent sans interruption, chacune pendant au moins un instant :",
+)

@@ -1,0 +1,166 @@
+"""German. Phrases are main clauses, so that they stand behind a colon."""
+
+from __future__ import annotations
+
+import re
+
+from rulec.logic.formula import BinaryOperator, UnaryOperator
+from rulec.logic.sentences.language import (
+    AdverbWords,
+    BinaryWords,
+    Language,
+    SpanWords,
+    TypeWords,
+)
+
+GERMAN = Language(
+    code="de",
+    decimal_mark=",",
+    quoted="„{}“",
+    inner_joints=re.compile(r",| und | oder "),
+    no_pause_after=(":", ","),
+    runs_on=(),
+    and_="und",
+    or_="oder",
+    then="dann",
+    the_name="„{}“",
+    the_name_of="„{}“ von {}",
+    value=("{} ist „{}“", "{} ist nicht „{}“"),
+    atom=("„{}“ gilt", "„{}“ gilt nicht"),
+    atom_of=("„{}“ gilt für {}", "„{}“ gilt nicht für {}"),
+    truth=("„{}“ ist wahr", "„{}“ ist nicht wahr"),
+    truth_names=("wahr", "falsch"),
+    same=("{} ist dasselbe wie {}", "{} ist nicht dasselbe wie {}"),
+    relations={
+        "<": ("{} beträgt weniger als {}", "{} beträgt nicht weniger als {}"),
+        "<=": ("{} beträgt höchstens {}", "{} beträgt nicht höchstens {}"),
+        "=": ("{} beträgt genau {}", "{} beträgt nicht genau {}"),
+        "!=": ("{} ist anders als {}", "{} ist nicht anders als {}"),
+        ">=": ("{} beträgt mindestens {}", "{} beträgt nicht mindestens {}"),
+        ">": ("{} beträgt mehr als {}", "{} beträgt nicht mehr als {}"),
+    },
+    times="mal",
+    counted={
+        "<": "weniger als {}",
+        "<=": "höchstens {}",
+        "=": "genau {}",
+        "!=": "irgendeine Anzahl außer {}",
+        ">=": "mindestens {}",
+        ">": "mehr als {}",
+    },
+    there_is="es gibt {} {}, sodass gilt:",
+    there_is_no="es gibt {} {}, sodass gilt:",
+    there_are="es gibt {} {}, sodass gilt:",
+    type_words=TypeWords(
+        "jedes Objekt der Art „{}“",
+        "jedes andere Objekt der Art „{}“",
+        "ein Objekt der Art „{}“",
+        "kein Objekt der Art „{}“",
+        "Objekt der Art „{}“",
+        "Objekte der Art „{}“",
+    ),
+    for_every="für {} gilt: ",
+    step="Schritt",
+    steps="Schritte",
+    span=SpanWords("{} oder mehr", "bis zu {}", "{} bis {}", "genau {}"),
+    later="später",
+    after_start="nach dem Beginn",
+    before="vorher",
+    lasting=SpanWords("mindestens {} lang", "höchstens {} lang", "{} bis {} lang", "genau {} lang"),
+    at_start="{} (am Beginn)",
+    there_at_start="am Beginn: {}",
+    stretches={
+        "initially": "am Beginn des Ablaufs",
+        "at start": "am Beginn des Abschnitts, den die Regel schützt,",
+        "throughout": "während des ganzen Abschnitts, den die Regel schützt,",
+        "at some point": "irgendwann in dem Abschnitt, den die Regel schützt,",
+        "at end": "am Ende des Abschnitts, den die Regel schützt,",
+    },
+    exempt="das zählt nicht, wenn {} gilt:",
+    counts_only="das zählt nur, wenn {} gilt:",
+    counts_never="das zählt nie, denn so, wie Optionen gesetzt sind, ist die Bedingung falsch",
+    not_so="Folgendes gilt nicht:",
+    adverbs={
+        UnaryOperator.ALWAYS: AdverbWords(
+            "von da an gilt immer:", "immer gilt:", "zu jeder Zeit {} gilt:"
+        ),
+        UnaryOperator.NEVER: AdverbWords(
+            "von da an kommt nie vor:", "nie kommt vor:", "zu keiner Zeit {} kommt vor:"
+        ),
+        UnaryOperator.EVENTUALLY: AdverbWords(
+            "dann oder später gilt:", "irgendwann gilt:", "irgendwann {} gilt:"
+        ),
+        UnaryOperator.NEXT: AdverbWords(
+            "im nächsten Augenblick gilt:", "im nächsten Augenblick gilt:", "{} gilt:"
+        ),
+        UnaryOperator.WEAK_NEXT: AdverbWords(
+            "im nächsten Augenblick, falls es ihn gibt, gilt:",
+            "im nächsten Augenblick, falls es ihn gibt, gilt:",
+            "{}, falls der Ablauf so lange dauert, gilt:",
+        ),
+        UnaryOperator.ONCE: AdverbWords(
+            "dann oder vorher galt:", "am Beginn oder vorher galt:", "irgendwann {} galt:"
+        ),
+        UnaryOperator.HISTORICALLY: AdverbWords(
+            "bis dahin galt immer:", "bis zum Beginn galt immer:", "zu jeder Zeit {} galt:"
+        ),
+        UnaryOperator.PREVIOUSLY: AdverbWords(
+            "im Augenblick davor galt:", "im Augenblick davor galt:", "{} galt:"
+        ),
+        UnaryOperator.WEAK_PREVIOUSLY: AdverbWords(
+            "im Augenblick davor, falls es ihn gab, galt:",
+            "im Augenblick davor, falls es ihn gab, galt:",
+            "{}, falls der Ablauf schon begonnen hatte, galt:",
+        ),
+    },
+    binary={
+        BinaryOperator.UNTIL: BinaryWords(
+            "es gilt: {left}, bis früher oder später gilt: {right}",
+            "es gilt: {left}, bis irgendwann {span} gilt: {right}",
+            "es gilt: {left}, bis irgendwann {span} gilt: {right}",
+        ),
+        BinaryOperator.WEAK_UNTIL: BinaryWords(
+            "es gilt: {left}, und zwar für immer oder nur, bis irgendwann gilt: {right}",
+            "es gilt: {left}, und zwar zu jeder Zeit {first} oder nur, bis irgendwann {span} gilt: "
+            "{right}",
+            "es gilt: {left}, und zwar für immer oder nur, bis irgendwann {span} gilt: {right}",
+        ),
+        BinaryOperator.RELEASE: BinaryWords(
+            "wenn nicht vorher ein Augenblick davon entbindet, in dem gilt: {left}, so gilt immer: "
+            "{right}",
+            "wenn nicht vorher ein Augenblick davon entbindet, in dem gilt: {left}, so gilt zu "
+            "jeder Zeit {span}: {right}",
+            "wenn nicht vorher ein Augenblick davon entbindet, in dem gilt: {left}, so gilt zu "
+            "jeder Zeit {span}: {right}",
+        ),
+        BinaryOperator.STRONG_RELEASE: BinaryWords(
+            "wenn nicht vorher ein Augenblick davon entbindet, der kommen muss und in dem gilt: "
+            "{left}, so gilt immer: {right}",
+            "wenn nicht vorher ein Augenblick davon entbindet, der {first} kommen muss und in dem "
+            "gilt: {left}, so gilt zu jeder Zeit {span}: {right}",
+            "wenn nicht vorher ein Augenblick davon entbindet, der kommen muss und in dem gilt: "
+            "{left}, so gilt zu jeder Zeit {span}: {right}",
+        ),
+        BinaryOperator.SINCE: BinaryWords(
+            "es gilt: {left}, und zwar seitdem galt: {right}",
+            "es gilt: {left}, und zwar seit einem Augenblick {span}, in dem galt: {right}",
+            "es gilt: {left}, und zwar seit einem Augenblick {span}, in dem galt: {right}",
+        ),
+    },
+    iff="genau dann gilt: {}, wenn gilt: {}",
+    xor="entweder gilt: {}, oder es gilt: {}, aber nicht beides",
+    implies="wenn gilt: {}, dann gilt: {}",
+    where="{}, wobei:",
+    either="mindestens eines davon: {}",
+    both="beides: {}",
+    all_="all das: {}",
+    both_of="beides gilt:",
+    all_of="all das gilt:",
+    one_of="mindestens eines davon gilt:",
+    phase_line="lückenlos zuerst{}",
+    phase=": {}",
+    phase_joint=", dann",
+    lasting_phase=" {}: {}",
+    lasting_item="{}: {}",
+    phases="diese Phasen folgen lückenlos aufeinander, jede mindestens einen Augenblick lang:",
+)

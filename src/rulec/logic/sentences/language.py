@@ -1,0 +1,171 @@
+"""The words and patterns that the sentences of a language are made of."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Literal, TypeAlias
+
+from rulec.logic.formula import BinaryOperator, Relation, UnaryOperator
+from rulec.logic.printing import number_in_words
+
+Pair: TypeAlias = tuple[str, str]
+"""What is said where something holds, and where it does not."""
+
+_MOST_PLACES = 12
+"""A number with more decimal places is written as a fraction."""
+
+_DECIMAL_POINT = re.compile(r"(?<=\d)\.(?=\d)")
+
+
+@dataclass(frozen=True, slots=True)
+class TypeWords:
+    """How sentences speak of the objects of a type.
+
+    ``every`` one, every ``other`` one, ``one``, ``none``; ``noun`` and ``plural`` after a number.
+    """
+
+    every: str
+    other: str
+    one: str
+    none: str
+    noun: str
+    plural: str
+
+
+@dataclass(frozen=True, slots=True)
+class SpanWords:
+    """How long something is: at least, at most, between two, exactly."""
+
+    at_least: str
+    at_most: str
+    between: str
+    exactly: str
+
+
+@dataclass(frozen=True, slots=True)
+class AdverbWords:
+    """Words before what holds at other times.
+
+    ``inside`` where these are seen from a time that was named before, ``outside`` where from the
+    start of the trace, ``bounded`` with a span.
+    """
+
+    inside: str
+    outside: str
+    bounded: str
+
+
+@dataclass(frozen=True, slots=True)
+class BinaryWords:
+    """Patterns of an operator of time with a left and a right side.
+
+    ``endless`` where its bound has no end.
+    """
+
+    plain: str
+    bounded: str
+    endless: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Language:
+    """The words and patterns of a language; ``{}`` is what stands in its place.
+
+    After a lead that ends with one of ``no_pause_after``, and before what begins with one of
+    ``runs_on``, there is no comma.
+    """
+
+    code: str
+    semicolon: str = ";"
+    decimal_mark: Literal[".", ","] = "."
+    quoted: str
+    inner_joints: re.Pattern[str]
+    """What a phrase has that cannot stand in a list of clauses without quotation marks."""
+    no_pause_after: tuple[str, ...]
+    runs_on: tuple[str, ...]
+    and_: str
+    or_: str
+    then: str
+
+    the_name: str
+    the_name_of: str
+    value: Pair
+    atom: Pair
+    atom_of: Pair
+    truth: Pair
+    truth_names: Pair
+    same: Pair
+    relations: Mapping[Relation, Pair]
+    times: str
+
+    counted: Mapping[Relation, str]
+    there_is: str
+    there_is_no: str
+    there_are: str
+    type_words: TypeWords
+    plural: Callable[[str], str] = str
+    types: Mapping[str, TypeWords] = field(default_factory=dict)
+    for_every: str
+
+    step: str
+    steps: str
+    span: SpanWords
+    later: str
+    after_start: str
+    before: str
+    lasting: SpanWords
+
+    at_start: str
+    there_at_start: str
+    stretches: Mapping[str, str]
+    exempt: str
+    counts_only: str
+    counts_never: str
+    not_so: str
+    adverbs: Mapping[UnaryOperator, AdverbWords]
+    binary: Mapping[BinaryOperator, BinaryWords]
+    iff: str
+    xor: str
+    implies: str
+    where: str
+    either: str
+    both: str
+    all_: str
+    both_of: str
+    all_of: str
+    one_of: str
+    phase_line: str
+    phase: str
+    phase_joint: str
+    lasting_phase: str
+    lasting_item: str
+    phases: str
+
+    def number(self, value: Fraction) -> str:
+        """An exact number as a short decimal, or else a fraction."""
+        short = 10**_MOST_PLACES % value.denominator == 0
+        return self.decimals(number_in_words(value) if short else str(value))
+
+    def decimals(self, text: str) -> str:
+        """A text whose numbers have this language's decimal mark."""
+        if self.decimal_mark == ".":
+            return text
+        return _DECIMAL_POINT.sub(self.decimal_mark, text)
+
+    def type_of(self, name: str, noun: str) -> TypeWords:
+        """How to speak of a type, which is called by its ``noun`` if the language has no word."""
+        known = self.types.get(name)
+        if known is not None:
+            return known
+        own = self.type_words
+        return TypeWords(
+            own.every.format(noun),
+            own.other.format(noun),
+            own.one.format(noun),
+            own.none.format(noun),
+            own.noun.format(noun),
+            own.plural.format(self.plural(noun)),
+        )

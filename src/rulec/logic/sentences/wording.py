@@ -1,0 +1,199 @@
+"""Atoms, comparisons, bounds and operators of time as phrases of plain language."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Literal
+
+from rulec.logic.formula import (
+    Atom,
+    BinaryOperator,
+    Bound,
+    Comparison,
+    Count,
+    QuantityTerm,
+    Term,
+    UnaryOperator,
+)
+from rulec.logic.printing import term_text
+from rulec.logic.sentences.english import ENGLISH
+from rulec.logic.sentences.language import Language, SpanWords
+from rulec.logic.sentences.spoken_words import SpokenAtom, SpokenQuantity
+
+_SIGN = re.compile(r"<=|>=|!=|<|>|=")
+
+
+def number_text(value: Fraction, language: Language = ENGLISH) -> str:
+    """An exact number as a short decimal, or else a fraction."""
+    return language.number(value)
+
+
+def spoken(name: str) -> str:
+    """A name in spoken words: ``in_front_of`` becomes three, ``R_cw`` stays."""
+    several = re.fullmatch(r"[^\W\dA-Z_]+(_[^\W\dA-Z_]+)+", name)
+    return name.replace("_", " ") if several else name
+
+
+def listed(names: Sequence[str], language: Language = ENGLISH) -> str:
+    """``a``, ``a and b``, ``a, b and c``."""
+    return f" {language.and_} ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
+
+
+def of_objects(name: str, arguments: Sequence[str], language: Language = ENGLISH) -> str:
+    """``the station of v``, ``the surface``."""
+    if not arguments:
+        return language.the_name.format(spoken(name))
+    return language.the_name_of.format(spoken(name), listed(arguments, language))
+
+
+def atom_clause(atom: Atom, language: Language, *, holds: bool) -> str:
+    """A clause stating that the atom holds, or not."""
+    if isinstance(atom, SpokenAtom):
+        return atom.affirmed if holds else atom.denied
+    if atom.value is not None:
+        name = of_objects(atom.name, atom.arguments, language)
+        return language.value[not holds].format(name, spoken(atom.value))
+    if not atom.arguments:
+        return language.atom[not holds].format(spoken(atom.name))
+    of = listed(atom.arguments, language)
+    return language.atom_of[not holds].format(spoken(atom.name), of)
+
+
+def comparison_clause(comparison: Comparison, language: Language, *, holds: bool) -> str:
+    """A clause stating that the comparison holds, or not."""
+    text = comparison_text(comparison)
+    signs = _SIGN.findall(text)
+    terms = [term for _, term in comparison.terms]
+    if len(signs) != 1 or any(isinstance(term, Count) for term in terms):
+        return language.truth[not holds].format(text)
+    left, right = (_aloud(side.strip(), terms, language) for side in text.split(signs[0]))
+    return language.relations[signs[0]][not holds].format(left, right)
+
+
+def _aloud(text: str, terms: Sequence[Term], language: Language) -> str:
+    """Arithmetic with the quantities in it named in words."""
+    text = language.decimals(text)
+    for term in terms:
+        if isinstance(term, QuantityTerm):
+            written = re.compile(rf"(?<![\w.]){re.escape(term_text(term))}(?![\w(])")
+            words = (
+                term.noun
+                if isinstance(term, SpokenQuantity)
+                else of_objects(term.name, term.arguments, language)
+            )
+            text = written.sub(lambda _, words=words: words, text)  # type: ignore[misc]
+    return text.replace(" * ", f" {language.times} ")
+
+
+def single_count(comparison: Comparison) -> Count | None:
+    """The only count of a comparison with a number, or None."""
+    match comparison.terms:
+        case ((coefficient, Count() as count),) if coefficient == 1:
+            return count
+    return None
+
+
+def counted(comparison: Comparison, count: Count, language: Language) -> str:
+    """The head of a counting clause: ``there are at least 8 ...``.
+
+    In full ``there are at least 8 vehicles x for which``, to go on with the body.
+    """
+    words = language.type_of(count.type, spoken(count.type))
+    match comparison.relation, comparison.limit:
+        case ">=", Fraction(numerator=1, denominator=1):
+            return language.there_is.format(words.one, count.variable)
+        case "=", Fraction(numerator=0):
+            return language.there_is_no.format(words.none, count.variable)
+    one = comparison.limit == 1 and comparison.relation != "!="
+    n = language.counted[comparison.relation].format(number_text(comparison.limit, language))
+    there = language.there_is if one else language.there_are
+    return there.format(f"{n} {words.noun if one else words.plural}", count.variable)
+
+
+def comparison_text(comparison: Comparison) -> str:
+    """The comparison's own text, or one made of its terms, without units."""
+    if comparison.text:
+        return comparison.text
+    return f"{terms_text(comparison.terms)} {comparison.relation} {number_text(comparison.limit)}"
+
+
+def terms_text(terms: Sequence[tuple[Fraction, Term]]) -> str:
+    """``gap(v) - 0.5 * speed``."""
+    text = ""
+    for coefficient, term in terms:
+        size = "" if abs(coefficient) == 1 else f"{number_text(abs(coefficient))} * "
+        sign = "-" if coefficient < 0 else "+"
+        joint = f" {sign} " if text else ("-" if coefficient < 0 else "")
+        text += f"{joint}{size}{term_text(term)}"
+    return text
+
+
+def amount(value: Fraction, unit: Literal["s", "steps"], language: Language = ENGLISH) -> str:
+    """``3 s``, ``1 step``, ``2 steps``."""
+    steps = language.step if value == 1 else language.steps
+    return f"{number_text(value, language)} {steps if unit == 'steps' else unit}"
+
+
+def span(bound: Bound, beyond: str, language: Language) -> str:
+    """A time span: ``from 1 s to 4 s later``. ``beyond`` is the word for later or before."""
+    return f"{_between(bound, language.span, language)} {beyond}"
+
+
+def lasting(bound: Bound, language: Language) -> str:
+    """A duration: ``for 1 s to 4 s``."""
+    return _between(bound, language.lasting, language)
+
+
+def _between(bound: Bound, words: SpanWords, language: Language) -> str:
+    low = amount(bound.low, bound.unit, language)
+    if bound.high is None:
+        return words.at_least.format(low)
+    high = amount(bound.high, bound.unit, language)
+    if bound.low == bound.high:
+        return words.exactly.format(low)
+    return words.between.format(low, high) if bound.low else words.at_most.format(high)
+
+
+_PAST = (
+    UnaryOperator.ONCE,
+    UnaryOperator.HISTORICALLY,
+    UnaryOperator.PREVIOUSLY,
+    UnaryOperator.WEAK_PREVIOUSLY,
+)
+
+
+def adverb(
+    operator: UnaryOperator, bound: Bound | None, language: Language, *, inside: bool
+) -> str:
+    """The words before what holds at another time, or at other times.
+
+    ``inside``: they are not seen from the start of the trace, but from a time named before.
+    """
+    words = language.adverbs[operator]
+    if bound is None:
+        return words.inside if inside else words.outside
+    later = language.later if inside else language.after_start
+    return words.bounded.format(
+        span(bound, language.before if operator in _PAST else later, language)
+    )
+
+
+def pattern_of(
+    operator: BinaryOperator, bound: Bound | None, language: Language, *, inside: bool
+) -> str:
+    """The pattern of a binary operator's phrase, with places for its left and its right side."""
+    words = language.binary[operator]
+    places = {"left": "{}", "right": "{}"}
+    if bound is None:
+        return words.plain.format(**places)
+    beyond = language.later if inside else language.after_start
+    if operator is BinaryOperator.SINCE:
+        beyond = language.before
+    here = span(bound, beyond, language)
+    if bound.high is None:
+        return words.endless.format(span=here, **places)
+    first = span(replace(bound, low=bound.high * 0), beyond, language)
+    return words.bounded.format(span=here, first=first, **places)

@@ -1,0 +1,72 @@
+"""The language of a document: its sentences, its own texts, and the titles of rules."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+from rulec.diagnostics import Source
+from rulec.logic.sentences.english import ENGLISH
+from rulec.logic.sentences.language import Language
+from rulec.logic.sentences.wording import spoken
+from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
+from rulec.rulebook.rulebook_model import Rulebook
+from rulec.rulebook.vocabulary_phrases import titles_in, topics_in, types_of
+from rulec.toml import parsed_toml
+
+_FOLDER = Path(__file__).parent / "texts"
+
+
+@dataclass(frozen=True, slots=True)
+class DocumentLanguage:
+    """What a document says.
+
+    ``texts`` has for each text in English what is said instead, nothing for English itself;
+    ``titles`` those of rules, and ``topics`` those of topics, by name.
+    """
+
+    language: Language
+    texts: Mapping[str, str]
+    titles: Mapping[str, str]
+    topics: Mapping[str, str]
+
+    def say(self, text: str, *values: object) -> str:
+        """A text that is written in English, with values in its places ``{}``."""
+        return self.texts.get(text, text).format(*values)
+
+    def title(self, rule: str) -> str:
+        """The title of a rule; its name in spoken words if it has none."""
+        name = spoken(rule)
+        return self.titles.get(rule, f"{name[:1].upper()}{name[1:]}")
+
+
+IN_ENGLISH = DocumentLanguage(ENGLISH, {}, {}, {})
+
+
+def document_language(rulebook: Rulebook, code: str) -> DocumentLanguage:
+    """The language of a document on a rulebook, by its code, such as ``de``."""
+    titles = titles_in(code)
+    if code == "en":
+        return replace(IN_ENGLISH, titles=titles)
+    language = replace(_language(code), types=types_of(rulebook, code))
+    return DocumentLanguage(language, _texts(code), titles, topics_in(code))
+
+
+def _language(code: str) -> Language:
+    # Who writes in one language needs no other.
+    if code == "de":
+        from rulec.logic.sentences.german import GERMAN
+
+        return GERMAN
+    from rulec.logic.sentences.french import FRENCH
+
+    return FRENCH
+
+
+@cache
+def _texts(code: str) -> Mapping[str, str]:
+    path = _FOLDER / f"{code}.toml"
+    source = Source(str(path), path.read_text(encoding="utf-8"))
+    return parsed_toml(source, NAME_NOT_FOUND, 'write `"text in English" = "…"`')
