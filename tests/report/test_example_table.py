@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.report.rulebooks.book_rule import example_rows
+from rulec.report.rulebooks.document.book_rule import example_rows
 from rulec.rulebook.loader import parse_rulebook
 
 BOOK = """\

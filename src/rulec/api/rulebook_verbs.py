@@ -311,13 +311,13 @@ class RulebookVerbs(SessionSettings):
         The page in HTML has its examples as pictures. What authors wrote stays in their language.
         """
         from rulec.analysis.lineage.book_lineage import read_with_lineage
-        from rulec.report.rulebooks.book_document import (
+        from rulec.report.rulebooks.document.book_document import (
             as_markdown,
             contents_heading,
             title_of,
         )
+        from rulec.report.rulebooks.document.example_picture import ExampleFigures
         from rulec.report.rulebooks.document_language import document_language
-        from rulec.report.rulebooks.example_picture import ExampleFigures
         from rulec.report.text.html_page import PageTexts, as_html
 
         loaded, lineage = read_with_lineage(reference, self.search_path, self.at)

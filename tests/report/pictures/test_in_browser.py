@@ -122,7 +122,7 @@ def test_a_drive_opens_at_its_first_violation(drive_page):
     assert '<html lang="en" class="scripted">' in dom
     assert ">2.5 s of 5.0 s</output>" in dom
     assert dom.count('aria-current="true"') == 1
-    assert "gap(2) 19.80±0.05 m &lt; 21.3±0.4 m, by at least 1.1 m" in dom
+    assert "gap(2) 19.80±0.05 m &lt; 21.3±0.7 m, by at least 0.90 m" in dom
 
 
 def test_keys_of_a_drive(drive_page):
@@ -136,7 +136,7 @@ def test_keys_of_a_drive(drive_page):
 def test_a_violation_in_the_list_jumps_to_its_moment(drive_page):
     click = pressed("Home") + "document.querySelector('#violations button').click()"
     assert told(drive_page, click, "time") == "2.5 s of 5.0 s"
-    assert "false: 19.80±0.05 &lt; 21.3±0.4 m" in after_drive(drive_page, click)
+    assert "false: 19.80±0.05 &lt; 21.3±0.7 m" in after_drive(drive_page, click)
 
 
 def test_a_drive_in_another_theme(drive_page):

@@ -58,7 +58,9 @@ ENGLISH = Language(
     there_is="there is {} {} for which",
     there_is_no="there is {} {} for which",
     there_are="there are {} {} for which",
-    type_words=TypeWords("every {}", "every other {}", "a {}", "no {}", "{}", "{}"),
+    type_words=TypeWords(
+        every="every {}", other="every other {}", one="a {}", none="no {}", noun="{}", plural="{}"
+    ),
     plural=plural,
     for_every="for {}: ",
     step="step",

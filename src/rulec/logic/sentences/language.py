@@ -162,10 +162,10 @@ class Language:
             return known
         own = self.type_words
         return TypeWords(
-            own.every.format(noun),
-            own.other.format(noun),
-            own.one.format(noun),
-            own.none.format(noun),
-            own.noun.format(noun),
-            own.plural.format(self.plural(noun)),
+            every=own.every.format(noun),
+            other=own.other.format(noun),
+            one=own.one.format(noun),
+            none=own.none.format(noun),
+            noun=own.noun.format(noun),
+            plural=own.plural.format(self.plural(noun)),
         )

@@ -9,6 +9,8 @@ from pathlib import Path
 
 from rulec.diagnostics import Source
 from rulec.logic.sentences.english import ENGLISH
+from rulec.logic.sentences.french import FRENCH
+from rulec.logic.sentences.german import GERMAN
 from rulec.logic.sentences.language import Language
 from rulec.logic.sentences.wording import spoken
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
@@ -55,14 +57,7 @@ def document_language(rulebook: Rulebook, code: str) -> DocumentLanguage:
 
 
 def _language(code: str) -> Language:
-    # Who writes in one language needs no other.
-    if code == "de":
-        from rulec.logic.sentences.german import GERMAN
-
-        return GERMAN
-    from rulec.logic.sentences.french import FRENCH
-
-    return FRENCH
+    return {"de": GERMAN, "fr": FRENCH}[code]
 
 
 @cache

@@ -11,7 +11,7 @@ from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory
 from rulec.logic.printing import formula_text
 from rulec.logic.sentences.wording import listed, spoken
 from rulec.report.rulebooks.audit_report import progress, provision_table
-from rulec.report.rulebooks.book_rule import (
+from rulec.report.rulebooks.document.book_rule import (
     WIDTH,
     ExamplePicture,
     rule_heading,

@@ -1,0 +1,1 @@
+"""A rulebook as a document for lawyers."""
