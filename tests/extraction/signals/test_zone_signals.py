@@ -191,6 +191,40 @@ def test_a_net_says_which_crossings_have_lights():
     assert kind(lanes, complete=["light"]) == "zebra"
 
 
+def lit_from_the_side(lights):
+    """The junction with a road across it, from y = -100, whose traffic has these lights or none."""
+    return road(
+        None,
+        None,
+        lanelet(4, [(110, -100), (110, -10)], successors=(5,), lights=lights),
+        lanelet(5, [(110, -10), (110, 10)], predecessors=(4,), successors=(6,), types=INSIDE),
+        lanelet(6, [(110, 10), (110, 100)], predecessors=(5,)),
+        # Elsewhere there are lights
+        straight(8, 0, 100, y=500, lights=RED),
+    )
+
+
+@pytest.mark.parametrize(
+    ("more", "word"),
+    [
+        # Nothing tells of any light: at the junction, and up to 15 m from it, there may be some
+        (road(None, None, zebra(60)), "zebra"),
+        (road(None, None, zebra(95)), "unknown"),
+        (road(None, None, zebra(110)), "unknown"),
+        (road(None, None, zebra(145)), "zebra"),
+        # Others have lights there
+        ([*lit_from_the_side(RED), zebra(95)], "unknown"),
+        # Nobody has any there, but somebody elsewhere
+        ([*lit_from_the_side(()), zebra(95)], "zebra"),
+    ],
+)
+def test_lights_that_nobody_tells_may_direct_a_crossing_at_a_junction(more, word):
+    found = told(more, going(7, (40.0, 40.0)))
+    unknown = found.unknown["crossing_kind"].any()
+    assert word == ("unknown" if unknown else found.world["crossing_kind"][0])
+    assert kind(more, complete=["light"]) == "zebra"
+
+
 def test_without_a_crossing_the_kind_is_the_usual_one():
     assert kind(road()) == "zebra"
 

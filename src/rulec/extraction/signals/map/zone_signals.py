@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.ego_signals import room_beside
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.measured_numbers import corner_ahead
@@ -119,11 +120,12 @@ def _crossings_lit(context: DriveContext) -> dict[float, tuple[bool, bool]]:
     # A net says itself which crossings have lights
     told = "light" in context.recording.complete
     lit, perhaps = (() if told else _directed_stretches(context, there) for there in (True, False))
+    untold = () if told else _junctions_with_lights_untold(context)
     found = {}
     for start, _ in road.crossings:
         directed = any(abs(start - other) < 1.0 for other in own)
         directed |= any(low <= start <= high for low, high in lit)
-        unsure = not directed and any(low <= start <= high for low, high in perhaps)
+        unsure = not directed and any(low <= start <= high for low, high in (*perhaps, *untold))
         found[start] = directed, unsure
     return found
 
@@ -137,6 +139,40 @@ def _crossings_with_lights(context: DriveContext) -> Recording:
         if "crosswalk" in lanelet.types and (lanelet.lights or "directed" in lanelet.types)
     }
     return replace(context.recording, lanelets=walkers)
+
+
+def _junctions_with_lights_untold(context: DriveContext) -> Stretches:
+    """From where to where on ego's road there may be lights that its own lanes do not tell.
+
+    At junctions, with the crossings of the roads there: some formats tell of no lights at all, and
+    others of those alone that somebody saw, so that lights for who comes from elsewhere mean that
+    ego's way may have them, too.
+    """
+    reach, seen = context.thresholds.side_road_m, map_contents(context).lights
+    known = context.recording.lanelets
+    lit = [
+        junction
+        for junction in context.surroundings.passages.junctions
+        if any(known[entry].lights for way in junction.ways for entry in way.entries)
+    ]
+    names = {name for junction in lit for way in junction.ways for name in way.names}
+    return [
+        (low - reach, high + reach)
+        for low, high in context.road.junctions
+        if not seen or names & _lanelets_between(context, low, high)
+    ]
+
+
+def _lanelets_between(context: DriveContext, low: float, high: float) -> set[str]:
+    """The lanelets of ego's road that begin in between."""
+    starts = context.road.borders.tolist()
+    return {
+        lanelet.id
+        for row, start in zip(context.road.rows, starts, strict=False)
+        if low - 0.1 <= start < high
+        for lanelet in row
+        if lanelet is not None
+    }
 
 
 def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
