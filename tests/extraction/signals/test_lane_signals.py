@@ -154,6 +154,20 @@ def test_who_is_parked_on_a_line_does_not_cross_it():
     assert [bool(x.world["on_solid_line"][0]) for x in found] == [False, True]
 
 
+def test_who_stands_on_a_line_from_the_beginning_on_has_not_been_seen_to_cross_it():
+    road = lanes(2)
+    road[0] = replace(road[0], left_mark="solid")
+    # Its box wanders by 0.4 m before it moves off; who drives slowly is 1.5 m on after a state
+    parked = vehicle(7, {0: (50, 1.4), 1: (50.4, 1.4), 2: (50, 1.4), 3: (56, 1.4)}, speed=0.1)
+    creeps = vehicle(7, {k: (50 + 1.5 * k, 1.4) for k in range(4)}, speed=3.0)
+    found = [lane_mark_signals(context_of(recording(road, [ego]))) for ego in (parked, creeps)]
+    assert [x.unknown["on_solid_line"].tolist() for x in found] == [
+        [True, True, True, False],
+        [False] * 4,
+    ]
+    assert all(x.world["on_solid_line"].all() for x in found)
+
+
 def test_of_two_lines_the_one_on_ego_s_side_counts():
     # Ego's middle is in the right lane, at whose side the line is broken
     known, _ = marks(1.5, "broken", "solid")

@@ -237,6 +237,27 @@ def test_a_lane_that_ends_at_the_junction_leads_elsewhere(x, goes_on, elsewhere)
 
 
 @pytest.mark.parametrize(
+    ("mark", "x", "complete", "unknown"),
+    [
+        ("solid", 260, (), True),
+        # 100 m before the end of the map
+        ("solid", 200, (), False),
+        ("broken", 260, (), False),
+        # Nothing comes after a net's end
+        ("solid", 260, ("lanes",), False),
+    ],
+)
+def test_a_lane_behind_a_solid_line_may_lead_elsewhere_beyond_the_map(mark, x, complete, unknown):
+    road = lanes(2)
+    road[0] = replace(road[0], left_mark=mark)
+    bodies = [steady(7, x - 20, 0, steps=4), vehicle(8, dict.fromkeys(range(4), (x, 4)), speed=0)]
+    found = replace(recording(road, bodies), complete=frozenset(complete))
+    signals = participant_signals(context_of(found))
+    assert signals.unknown["leads_elsewhere"][0, 0] == unknown
+    assert not signals.about["leads_elsewhere"][0, 0]
+
+
+@pytest.mark.parametrize(
     ("y", "speed", "expected"),
     [(0, 5.0, 5.2), (0, 10.0, LONGEST_S), (0, 15.0, LONGEST_S), (4, 5.0, LONGEST_S)],
     ids=["slower", "as fast", "faster", "in another lane"],

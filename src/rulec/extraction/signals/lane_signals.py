@@ -35,6 +35,9 @@ _STEADY_MPS = 1.0
 
 _EXACT_M = 0.1
 
+_MOVED_OFF_M, _STOOD_S = 1.0, 1.0
+"""A box of who is parked wanders by less; who stays there for so long stands."""
+
 _GOES_OFF_RAD = np.radians(20.0)
 
 _Marks = tuple[LaneMark | None, LaneMark | None]
@@ -163,7 +166,8 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     """Whether ego is on a solid line, breaks one on its own side, and is that a single one.
 
     Unknown where places, or the map, decide it, or marks are not told. Who stands all through its
-    drive crosses none: it is parked on the one at the edge.
+    drive crosses none: it is parked on the one at the edge. Nor has anybody seen who stands from
+    the drive's beginning on cross the line that it stands on, until it moves off.
     """
     names = ("on_solid_line", "broken_on_own_side", "single_line")
     if (context.ego.speed[0] * KMH < context.thresholds.standing_kmh).all():
@@ -193,9 +197,20 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     others_found = _under(context, np.concatenate([lines[where] for where, lines in tried]), states)
     differs = (others_found[:, :-1] != found[states, :-1]).any(axis=1)
     not_told[states[differs]] = True
+    not_told |= found[:, 0] & _not_moved_yet(context)
     return SignalColumns(
         dict(zip(names, found.T, strict=False)), unknown=dict.fromkeys(names, not_told)
     )
+
+
+def _not_moved_yet(context: DriveContext) -> Flags:
+    """Flags of states up to which ego stands where it was first seen, for a second or more."""
+    x, y = context.ego.x[0], context.ego.y[0]
+    away = np.hypot(x - x[0], y - y[0]) > _MOVED_OFF_M + 2 * context.tolerances.place_m
+    stood: Flags = ~np.maximum.accumulate(away)
+    if (stood.sum() - 1) * context.recording.step_s < _STOOD_S:
+        stood[:] = False
+    return stood
 
 
 def _goes_off(context: DriveContext) -> Flags:

@@ -15,6 +15,7 @@ from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import once_a_recording, once_a_road
 from rulec.extraction.tracks.junctions import JunctionWay
+from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Lanelet
 from rulec.scenario.recorded.reference_line import turn
 
@@ -24,6 +25,8 @@ _BEYOND_M = 1.0
 _HAIR_M = 0.01
 
 _PARTS_RAD = np.radians(20.0)
+
+_SOLID = frozenset({"solid"})
 
 
 class Leads(Enum):
@@ -121,10 +124,16 @@ def _lead(context: DriveContext, ways: Sequence[JunctionWay], turned: float) -> 
 def leads_elsewhere(context: DriveContext) -> SignalColumns:
     """Whether the lane of those before a junction does not go on along ego's road beyond it.
 
-    Of a lane from which ways lead there and elsewhere, that of the one who takes it decides.
+    Of a lane from which ways lead there and elsewhere, that of the one who takes it decides. It is
+    unknown where the map ends, of lanes that a solid line parts from ego's there.
     """
     others, reach = context.extents, context.thresholds.approach_m
     elsewhere, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
+    end, parted = _parted_at_the_end(context)
+    if parted.any():
+        near = context.on_lanes & (context.road.line.length - others.s_max <= reach)
+        near &= others.s >= end
+        unknown |= near & parted[np.clip(others.lane, 0, len(parted) - 1)]
     for junction in junctions_ahead(context):
         near = context.on_lanes & (others.s < junction.low)
         near &= junction.low - others.s_max <= reach
@@ -143,6 +152,27 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
     return SignalColumns(
         about={"leads_elsewhere": elsewhere}, unknown={"leads_elsewhere": unknown & ~elsewhere}
     )
+
+
+@once_a_road
+def _parted_at_the_end(context: DriveContext) -> tuple[float, Flags]:
+    """The lanes that a solid line parts from ego's where the map ends, and from where on.
+
+    So lanes are drawn before junctions for who turns off; a junction may come after the map's end.
+    Of maps that have all lanes nothing comes after it.
+    """
+    road, known = context.road, context.recording.lanelets
+    row, own, begin = road.rows[-1], road.own_lanes[-1], float(road.borders[-2])
+    ends = not any(x in known for lanelet in row if lanelet is not None for x in lanelet.successors)
+    parted = np.zeros(len(row), dtype=bool)
+    if ends and "lanes" not in context.recording.complete:
+        solid = [
+            right is not None and left is not None and {right.left_mark, left.right_mark} >= _SOLID
+            for right, left in pairwise(row)
+        ]
+        for lane in range(len(row)):
+            parted[lane] = any(solid[min(lane, own) : max(lane, own)])
+    return begin, parted
 
 
 def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool | None:
