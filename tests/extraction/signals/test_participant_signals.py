@@ -328,6 +328,20 @@ def test_the_gap_to_one_that_is_lost_as_it_goes_aside_is_moot(drift, unknown):
     assert signals.unknown["safe_gap"][0, 2] == unknown
 
 
+@pytest.mark.parametrize(("aside", "unknown"), [(1.5, True), (1.1, False)])
+def test_the_gap_to_one_that_ego_goes_past_on_a_broad_lane_is_moot(aside, unknown):
+    """Bodies are 2 m wide; 3.5 s later ego is to that side of its lane, the other as far away."""
+    road = [straight(1, 0, 300, width=8)]
+    drifts = [min(k, 7) / 7 * aside for k in range(10)]
+    ego, other = (
+        vehicle(number, {k: (x + 5 * k, sign * y) for k, y in enumerate(drifts)}, speed=mps)
+        for number, x, sign, mps in ((7, 0, -1, 10.0), (8, 8, 1, 10.0))
+    )
+    signals = participant_signals(context_of(recording(road, [ego, other]), ("1",)))
+    assert not signals.about["safe_gap"][0, 0]
+    assert signals.unknown["safe_gap"][0, 0] == unknown
+
+
 @pytest.mark.parametrize(("end", "elsewhere"), [((180, -30), True), ((200, -1), False)])
 def test_lanes_that_part_outside_of_a_junction_lead_elsewhere(end, elsewhere):
     """Ego's lane bends off to the right at 112 m; the one beside it goes straight on."""

@@ -159,12 +159,14 @@ def _stood_before(context: DriveContext) -> Flags:
 def _parts_soon(context: DriveContext, rows: NDArray[intp]) -> Flags:
     """Flags of those whose lane is not ego's at some state within ``parting_s``.
 
-    Or who are lost from sight before, going aside by ``_AWAY_MPS``. Of these rows, False in all
-    others.
+    Or who are clear of ego at its side then, as on a broad lane, or are lost from sight before,
+    going aside by ``_AWAY_MPS``. Of these rows, False in all others.
     """
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
     parts, rows = np.zeros(context.relevant.shape, dtype=bool), distinct(rows)
-    apart = (context.extents.lane[rows] != context.ego_extents.lane) & context.relevant[rows]
+    apart = context.extents.lane[rows] != context.ego_extents.lane
+    apart |= relations.way_across(context)[rows] > context.thresholds.touching_m
+    apart &= context.relevant[rows]
     states = np.arange(context.states)
     parts[rows] = next_state(apart, context.states + horizon) <= states + horizon
     seen, others = context.relevant[rows], context.extents.part(rows, slice(None))

@@ -55,15 +55,25 @@ def following_facts(world):
         steady = led & surely_led & ~world.changing[track.id]
         steady &= ~_leader_changing(world, track)
         steady[: round(_FALLS_BACK_S / world.step_s)] = False
-        # The law asks for a distance to one that drives ahead. Who draws near to one that stands
-        # has seen it, and may stop behind it
-        stops = (leading < _STANDS_MPS) & (gap >= speed**2 / (2 * BRAKING_MPS2))
-        steady &= ~stops
+        steady &= ~_stops_behind(world, speed, leading, gap)
         possible = (short > -_PERHAPS_M) | _beside_short(world, track)
         possible |= _merging_short(world, track)
         surely, perhaps = _asked_for(world, track)
         masks = (surely & steady & (short > _SURELY_M), perhaps & possible, _LEAST_S)
         yield from graded(world, track, "following_distance", masks)
+
+
+def _stops_behind(world, speed, leading, gap):
+    """Where ego brakes for one that has stood for a second, and can stop behind it.
+
+    The law asks for a distance to one that drives ahead. Who brakes for one that stands has seen
+    it, and needs no time to react; who does not brake yet does.
+    """
+    second = round(REACTION_S / world.step_s)
+    stands = leading < _STANDS_MPS
+    stood = np.array([stands[max(k - second, 0) : k + 1].all() for k in range(len(stands))])
+    brakes = np.append(False, np.diff(speed) < 0)
+    return stood & brakes & (gap >= speed**2 / (2 * BRAKING_MPS2))
 
 
 def _led(world, track):
