@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+
+from rulec.lazy_dataclass import dataclass
 
 ALONE_S = 1.0
 """So many seconds of work are not worth the start of a process, which takes about as long."""

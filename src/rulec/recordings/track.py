@@ -7,12 +7,13 @@ objects only when somebody looks at them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy import float64, int64
 from numpy.typing import NDArray
 
+from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Points, TrackState
 
 _CORNERS = np.array([[1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1], [0, 1]]) / 2

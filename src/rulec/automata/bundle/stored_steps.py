@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.lazy_dataclass import dataclass
 from rulec.logic.printing import number_in_words
 
 

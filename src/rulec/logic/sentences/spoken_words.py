@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.language import Language

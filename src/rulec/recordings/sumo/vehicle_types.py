@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
+from rulec.lazy_dataclass import dataclass
 from rulec.recordings.encodings.safe_xml import root_of, scan
 from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat
 

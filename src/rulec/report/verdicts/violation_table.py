@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from decimal import Decimal
 from operator import itemgetter
 from textwrap import wrap
 
 from rulec.automata.thresholds import exact
+from rulec.lazy_dataclass import dataclass
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.explain.explanation import Explanation, Observation
 from rulec.monitoring.explain.margins import Margin, number_with_error

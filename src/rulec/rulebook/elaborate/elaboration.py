@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
+from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.arithmetic import linear_arithmetic as numbers

@@ -9,7 +9,6 @@ have the width that they have there.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import TYPE_CHECKING
@@ -18,6 +17,7 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.lazy_dataclass import dataclass
 from rulec.recordings.polylines import densified
 from rulec.recordings.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, cast
 
 from rulec.diagnostics import Diagnostic, Source, Span
+from rulec.lazy_dataclass import dataclass
 from rulec.syntax import tree
 from rulec.syntax.grammar import ParseLeaf, ParseNode
 from rulec.syntax.keywords import SYMBOLS, token_kind
