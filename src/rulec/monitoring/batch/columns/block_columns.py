@@ -68,13 +68,21 @@ def _group(block: Block, presence: BlockPresence, traces: NDArray[np.int64]) -> 
 def columnize_block(group: BlockGroup, vocabulary: Vocabulary) -> TraceColumns:
     """The group as columns. Raises UnencodableError."""
     columns: dict[Key, Array] = {}
+    placed: list[_Placement] = []
     for name in group.block.table.names:
         column = group.block.columns[name]
         given = column.given[group.rows]
         if given.any():
             if name not in vocabulary.declarations:
                 raise UnencodableError
-            columns |= _by_objects(column, given, vocabulary.declarations[name], group, vocabulary)
+            declaration = vocabulary.declarations[name]
+            n_parameters = len(declaration.parameters)
+            known = (one for one in placed if one.is_of(given, n_parameters))
+            placement = next(known, None)
+            if placement is None:
+                placement = _placement(given, n_parameters, group)
+                placed.append(placement)
+            columns |= _by_objects(column, placement, declaration, group, vocabulary)
     present = {
         name: (first, last)
         for name, (first, last) in zip(group.objects, group.stretches.tolist(), strict=True)
@@ -85,18 +93,30 @@ def columnize_block(group: BlockGroup, vocabulary: Vocabulary) -> TraceColumns:
     return TraceColumns(group.layout, columns, objects, present, step_s)
 
 
-def _by_objects(
-    column: Column,
-    given: NDArray[np.bool_],
-    declaration: Declaration,
-    group: BlockGroup,
-    vocabulary: Vocabulary,
-) -> dict[Key, Array]:
-    """Columns of a name's values, given in some rows, by the objects that they describe."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _Placement:
+    """Where values that are ``given`` in some rows stand in columns for objects.
+
+    ``choices`` are the objects that there are columns for, as one number each, their places being
+    its digits. ``rows`` are those of the block, ``cells`` where they stand in all columns together,
+    which ``are_given`` there (columns x states).
+    """
+
+    given: NDArray[np.bool_]
+    n_parameters: int
+    choices: NDArray[np.int64]
+    rows: NDArray[np.int64]
+    cells: NDArray[np.int64]
+    are_given: NDArray[np.bool_]
+
+    def is_of(self, given: NDArray[np.bool_], n_parameters: int) -> bool:
+        """Whether it is that of what is given in these rows."""
+        return self.n_parameters == n_parameters and np.array_equal(self.given, given)
+
+
+def _placement(given: NDArray[np.bool_], n_parameters: int, group: BlockGroup) -> _Placement:
     rows, state = group.rows[given], group.state[given]
     n_objects, n_states = len(group.objects), group.layout.n_states
-    n_parameters = len(declaration.parameters)
-    # The objects of each row as one number, their places being its digits.
     chosen = np.zeros(len(rows), dtype=np.int64)
     for parameter, items in enumerate((group.presence.item[rows], group.presence.other[rows])):
         if ((items == NOBODY) if parameter < n_parameters else (items != NOBODY)).any():
@@ -108,14 +128,34 @@ def _by_objects(
         raise UnencodableError
     line_of = np.zeros(int(choices[-1]) + 1, dtype=np.int64)
     line_of[choices] = np.arange(len(choices))
-    values = encode_column(column, rows, declaration)
     cells = line_of[chosen] * n_states + state
-    lines = np.zeros((len(choices), n_states), dtype=values.dtype)
-    lines.ravel()[cells] = values
-    are_given = np.zeros(lines.shape, dtype=bool)
+    are_given = np.zeros((len(choices), n_states), dtype=bool)
     are_given.ravel()[cells] = True
     if np.count_nonzero(are_given) != len(cells):
         raise UnencodableError  # something is said twice
+    return _Placement(
+        given=given,
+        n_parameters=n_parameters,
+        choices=choices,
+        rows=rows,
+        cells=cells,
+        are_given=are_given,
+    )
+
+
+def _by_objects(
+    column: Column,
+    placement: _Placement,
+    declaration: Declaration,
+    group: BlockGroup,
+    vocabulary: Vocabulary,
+) -> dict[Key, Array]:
+    """Columns of a name's values, by the objects that they describe."""
+    n_objects, n_parameters = len(group.objects), placement.n_parameters
+    choices, are_given = placement.choices, placement.are_given
+    values = encode_column(column, placement.rows, declaration)
+    lines = np.zeros(are_given.shape, dtype=values.dtype)
+    lines.ravel()[placement.cells] = values
     columns: dict[Key, Array] = {}
     for choice, line, is_given in zip(choices.tolist(), lines, are_given, strict=True):
         places = divmod(choice, n_objects)[2 - n_parameters :] if n_parameters else ()
