@@ -16,12 +16,13 @@ from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.map_matching import MapMatching
 from rulec.extraction.tracks.road_extents import (
     EgoPieces,
+    RoadExtents,
     expected_places,
     road_extents,
 )
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
-from rulec.extraction.tracks.tracks import Flags, tracks_of
+from rulec.extraction.tracks.tracks import Flags, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Recording, Side
@@ -29,7 +30,13 @@ from rulec.recordings.recording import Recording, Side
 FEWEST_STATES = 2
 
 MOST_PLACES = 1 << 17
-"""Extents of recordings with more participants times steps are computed drive by drive."""
+"""Extents of recordings with more participants times steps are not computed for all of these."""
+
+PART = 4
+"""They are computed for a part that lasts so many times as long as the drive that it begins with.
+
+The drives of a recording begin one after the other, so most of those in a part lie wholly in it.
+"""
 
 SHARED_BY = 8
 """They are computed for all drives on a road if one takes more than this part of them."""
@@ -74,6 +81,7 @@ class Drives:
         self._first = self._tracks.present.argmax(axis=1)
         self._roads: dict[tuple[str, ...], tuple[DrivenRoad, int] | str] = {}
         self._places: dict[DrivenRoad, RoadPlaces] = {}
+        self._parts: dict[DrivenRoad, RoadPlaces] = {}
 
     def egos(self) -> tuple[str, ...]:
         """The participants that move and steer, in the order of the file."""
@@ -115,12 +123,18 @@ class Drives:
             return NoDrive(ego, laid_out)
         road, first_piece = laid_out
         columns = slice(stretch.first, stretch.last + 1)
-        rows = self._tracks.present[:, columns].any(axis=1).nonzero()[0]
+        rows = self._present(columns)
         if self._is_shared(road, len(rows) * (columns.stop - columns.start)):
             places = self._places_on(road)
+        elif road.meets_itself:
+            places = self._places_of_one(road, first_piece, row, stretch)
+        elif self._tracks.present.size <= MOST_PLACES:
+            places = self._places_during(road, columns)
         else:
-            places = self._places_during(road, first_piece, row, stretch, rows)
-            row, columns = int(np.searchsorted(places.tracks.rows, row)), slice(0, None)
+            places = self._places_in_part(road, columns)
+        row = int(np.searchsorted(places.tracks.rows, row))
+        before = places.tracks.first - self._tracks.first
+        columns = slice(columns.start - before, columns.stop - before)
         if np.isnan(places.extents.s[row, columns]).any():
             return NoDrive(ego, "it is far from its road for a while")
         context = drive_context(self._surroundings, places, self._side, row, columns)
@@ -139,37 +153,67 @@ class Drives:
             everybody = np.arange(len(self._tracks.participants))
             extents = road_extents(self._tracks, road)
             elsewhere = self._elsewhere(road, everybody, slice(0, self._tracks.present.shape[1]))
-            self._places[road] = RoadPlaces(
-                road, self._tracks, extents, self._thresholds, elsewhere
-            )
+            self._places[road] = self._road_places(road, self._tracks, extents, elsewhere)
             if len(self._places) * self._tracks.present.size > MOST_KEPT:
                 del self._places[next(iter(self._places))]
         return self._places[road]
 
-    def _places_during(
-        self,
-        road: DrivenRoad,
-        first_piece: int,
-        row: int,
-        stretch: RouteStretch,
-        rows: NDArray[intp],
+    def _present(self, columns: slice) -> NDArray[intp]:
+        """The rows of who is there in some columns."""
+        return np.flatnonzero(self._tracks.present[:, columns].any(axis=1))
+
+    def _places_in_part(self, road: DrivenRoad, columns: slice) -> RoadPlaces:
+        """The places on a road of all who are there in some columns, and perhaps in others."""
+        first, n_columns = self._tracks.first, self._tracks.present.shape[1]
+        known = self._parts.get(road)
+        if known is not None:
+            begins = known.tracks.first - first
+            ends = begins + known.tracks.present.shape[1]
+            if begins <= columns.start and columns.stop <= ends:
+                return known
+        end = columns.start + PART * (columns.stop - columns.start)
+        found = self._places_during(road, slice(columns.start, min(end, n_columns)))
+        self._parts.pop(road, None)
+        self._parts[road] = found
+        while len(self._parts) > 1 and self._n_kept() > MOST_KEPT:
+            del self._parts[next(iter(self._parts))]
+        return found
+
+    def _n_kept(self) -> int:
+        return sum(places.tracks.present.size for places in self._parts.values())
+
+    def _places_during(self, road: DrivenRoad, columns: slice) -> RoadPlaces:
+        """The places on a road of all who are there in some columns."""
+        rows = self._present(columns)
+        tracks = self._tracks.part(rows, columns)
+        elsewhere = self._elsewhere(road, rows, columns)
+        extents = road_extents(tracks, road)
+        return self._road_places(road, tracks, extents, elsewhere)
+
+    def _places_of_one(
+        self, road: DrivenRoad, first_piece: int, row: int, stretch: RouteStretch
     ) -> RoadPlaces:
-        """The places on a road of those in ``rows``, who are there during a drive of one of them.
+        """The places of all during one drive on a road that meets itself.
 
         ``first_piece`` is the road's that the drive begins in.
         """
         columns = slice(stretch.first, stretch.last + 1)
+        rows = self._present(columns)
         tracks, lanelets = self._tracks.part(rows, columns), self._matching.lanelets[rows, columns]
-        expected = None
-        if road.meets_itself:
-            own = [column - stretch.first for column in stretch.columns]
-            pieces = [first_piece + piece for piece in stretch.pieces]
-            ego = EgoPieces(int(np.searchsorted(rows, row)), own, pieces, self._numbers)
-            reach_m = self._thresholds.near_m + _LONGEST_M
-            expected = expected_places(tracks, road, ego, lanelets, reach_m)
-        extents = road_extents(tracks, road, expected)
+        own = [column - stretch.first for column in stretch.columns]
+        pieces = [first_piece + piece for piece in stretch.pieces]
+        ego = EgoPieces(int(np.searchsorted(rows, row)), own, pieces, self._numbers)
+        reach_m = self._thresholds.near_m + _LONGEST_M
+        extents = road_extents(tracks, road, expected_places(tracks, road, ego, lanelets, reach_m))
         elsewhere = self._elsewhere(road, rows, columns)
-        return RoadPlaces(road, tracks, extents, self._thresholds, elsewhere)
+        return self._road_places(road, tracks, extents, elsewhere)
+
+    def _road_places(
+        self, road: DrivenRoad, tracks: Tracks, extents: RoadExtents, elsewhere: Flags
+    ) -> RoadPlaces:
+        fastest = self._tracks.fastest[tracks.rows]
+        limits = self._thresholds
+        return RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, fastest=fastest)
 
     def _elsewhere(self, road: DrivenRoad, rows: NDArray[intp], columns: slice) -> Flags:
         """Flags of who of some rows drives on lanelets that are not of a road, in some columns."""

@@ -28,7 +28,9 @@ def context_of(found, route=("1",), side="right", ego=EGO, elsewhere=None, **thr
     columns = np.flatnonzero(tracks.present[row])
     if elsewhere is None:
         elsewhere = np.zeros(tracks.present.shape, dtype=bool)
-    places = RoadPlaces(road, tracks, road_extents(tracks, road), limits, elsewhere)
+    extents = road_extents(tracks, road)
+    fastest = tracks.fastest
+    places = RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, fastest=fastest)
     driven = slice(int(columns[0]), int(columns[-1]) + 1)
     return drive_context(Surroundings(found, tracks), places, side, row, driven)
 

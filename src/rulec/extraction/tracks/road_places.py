@@ -8,7 +8,7 @@ import numpy as np
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, lanes_touched
-from rulec.extraction.tracks.tracks import Flags, Tracks
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.lazy_dataclass import dataclass
 
@@ -26,7 +26,8 @@ _ONCOMING_COSINE = -0.7
 class RoadPlaces:
     """The places of participants on a road, a row each, by step.
 
-    ``elsewhere``: who drives on lanelets that are not of the road.
+    ``elsewhere``: who drives on lanelets that are not of the road. ``fastest`` is each one's
+    greatest speed (m/s) in all of the recording.
     """
 
     road: DrivenRoad
@@ -34,6 +35,7 @@ class RoadPlaces:
     extents: RoadExtents
     thresholds: Thresholds
     elsewhere: Flags
+    fastest: Floats
 
     @cached_property
     def there(self) -> Flags:
@@ -63,7 +65,7 @@ class RoadPlaces:
             self.extents.left_of_min[..., -1] < beside
         )
         vulnerable = self.tracks.of_type("vulnerable_user")[:, None]
-        moves = self.tracks.fastest * KMH >= self.thresholds.standing_kmh
+        moves = self.fastest * KMH >= self.thresholds.standing_kmh
         oncoming = (np.cos(self.extents.turned) < _ONCOMING_COSINE) & moves[:, None]
         flags: Flags = (self.on_lanes | (close & (vulnerable | oncoming))) & ~self.crosses
         return flags
