@@ -17,6 +17,7 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Lanelet, LaneMark
+from rulec.trace.plain_arrays import distinct
 
 _INDICATORS = frozenset({"left_indicator", "right_indicator"})
 _INDICATIONS = ("no_indicator", "near_indicator", "far_indicator")
@@ -137,15 +138,18 @@ class MarkedRows:
 def _marked_rows(context: DriveContext) -> MarkedRows:
     there = context.existing_lanes
     pieces = context.road.piece(context.ego_extents.s[0])
-    keys, number = np.unique(np.column_stack((pieces, there)), axis=0, return_inverse=True)
+    # A piece and its lanes that exist as one number
+    lanes = 1 << np.arange(there.shape[1])
+    keys = pieces << len(lanes) | there @ lanes
+    different = distinct(keys)
     rows = tuple(
         tuple(
-            lanelet if exists else None
-            for lanelet, exists in zip(context.road.rows[piece], lanes, strict=True)
+            lanelet if key & lane else None
+            for lanelet, lane in zip(context.road.rows[key >> len(lanes)], lanes, strict=True)
         )
-        for piece, *lanes in keys.tolist()
+        for key in different.tolist()
     )
-    return MarkedRows(rows, number.reshape(-1))
+    return MarkedRows(rows, np.searchsorted(different, keys))
 
 
 def _marked_lanes(context: DriveContext) -> SignalColumns:

@@ -6,8 +6,6 @@ have nothing to do with each other.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
@@ -55,34 +53,45 @@ def speed_bounds(context: DriveContext) -> Bounds:
     return rounded_outward(np.where(may_stand, 0.0, low), (speed + error) * KMH)
 
 
-@once
-def bounds_to_others(context: DriveContext) -> Mapping[str, Bounds]:
-    """The bounds of gaps (m), headways (s) and differences of speed (km/h)."""
-    place = context.tolerances.place_m
-    along, across = relations.way_along(context), relations.way_across(context)
-    near, far = (np.maximum(along + way * place, 0.0) for way in (-1, 1))
+def gap_bounds(context: DriveContext) -> Bounds:
+    """The bounds of gaps (m)."""
+    return rounded_outward(*_gaps(context))
+
+
+def headway_bounds(context: DriveContext) -> Bounds:
+    """The bounds of headways (s)."""
+    near, far = _gaps(context)
     speed, error = own_speed(context)
     drives = moves(context)
     least = np.where(drives, speed - error, 1.0)
     longest = np.where(least > 0, far / np.maximum(least, _AT_LIMIT_MPS), LONGEST_S)
     shortest = near / np.where(drives, speed + error, 1.0)
-    headway = [
+    low, high = (
         np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
         for seconds in (shortest, longest)
-    ]
-    theirs = context.extents.along * KMH
-    stands = context.zero_if_standing(theirs) == 0
-    difference = context.ego_extents.along * KMH - context.zero_if_standing(theirs)
-    their_error = np.where(stands, 0.0, context.tracks.speed_error)
+    )
+    return rounded_outward(low, high)
+
+
+def _gaps(context: DriveContext) -> tuple[Floats, Floats]:
+    """The least and the greatest gaps (m) that there may be."""
+    along, place = relations.way_along(context), context.tolerances.place_m
+    return np.maximum(along - place, 0.0), np.maximum(along + place, 0.0)
+
+
+def lateral_gap_bounds(context: DriveContext) -> Bounds:
+    """The bounds of gaps (m) across the road."""
+    across, place = relations.way_across(context), context.tolerances.place_m
+    return rounded_outward(np.maximum(across - place, 0.0), np.maximum(across + place, 0.0))
+
+
+def difference_bounds(context: DriveContext) -> Bounds:
+    """The bounds of differences of speed (km/h)."""
+    speeds = context.zero_if_standing(context.extents.along * KMH)
+    difference = context.ego_extents.along * KMH - speeds
+    their_error = np.where(speeds == 0, 0.0, context.tracks.speed_error)
     wrong = np.hypot(context.ego.speed_error, their_error) * KMH
-    return {
-        "gap": rounded_outward(near, far),
-        "time_headway": rounded_outward(headway[0], headway[1]),
-        "lateral_gap": rounded_outward(
-            np.maximum(across - place, 0.0), np.maximum(across + place, 0.0)
-        ),
-        "speed_difference": rounded_outward(difference - wrong, difference + wrong),
-    }
+    return rounded_outward(difference - wrong, difference + wrong)
 
 
 @once

@@ -11,7 +11,10 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
 from rulec.extraction.signals.measured_numbers import (
     LONGEST_S,
-    bounds_to_others,
+    difference_bounds,
+    gap_bounds,
+    headway_bounds,
+    lateral_gap_bounds,
     moves,
     own_speed,
     safe_distance,
@@ -19,6 +22,7 @@ from rulec.extraction.signals.measured_numbers import (
 )
 from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
+    Bounds,
     SignalColumns,
     SignalNames,
     latest,
@@ -75,7 +79,7 @@ def _lateral(context: DriveContext) -> SignalColumns:
 
 
 def _gap(context: DriveContext) -> SignalColumns:
-    return _measured(context, "gap", relations.gap(context))
+    return _measured("gap", relations.gap(context), gap_bounds(context))
 
 
 def _time_headway(context: DriveContext) -> SignalColumns:
@@ -83,17 +87,17 @@ def _time_headway(context: DriveContext) -> SignalColumns:
     (speed, _), drives = own_speed(context), moves(context)
     seconds = relations.gap(context) / np.where(drives, speed, 1.0)
     headway = np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
-    return _measured(context, "time_headway", headway)
+    return _measured("time_headway", headway, headway_bounds(context))
 
 
 def _lateral_gap(context: DriveContext) -> SignalColumns:
-    return _measured(context, "lateral_gap", relations.lateral_gap(context))
+    return _measured("lateral_gap", relations.lateral_gap(context), lateral_gap_bounds(context))
 
 
 def _speed_difference(context: DriveContext) -> SignalColumns:
     speeds = context.zero_if_standing(context.extents.along * KMH)
     difference = context.ego_extents.along * KMH - speeds
-    return _measured(context, "speed_difference", difference)
+    return _measured("speed_difference", difference, difference_bounds(context))
 
 
 def _time_to_collision(context: DriveContext) -> SignalColumns:
@@ -116,8 +120,7 @@ def _time_to_collision(context: DriveContext) -> SignalColumns:
     )
 
 
-def _measured(context: DriveContext, name: str, values: Floats) -> SignalColumns:
-    bounds = bounds_to_others(context)[name]
+def _measured(name: str, values: Floats, bounds: Bounds) -> SignalColumns:
     return SignalColumns(about={name: rounded(values)}, bounds={name: bounds})
 
 
