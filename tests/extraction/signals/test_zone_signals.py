@@ -225,6 +225,17 @@ def test_lights_that_nobody_tells_may_direct_a_crossing_at_a_junction(more, word
     assert kind(more, complete=["light"]) == "zebra"
 
 
+@pytest.mark.parametrize(("far_end", "word"), [(26, "unknown"), (6, "zebra")])
+def test_a_crossing_that_lanes_with_lights_lead_over_may_have_lights_for_all_lanes(far_end, word):
+    """Ego is on a lane aside of a junction, as one for who turns off is; lights are for another."""
+    across = lanelet(9, [(95, -6), (95, far_end)], width=4, types=frozenset({"crosswalk"}))
+    onward = {"types": frozenset()}
+    lanes = road(None, onward, straight(8, 0, 100, y=20, lights=RED), across)
+    found = told(lanes, going(7, (40.0, 40.0)))
+    unknown = found.unknown["crossing_kind"].any()
+    assert word == ("unknown" if unknown else found.world["crossing_kind"][0])
+
+
 def test_without_a_crossing_the_kind_is_the_usual_one():
     assert kind(road()) == "zebra"
 

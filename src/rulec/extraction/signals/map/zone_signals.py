@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
@@ -24,8 +25,9 @@ from rulec.extraction.signals.signal_passes import (
 )
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import Recording, is_there
+from rulec.recordings.recording import Recording, is_lane, is_there
 from rulec.scenario.recorded.lane_coordinates import crossings_along
+from rulec.scenario.recorded.route import lanelet_area
 
 _LIGHTS_AT_CROSSING_M = 30.0
 """A light whose line is so near before a pedestrian crossing directs it, too."""
@@ -110,24 +112,27 @@ def _crossing_kind(context: DriveContext) -> SignalColumns:
 @once_a_road
 def _crossings_lit(context: DriveContext) -> dict[float, tuple[bool, bool]]:
     """Where each crossing of the road begins, whether a light directs it, and perhaps does."""
-    road = context.road
-    own = [
-        start
-        for start, _ in crossings_along(
-            _crossings_with_lights(context), road.line, road.lanes, 0.0, road.line.length
-        )
-    ]
     # A net says itself which crossings have lights
     told = "light" in context.recording.complete
+    own = _starts(context, _crossings_with_lights(context))
+    shared = [] if told else _starts(context, _crossings_over_lit_lanes(context))
     lit, perhaps = (() if told else _directed_stretches(context, there) for there in (True, False))
     untold = () if told else _junctions_with_lights_untold(context)
     found = {}
-    for start, _ in road.crossings:
+    for start, _ in context.road.crossings:
         directed = any(abs(start - other) < 1.0 for other in own)
         directed |= any(low <= start <= high for low, high in lit)
-        unsure = not directed and any(low <= start <= high for low, high in (*perhaps, *untold))
-        found[start] = directed, unsure
+        unsure = any(low <= start <= high for low, high in (*perhaps, *untold))
+        unsure |= any(abs(start - other) < 1.0 for other in shared)
+        found[start] = directed, unsure and not directed
     return found
+
+
+def _starts(context: DriveContext, crossings: Recording) -> list[float]:
+    """Where (m) these crossings of a recording begin on ego's road."""
+    road = context.road
+    found = crossings_along(crossings, road.line, road.lanes, 0.0, road.line.length)
+    return [start for start, _ in found]
 
 
 @once_a_recording
@@ -139,6 +144,23 @@ def _crossings_with_lights(context: DriveContext) -> Recording:
         if "crosswalk" in lanelet.types and (lanelet.lights or "directed" in lanelet.types)
     }
     return replace(context.recording, lanelets=walkers)
+
+
+@once_a_recording
+def _crossings_over_lit_lanes(context: DriveContext) -> Recording:
+    """The recording with those pedestrian crossings only that lanes with lights lead over, too."""
+    lanelets = context.recording.lanelets
+    walkers = {name: x for name, x in lanelets.items() if "crosswalk" in x.types}
+    lit = [lanelet_area(x) for x in lanelets.values() if x.lights and is_lane(x)] if walkers else []
+    lit += [
+        way.area
+        for junction in context.surroundings.passages.junctions
+        for way in junction.ways
+        if walkers and any(lanelets[entry].lights for entry in way.entries)
+    ]
+    area = shapely.union_all(lit)
+    over = {name: x for name, x in walkers.items() if area.intersects(lanelet_area(x))}
+    return replace(context.recording, lanelets=over)
 
 
 def _junctions_with_lights_untold(context: DriveContext) -> Stretches:
