@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Protocol
 
 from rulec.diagnostics import Source
 from rulec.logic.sentences.language import TypeWords
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
-from rulec.rulebook.rulebook_model import Rulebook
+from rulec.rulebook.rulebook_model import SourceFile
 from rulec.toml import parsed_toml
 
 LANGUAGES = ("en", "de", "fr")
 
 
-def phrases_of(rulebook: Rulebook, language: str = "en") -> Mapping[str, str]:
+class HasSources(Protocol):
+    """A rulebook, compiled or not, which knows the files that it was made of."""
+
+    @property
+    def sources(self) -> Sequence[SourceFile]:
+        """The files."""
+
+
+def phrases_of(rulebook: HasSources, language: str = "en") -> Mapping[str, str]:
     """The phrases for the words of a rulebook, by the names of signals, values and quantities.
 
     They are those of the vocabularies that it uses as they ship, from ``vocabulary/phrases``; none
@@ -31,7 +39,7 @@ def phrases_of(rulebook: Rulebook, language: str = "en") -> Mapping[str, str]:
     return phrases
 
 
-def types_of(rulebook: Rulebook, language: str) -> Mapping[str, TypeWords]:
+def types_of(rulebook: HasSources, language: str) -> Mapping[str, TypeWords]:
     """How to speak of the types of a rulebook; none for types of its own."""
     types: dict[str, TypeWords] = {}
     for name in _vocabularies(rulebook):
@@ -39,7 +47,7 @@ def types_of(rulebook: Rulebook, language: str) -> Mapping[str, TypeWords]:
     return types
 
 
-def _vocabularies(rulebook: Rulebook) -> Iterator[str]:
+def _vocabularies(rulebook: HasSources) -> Iterator[str]:
     """The vocabularies that ship and that a rulebook uses as they are."""
     for source in rulebook.sources:
         path = rulebooks_folder() / "vocabulary" / Path(source.name).name

@@ -33,6 +33,7 @@ ENGLISH = Language(
     the_name="the {}",
     the_name_of="the {} of {}",
     value=("{} is “{}”", "{} is not “{}”"),
+    value_is="{} is {}",
     atom=("“{}” holds", "“{}” does not hold"),
     atom_of=("“{}” holds of {}", "“{}” does not hold of {}"),
     truth=("“{}” is true", "“{}” is not true"),

@@ -27,6 +27,7 @@ FRENCH = Language(
     the_name="« {} »",
     the_name_of="« {} » de {}",
     value=("{} est « {} »", "{} n'est pas « {} »"),
+    value_is="{} est de {}",
     atom=("« {} » est vrai", "« {} » n'est pas vrai"),
     atom_of=("« {} » est vrai de {}", "« {} » n'est pas vrai de {}"),
     truth=("la relation « {} » est vraie", "la relation « {} » n'est pas vraie"),

@@ -26,6 +26,7 @@ GERMAN = Language(
     the_name="„{}“",
     the_name_of="„{}“ von {}",
     value=("{} ist „{}“", "{} ist nicht „{}“"),
+    value_is="{} beträgt {}",
     atom=("„{}“ gilt", "„{}“ gilt nicht"),
     atom_of=("„{}“ gilt für {}", "„{}“ gilt nicht für {}"),
     truth=("„{}“ ist wahr", "„{}“ ist nicht wahr"),

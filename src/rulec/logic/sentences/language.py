@@ -93,6 +93,7 @@ class Language:
     the_name: str
     the_name_of: str
     value: Pair
+    value_is: str
     atom: Pair
     atom_of: Pair
     truth: Pair

@@ -44,7 +44,7 @@ def spoken_formula(
         case ltl.Unary() | ltl.Binary():
             return ltl.with_operands(formula, inside)
         case ltl.Comparison(terms):
-            spoken = [(factor, _spoken_term(term, phrases, language)) for factor, term in terms]
+            spoken = [(factor, spoken_term(term, phrases, language)) for factor, term in terms]
             return replace(formula, terms=tuple(spoken))
         case ltl.Atom(name, arguments, value):
             phrase = phrases.get(value or name)
@@ -60,7 +60,8 @@ def forms(phrase: str) -> tuple[str, str]:
     return _FORMS.sub(r"\1", phrase), _FORMS.sub(r"\2", phrase)
 
 
-def _spoken_term(term: ltl.Term, phrases: Mapping[str, str], language: Language) -> ltl.Term:
+def spoken_term(term: ltl.Term, phrases: Mapping[str, str], language: Language) -> ltl.Term:
+    """The same number with its phrase, if there is one."""
     if isinstance(term, ltl.Count):
         return replace(term, body=spoken_formula(term.body, phrases, language))
     phrase = phrases.get(term.name)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from textwrap import fill, wrap
 
 from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
 from rulec.analysis.trace_display import TraceTable
+from rulec.logic.sentences.facts import facts_in_words
 from rulec.report.text.terminal_text import styled, table_lines, visible
 from rulec.report.verdicts.violation_table import shown
+from rulec.rulebook.vocabulary_phrases import phrases_of
 
 WIDTH = 100
 TABLE_WIDTH = 96
@@ -121,13 +123,32 @@ def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
         first, *rest = wrap(visible(f"{what}: {ours} in {one}, {theirs} in {other}"))
         yield f"  {first}"
         yield from (f"    {line}" for line in rest)
+    phrases = phrases_of(rulebook_diff.first)
     for forbids, allows, table in rulebook_diff.tables(pair):
         yield f"  {forbids} forbids, {allows} allows"
         if table.rows:
             yield from _table_lines(table, "    ")
+            yield from _in_words(table, rulebook_diff, phrases)
         else:
             start, end = table.columns[0]
             yield f"    any trace of {end - start + 1} states"
+
+
+def _in_words(
+    table: TraceTable, rulebook_diff: RulebookDiff, phrases: Mapping[str, str]
+) -> Iterator[str]:
+    """What each state says that the one before did not, as sentences."""
+    for place, title in enumerate(state_titles(table)):
+        facts = []
+        for row in table.rows:
+            value = row.values[place]
+            before = row.values[place - 1] if place else None
+            if value is not None and not row.is_default and (not place or value != before):
+                facts.append((row.title, value, shown(value)))
+        said = facts_in_words(facts, rulebook_diff.first.vocabulary, phrases)
+        if said:
+            line = f"{title}: {visible(said)}"
+            yield from wrap(line, TABLE_WIDTH, initial_indent="    ", subsequent_indent="      ")
 
 
 def _only(rules: Sequence[OneSided], has: str, lacks: str, *, from_first: bool) -> str:

@@ -12,6 +12,7 @@ from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.terminal_text import styled, visible
 from rulec.report.verdicts.outcome_cases import fewest_cases
 from rulec.rulebook.rulebook_model import cited_law
+from rulec.rulebook.vocabulary_phrases import phrases_of
 
 if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
@@ -45,6 +46,7 @@ def as_text(
     rules = {rule.name: rule for rule in rulebook.rules}
     lines = [f"{visible(verdict.trace)}: {word}"]
     shown = verdict.violations[:MOST_VIOLATIONS]
+    phrases: Mapping[str, str] | None = None
     for number, violation in enumerate(shown):
         line = in_a_line(violation, rules[violation.rule], rulebook.name)
         lines.append(f"  {visible(line)}")
@@ -52,9 +54,10 @@ def as_text(
             # Explanations, 20 ms: only where there are some.
             from rulec.report.verdicts import violation_table
 
-            lines.append(
-                violation_table.as_text(explained[number], every_part=every_part, width=width)
-            )
+            if phrases is None:
+                phrases = phrases_of(rulebook)
+            wish = violation_table.Wish(width=width, every_part=every_part, phrases=phrases)
+            lines.append(violation_table.as_text(explained[number], wish))
     if len(verdict.violations) > len(shown):
         lines.append(f"  and {len(verdict.violations) - len(shown):,} more; --json has them all")
     return "\n".join([*lines, *doubtful])

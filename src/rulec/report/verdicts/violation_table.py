@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from decimal import Decimal
 from operator import itemgetter
 from textwrap import wrap
@@ -12,6 +12,7 @@ from textwrap import wrap
 from rulec.automata.thresholds import exact
 from rulec.lazy_dataclass import dataclass
 from rulec.logic.printing import number_in_words
+from rulec.logic.sentences.facts import facts_in_words
 from rulec.monitoring.explain.explanation import Explanation, Observation
 from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.console import PAGE_WIDTH
@@ -44,13 +45,27 @@ MOST_OF_NAMES = 16
 INDENT = "    "
 
 
-def as_text(explanation: Explanation, *, every_part: bool = False, width: int = PAGE_WIDTH) -> str:
-    """The rule's sentence and table, ``*`` marking changes at the decisive state.
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """How a table is wanted.
 
-    A table that is large or wider than ``width`` is folded, unless ``every_part`` is wanted.
+    One that is large or wider than ``width`` is folded, unless ``every_part`` is wanted.
+    ``phrases`` are those that the decisive state is told in.
     """
+
+    width: int = PAGE_WIDTH
+    every_part: bool = False
+    phrases: Mapping[str, str] = field(default_factory=dict)
+
+
+DEFAULT_WISH = Wish()
+
+
+def as_text(explanation: Explanation, wish: Wish = DEFAULT_WISH) -> str:
+    """The rule's sentence and table, ``*`` marking changes at the decisive state."""
+    width = wish.width
     decisive = explanation.states.index(explanation.decisive)
-    table = _table(explanation, decisive, width, every_part=every_part)
+    table = _table(explanation, decisive, width, every_part=wish.every_part)
     columns = [
         [
             styled(cell, "bold" if decisive in places else "")
@@ -61,7 +76,22 @@ def as_text(explanation: Explanation, *, every_part: bool = False, width: int = 
     lines = [INDENT + line for line in wrap(visible(explanation.rule.says), width - len(INDENT))]
     rows = [[f"{title} " for title in ("state", *table.titles)], *columns]
     lines += table_lines(list(zip(*rows, strict=True)), indent=INDENT, ruled=(0, table.n_facts))
-    return "\n".join([*lines, *_left_out(explanation, table), *_repair(explanation, width)])
+    lines += [*_left_out(explanation, table), *_in_words(explanation, decisive, wish)]
+    return "\n".join([*lines, *_repair(explanation, width)])
+
+
+def _in_words(explanation: Explanation, decisive: int, wish: Wish) -> Iterator[str]:
+    """What decides in the decisive state, as a sentence."""
+    facts = []
+    for fact in explanation.facts:
+        value = fact.values[decisive]
+        if fact.decides and fact.objects is None and value is not None:
+            number = value.middle if isinstance(value, Interval) else value
+            facts.append((fact.text, number, shown(value)))
+    said = facts_in_words(facts, explanation.vocabulary, wish.phrases)
+    if said:
+        line = f"at state {explanation.decisive}: {visible(said)}"
+        yield from wrap(line, wish.width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
 
 
 def _repair(explanation: Explanation, width: int) -> Iterator[str]:
