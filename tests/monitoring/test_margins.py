@@ -35,7 +35,9 @@ def explained(rules, name, *states, width=100):
     )
     violation = next(one for one in verify(trace, rules).violations if one.rule == name)
     explanation = explain(violation, trace, rules)
-    return explanation.margins(), violation_table.as_text(explanation, width=width)
+    return explanation.margins(), violation_table.as_text(
+        explanation, violation_table.Wish(width=width)
+    )
 
 
 def test_a_comparison_with_a_multiple(rules):

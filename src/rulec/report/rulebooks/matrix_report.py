@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from string import ascii_uppercase, digits
 from textwrap import fill
 
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
@@ -10,7 +11,7 @@ from rulec.report.json_document import JsonDocument, JsonPart, as_indented, fill
 from rulec.report.rulebooks.diff_formats import as_csv
 from rulec.report.rulebooks.diff_json import BookData
 from rulec.report.rulebooks.diff_text import WIDTH
-from rulec.report.text.markdown import code, escaped
+from rulec.report.text.markdown import anchors, code, escaped
 from rulec.report.text.markdown import table as markdown_table
 from rulec.report.text.terminal_text import styled, table_lines, visible
 from rulec.rulebook.rulebook_model import Strength
@@ -84,7 +85,7 @@ def render(matrix: ComparisonMatrix, output_format: str) -> str:
             # markdown-it and Pygments take 0.1 s.
             from rulec.report.text.html_page import PageTexts, as_html
 
-            return as_html(_as_markdown(matrix), PageTexts(TITLE))
+            return as_html(_as_markdown(matrix), PageTexts(TITLE), cell_class=_cell_class)
         case _:
             return _as_text(matrix)
 
@@ -141,24 +142,64 @@ def _summary(matrix: ComparisonMatrix) -> str:
     )
 
 
+_HEADINGS = (TITLE, "Rule by rule", "Pair by pair", "What each law says")
+
+
 def _as_markdown(matrix: ComparisonMatrix) -> str:
     head = ["", *(code(book.name) for book in matrix.books)]
-    by_rule, by_pair = (
-        markdown_table(head, [[code(name), *map(escaped, cells)] for name, *cells in rows])
-        for rows in (_by_rule(matrix), _by_pair(matrix))
-    )
+    # Sections have the places that headings of these texts get on a page.
+    places = anchors([*_HEADINGS, *(rule.name for rule in matrix.shared)])[len(_HEADINGS) :]
+    by_rule = [
+        [f"[{code(name)}](#{place})", *map(escaped, cells)]
+        for place, (name, *cells) in zip(places, _by_rule(matrix), strict=True)
+    ]
+    by_pair = [[code(name), *map(escaped, cells)] for name, *cells in _by_pair(matrix)]
     return "\n\n".join(
         [
             f"# {TITLE}",
             f"{escaped(_summary(matrix))}.",
             "## Rule by rule",
             f"{RULES.partition(': ')[2].capitalize()}.",
-            by_rule,
+            markdown_table(head, by_rule),
             "## Pair by pair",
             f"{escaped(PAIRS.partition(': ')[2].capitalize())}.",
-            by_pair,
+            markdown_table(head, by_pair),
+            "## What each law says",
+            *(block for rule in matrix.shared for block in _laws(rule)),
         ]
     )
+
+
+def _laws(rule: SharedRule) -> Iterator[str]:
+    """The section on a rule: its laws by their letters, with what their rulebooks cite and say."""
+    yield f"### {escaped(rule.name)}"
+    rows = []
+    for book in sorted(rule.laws, key=lambda name: (rule.laws[name], name)):
+        own = rule.rules[book]
+        letter = _letter(rule, book)
+        rows.append([letter, code(book), own.strength, escaped(own.cite), escaped(own.says)])
+    yield markdown_table(["", "rulebook", "strength", "provision", "what it says"], rows)
+    said = [
+        f"- {code(book)}: {escaped(remark.because)}"
+        for book, remark in rule.remarks.items()
+        if remark.because
+    ]
+    if said:
+        yield "Without it, because:"
+        yield "\n".join(said)
+
+
+_COLOURS = 6
+"""So many colours of laws there are on a page."""
+
+
+def _cell_class(text: str) -> str:
+    """The class of a cell with the letter of a law, so that equal laws have equal colours."""
+    if text in (ABSENT, SILENT):
+        return "absent"
+    if len(text.rstrip(digits)) != 1 or not text[0].isalpha():
+        return ""
+    return f"law law{ascii_uppercase.index(text[0].upper()) % _COLOURS}"
 
 
 def _as_csv(matrix: ComparisonMatrix) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
@@ -32,15 +32,22 @@ class PageTexts:
     language: str = "en"
 
 
-def as_html(markdown: str, page: PageTexts, figures: Mapping[str, str] | None = None) -> str:
+def as_html(
+    markdown: str,
+    page: PageTexts,
+    figures: Mapping[str, str] | None = None,
+    cell_class: Callable[[str], str] = lambda _: "",
+) -> str:
     """The page; HTML in the Markdown is shown as text.
 
-    ``figures`` are the SVG elements that stand for images, by their addresses.
+    ``figures`` are the SVG elements that stand for images, by their addresses. ``cell_class`` gives
+    the class of a table's cell by its text, empty for none.
     """
     parser = MarkdownIt("commonmark", {"html": False, "highlight": _highlighted}).enable("table")
     tokens = parser.parse(markdown)
     _name_headings(tokens)
     _scope_cells(tokens)
+    _class_cells(tokens, cell_class)
     _draw_figures(tokens, figures or {})
     body = parser.renderer.render(list(_wrapped(tokens, page.contents)), parser.options, {})
     return (
@@ -87,6 +94,13 @@ def _scope_cells(tokens: Sequence[Token]) -> None:
             if token.type == "td_open":
                 token.attrSet("scope", "row")
             first = token.type == "td_open"
+
+
+def _class_cells(tokens: Sequence[Token], cell_class: Callable[[str], str]) -> None:
+    for token, inline in pairwise(tokens):
+        name = cell_class(inline.content) if token.type == "td_open" else ""
+        if name:
+            token.attrSet("class", name)
 
 
 def _draw_figures(tokens: Sequence[Token], figures: Mapping[str, str]) -> None:
