@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 
 from rulec.logic.formula import Atom, QuantityTerm
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.language import Language
-from rulec.logic.sentences.spoken_words import SpokenQuantity, spoken_formula, spoken_term
-from rulec.logic.sentences.wording import atom_clause, listed
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Vocabulary
+from rulec.logic.sentences.spoken_words import (
+    SpokenAtom,
+    SpokenQuantity,
+    spoken_formula,
+    spoken_term,
+)
+from rulec.logic.sentences.wording import atom_clause, listed, of_objects
+from rulec.vocabulary import Enumeration, Quantity, Vocabulary
 
 
 def facts_in_words(
@@ -18,36 +23,33 @@ def facts_in_words(
     phrases: Mapping[str, str],
     language: Language = ENGLISH,
 ) -> str:
-    """Facts, joined; those whose words have no phrase are left out.
+    """Facts, joined; nothing if none of their words has a phrase.
 
     Each is what it is about, such as ``gap(2)``, its value, and how the value is written, which
     only numbers need.
     """
-    clauses: list[str] = []
+    clauses = []
+    has_phrase = False
     for about, value, shown in facts:
         name, _, rest = about.partition("(")
         items = tuple(rest.removesuffix(")").split(", ")) if rest else ()
         item = vocabulary.declarations.get(name)
         # The name of an object may hold what stands between two of them.
-        if item is not None and len(items) == len(item.parameters):
-            clauses += _clauses(Atom(name, items), (item, value, shown), phrases, language)
-    return listed(clauses, language) if clauses else ""
-
-
-def _clauses(
-    atom: Atom,
-    told: tuple[Declaration, bool | str | float, str],
-    phrases: Mapping[str, str],
-    language: Language,
-) -> Iterator[str]:
-    item, value, shown = told
-    if isinstance(item, Quantity):
-        term = spoken_term(QuantityTerm(atom.name, atom.arguments), phrases, language)
-        if isinstance(term, SpokenQuantity):
-            yield language.value_is.format(term.noun, f"{language.decimals(shown)} {item.unit}")
-        return
-    said = str(value) if isinstance(item, Enumeration) else None
-    if (said or atom.name) in phrases:
-        named = spoken_formula(Atom(atom.name, atom.arguments, said), phrases, language)
-        assert isinstance(named, Atom), "an atom that is spoken stays one"
-        yield atom_clause(named, language, holds=said is not None or value is True)
+        if item is None or len(items) != len(item.parameters):
+            continue
+        if isinstance(item, Quantity):
+            term = spoken_term(QuantityTerm(name, items), phrases, language)
+            spoken = isinstance(term, SpokenQuantity)
+            noun = term.noun if isinstance(term, SpokenQuantity) else ""
+            number = f"{language.decimals(shown)} {item.unit}"
+            clauses.append(
+                language.value_is.format(noun or of_objects(name, items, language), number)
+            )
+        else:
+            said = str(value) if isinstance(item, Enumeration) else None
+            atom = spoken_formula(Atom(name, items, said), phrases, language)
+            assert isinstance(atom, Atom), "an atom that is spoken stays one"
+            spoken = isinstance(atom, SpokenAtom)
+            clauses.append(atom_clause(atom, language, holds=said is not None or value is True))
+        has_phrase |= spoken
+    return listed(clauses, language) if has_phrase else ""
