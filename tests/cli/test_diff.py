@@ -56,6 +56,7 @@ leave_room: new is stricter: it forbids all that old forbids, and more
     ─────────────────────────
     station(c)         beside
     side_gap(c) in m   1.5
+    0: ego is beside c and the side gap of c is 1.5 m
 
 no_passing: new is laxer: it allows all that old allows, and more
   old forbids, new allows
@@ -64,6 +65,9 @@ no_passing: new is laxer: it allows all that old allows, and more
     station(v)   behind   beside    in_front_of
     lateral(v)   left_of  right_of  left_of
     congested    F        T         F
+    0: ego is behind v, ego is to the left of v and “traffic is not slow and dense”
+    1: ego is beside v, ego is to the right of v and “traffic is slow and dense”
+    2: ego is in front of v, ego is to the left of v and “traffic is not slow and dense”
 
 only in old
   soft rule no_horn; new is silent on it: "in the act on noise"
