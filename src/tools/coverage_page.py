@@ -25,6 +25,9 @@ SITUATIONS = Path(__file__).resolve().parents[2] / "tests" / "law"
 PATTERNS = "schemas"
 """The rulebook that declares the topics, and that all national ones extend."""
 
+TYPE_APPROVAL = "un-"
+"""How the names of those begin that say what vehicles must do to be approved: no national law."""
+
 WHOLE, PART, SILENT, NOTHING = "●", "◐", "–", "·"
 
 _SIGNS = {
@@ -139,7 +142,7 @@ def _summary(cells: Mapping[tuple[str, str], str]) -> str:
 def national_books() -> Iterator[Book]:
     """The rulebooks that ship and put a law into rules by the shared patterns, by name."""
     for path in sorted(rulebooks_folder().glob("*/*.rules")):
-        if path.stem != path.parent.name:
+        if path.stem != path.parent.name or path.stem.startswith(TYPE_APPROVAL):
             continue
         chain = _chain(path.stem)
         if chain[-1].law is not None and chain[0].name == tree.Name(PATTERNS):
