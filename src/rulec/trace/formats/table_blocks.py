@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import field
 from typing import Any, overload
 
 import numpy as np
@@ -13,6 +14,7 @@ from rulec.lazy_dataclass import dataclass
 from rulec.trace.formats import table_reader as tables
 from rulec.trace.formats.table_reader import OBJECT, OTHER, STEP, STEP_S, TRACE, TYPE
 from rulec.trace.trace_model import Trace
+from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
 
 class OddTableError(Exception):
@@ -58,8 +60,9 @@ class Block(Sequence["Trace | RulecError"]):
     ``columns`` has what is in the ``table``'s columns. ``starts`` are the rows with which traces
     begin, counted from 0, and how many rows there are. ``rows`` gives those from one to another
     (exclusive) as ``traces_in`` reads them. ``partial`` are the traces of which something is not
-    known or no float, ``unsaid`` those of them of which the columns do not say it. With an
-    ``outline`` nothing else is odd, and traces are made from it and from columns.
+    known or no float, ``unsaid`` those of them of which the columns do not say it; ``unknown`` are
+    the rows in which a name's value is. With an ``outline`` nothing else is odd, and traces are
+    made from it and from columns.
     """
 
     table: tables.Table
@@ -69,6 +72,7 @@ class Block(Sequence["Trace | RulecError"]):
     file: SourceLocation
     partial: frozenset[int] = frozenset()
     unsaid: frozenset[int] = frozenset()
+    unknown: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
     outline: BlockPresence | None = None
 
     def __len__(self) -> int:
@@ -212,10 +216,8 @@ def _outlined_trace(block: Block, outline: BlockPresence, place: int) -> Trace |
     steps, names = outline.step[rows].tolist(), outline.objects_of(place)
     items, others = outline.item[rows].tolist(), outline.other[rows].tolist()
     states: list[dict[str, Any]] = [{} for _ in range(int(outline.length[place]))]
-    for name in block.table.names:
-        column = block.columns[name]
-        where = np.flatnonzero(column.given[rows])
-        for row, value in zip(where.tolist(), cells_of(column, where + start), strict=True):
+    for name, where, values in _said_in(block, start, stop):
+        for row, value in zip(where.tolist(), values, strict=True):
             of, last = states[steps[row]], name
             if items[row] != NOBODY:
                 of, last = of.setdefault(name, {}), names[items[row]]
@@ -240,6 +242,19 @@ def _outlined_trace(block: Block, outline: BlockPresence, place: int) -> Trace |
         },
         place=block.table.place(number),
     )
+
+
+def _said_in(
+    block: Block, start: int, stop: int
+) -> Iterator[tuple[str, Rows, Sequence[PartialValue]]]:
+    """What is said of each name in rows, counted from the first one."""
+    for name in block.table.names:
+        column = block.columns[name]
+        where = np.flatnonzero(column.given[start:stop])
+        yield name, where, cells_of(column, where + start)
+    for name, unknown in block.unknown.items():
+        first, last = np.searchsorted(unknown, (start, stop)).tolist()
+        yield name, unknown[first:last] - start, [UNKNOWN] * (last - first)
 
 
 def cells_of(column: Column, rows: Rows) -> list[Any]:

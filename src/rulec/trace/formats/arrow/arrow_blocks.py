@@ -27,6 +27,7 @@ from rulec.trace.formats.table_reader import (
     PARTIAL,
     STEP,
     TRACE,
+    UNKNOWN_NAMES,
     Row,
     Table,
     in_chunks,
@@ -108,18 +109,51 @@ def _block(
     def rows(start: int, stop: int) -> Iterator[Row]:
         return _rows([whole.slice(start, stop - start)], first + start)
 
+    unknown = _unknown_rows(whole, table)
+    if unknown is None:
+        unknown = {}
+        partial |= given_in(whole.column(table.at[UNKNOWN_NAMES]))
+    for nobody_knows in unknown.values():
+        said[nobody_knows] = True
     unsaid, others = (
         frozenset((np.searchsorted(starts, np.flatnonzero(flags), "right") - 1).tolist())
         for flags in (partial, said)
     )
-    return blocks.Block(table, columns, starts, rows, file, partial=unsaid | others, unsaid=unsaid)
+    return blocks.Block(
+        table,
+        columns,
+        starts,
+        rows,
+        file,
+        partial=unsaid | others,
+        unsaid=unsaid,
+        unknown=unknown,
+    )
+
+
+def _unknown_rows(piece: Piece, table: Table) -> Mapping[str, NDArray[np.int64]] | None:
+    """The rows in which a name's value is unknown; None if not all is said in lists."""
+    if UNKNOWN_NAMES not in table.at:
+        return {}
+    lists = piece.column(table.at[UNKNOWN_NAMES])
+    if types.is_null(lists.type):
+        return {}
+    if not types.is_list(lists.type) or not types.is_string(lists.type.value_type):
+        return None
+    lengths = compute.fill_null(compute.list_value_length(lists), 0)
+    codes, names = codes_in(lists.flatten())
+    if (codes < 0).any():
+        return None
+    row = np.repeat(np.arange(len(piece)), numbers_in(lengths))
+    return {name: row[codes == code] for code, name in enumerate(names)}
 
 
 def _partial_rows(piece: Piece, table: Table) -> NDArray[np.bool_]:
-    """The rows that say that something is not known."""
+    """The rows that say of bounds, of what is told or of the end that something is not known."""
     rows = np.zeros(len(piece), dtype=bool)
     bounds = chain.from_iterable(table.intervals.values())
-    for place in (*(table.at[name] for name in PARTIAL if name in table.at), *bounds):
+    own = [table.at[name] for name in PARTIAL if name in table.at and name != UNKNOWN_NAMES]
+    for place in (*own, *bounds):
         array = piece.column(place)
         is_text = types.is_string(array.type) or types.is_dictionary(array.type)
         rows |= coded(array).given if is_text else given_in(array)
