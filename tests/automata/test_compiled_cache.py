@@ -67,7 +67,7 @@ class _NoWorker:
 _WORKER = compiler._worker
 
 
-def _refuse():
+def _refuse(**_):
     raise AssertionError("it has been compiled before")
 
 

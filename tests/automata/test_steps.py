@@ -109,9 +109,9 @@ def compiled(monkeypatch):
     """What is compiled, as lists of names, call by call."""
     calls = []
 
-    def recorded(rulebook, formulas):
+    def recorded(rulebook, formulas, **more):
         calls.append(([one.rule.name for one in formulas.rules], formulas.step_s))
-        return build_all(rulebook, formulas)
+        return build_all(rulebook, formulas, **more)
 
     build_all = step_compilation.build_all
     monkeypatch.setattr(step_compilation, "build_all", recorded)
@@ -239,6 +239,27 @@ def test_there_is_a_limit_on_the_steps_that_are_compiled_for(compiled):
     (said,) = refused.value.diagnostics
     assert "--limit steps=NUMBER" in said.help
     assert len(compiled) == 3
+
+
+def test_one_process_builds_the_machines_of_many_steps(compiled_anew, monkeypatch):
+    started, start = [], compiler._started
+
+    def starting():
+        started.append(start())
+        return started[-1]
+
+    monkeypatch.setattr(compiler, "_started", starting)
+    every = StepCompiler(book(ANSWERED))
+    for number in range(1, 6):
+        every(Fraction(1, number))
+    assert len(started) == 2, "the first, and one that waits for more"
+    (waiting,) = compiler._waiting.values()
+    waiting[0].kill()
+    waiting[0].wait()
+    assert every(Fraction(1, 8)).rules
+    assert len(started) == 3
+    compiler._end_waiting()
+    assert all(process.poll() is not None for process, _ in started)
 
 
 def test_a_bound_of_too_many_steps_is_refused_without_trying():

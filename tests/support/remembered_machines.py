@@ -24,10 +24,10 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
     def kept(job: Job) -> Path:
         return folder / sha256(pickle.dumps(job)).hexdigest()
 
-    def answers_to(jobs: Sequence[Job]) -> Answers:
+    def answers_to(jobs: Sequence[Job], *, more_will_come: bool = False) -> Answers:
         is_usual = compiler._WORKER is _SCRIPT and compiler._worker is _WORKER
         if not is_usual or compiler._REQUIRE_CONFINED in os.environ or not jobs:
-            return ASKED(jobs)
+            return ASKED(jobs, more_will_come=more_will_come)
         known = [file.read_bytes() if file.exists() else b"" for file in map(kept, jobs)]
         unknown = [job for job, found in zip(jobs, known, strict=True) if not found]
         asked, spot = ASKED(unknown) if unknown else ([], "")

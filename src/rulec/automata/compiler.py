@@ -6,6 +6,7 @@ so it runs beside this one, with bounds on processor time and memory.
 
 from __future__ import annotations
 
+import atexit
 import os
 import pickle
 import subprocess
@@ -13,6 +14,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
+from typing import TypeAlias
 
 from rulec.automata.alphabet import propositions_of, reads_of
 from rulec.automata.axiom_instances import axiom_groups, axiom_instances
@@ -103,11 +105,16 @@ def compile_rulebook(
 
 
 def build_all(
-    rulebook: Rulebook, formulas: RulebookFormulas, cpu_limit_s: int = CPU_LIMIT_S
+    rulebook: Rulebook,
+    formulas: RulebookFormulas,
+    cpu_limit_s: int = CPU_LIMIT_S,
+    *,
+    more_will_come: bool = False,
 ) -> CompiledRulebook:
     """Build the automaton of every formula, in the order of the rules.
 
-    ``cpu_limit_s``: processor time that a rule's automaton may take, in whole seconds. Raises
+    ``cpu_limit_s``: processor time that a rule's automaton may take, in whole seconds. A worker of
+    which ``more_will_come`` waits for the next call, for to start it takes a quarter second. Raises
     RulecError with the formulas' problems; R0401 for each rule whose automaton is too large, R0402
     for each whose automaton failed its check, R0403 if Spot is not installed, R0409 for axioms that
     contradict each other.
@@ -116,7 +123,8 @@ def build_all(
     problems = list(formulas.problems)
     if problems and not formulas.rules:
         raise RulecError(problems)  # there is nothing to compile, so no process is started
-    answers, spot = answers_to([_job(rulebook, rule, cpu_limit_s) for rule in formulas.rules])
+    jobs = [_job(rulebook, rule, cpu_limit_s) for rule in formulas.rules]
+    answers, spot = answers_to(jobs, more_will_come=more_will_come)
     for lowered, answer in zip(formulas.rules, answers, strict=True):
         if isinstance(answer, Done):
             compiled.append(_compiled(lowered.rule, lowered.step_s, answer))
@@ -141,7 +149,9 @@ def build_all(
     )
 
 
-def answers_to(jobs: Sequence[Job]) -> tuple[list[Done | Failed | None], str]:
+def answers_to(
+    jobs: Sequence[Job], *, more_will_come: bool = False
+) -> tuple[list[Done | Failed | None], str]:
     """The worker's answers, None to a job that was its end; and Spot's version.
 
     Raises RulecError R0403 if Spot is not installed.
@@ -150,16 +160,50 @@ def answers_to(jobs: Sequence[Job]) -> tuple[list[Done | Failed | None], str]:
     spot = ""
     while len(answers) < len(jobs) or not spot:
         # A worker lives until it is done or a job has killed it; the next one takes the rest.
-        with _worker() as (process, spot):
+        with _worker(more_will_come=more_will_come) as (process, spot):
             for job in jobs[len(answers) :]:
                 answers.append(_ask(process, job))
                 if answers[-1] is None:
+                    _end(process)
                     break
     return answers, spot
 
 
+_Started: TypeAlias = "tuple[subprocess.Popen[bytes], str]"
+_waiting: dict[tuple[object, ...], _Started] = {}
+"""A worker that waits for more, by the process that has started it and how; one at most."""
+
+
 @contextmanager
-def _worker() -> Iterator[tuple[subprocess.Popen[bytes], str]]:
+def _worker(*, more_will_come: bool = False) -> Iterator[_Started]:
+    key = os.getpid(), _WORKER, os.environ.get(_REQUIRE_CONFINED), *sys.path
+    process, spot = _waiting.pop(key) if key in _waiting else _started()
+    if process.poll() is not None:  # ended while it waited
+        _end(process)
+        process, spot = _started()
+    is_fit = False
+    try:
+        yield process, spot
+        is_fit = more_will_come and process.poll() is None and not _waiting
+    finally:
+        if is_fit:
+            _waiting[key] = process, spot
+        else:
+            _end(process)
+
+
+@atexit.register
+def _end_waiting() -> None:
+    for key in [key for key in _waiting if key[0] == os.getpid()]:
+        _end(_waiting.pop(key)[0])
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.kill()
+    process.communicate()
+
+
+def _started() -> _Started:
     process = subprocess.Popen(
         [sys.executable, "-I", "-c", _WORKER, *filter(None, sys.path)],
         stdin=subprocess.PIPE,
@@ -179,10 +223,10 @@ def _worker() -> Iterator[tuple[subprocess.Popen[bytes], str]]:
             raise RulecError(no_spot(ready.problem))
         if ready.confined and not all(ready.confined) and os.environ.get(_REQUIRE_CONFINED):
             raise RulecError(not_confined(ready.confined))
-        yield process, ready.spot
-    finally:
-        process.kill()
-        process.communicate()
+    except BaseException:
+        _end(process)
+        raise
+    return process, ready.spot
 
 
 def _ask(process: subprocess.Popen[bytes], job: Job) -> Done | Failed | None:

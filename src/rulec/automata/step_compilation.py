@@ -90,7 +90,10 @@ class StepCompiler:
             if missing and self._header is not None:
                 _check_steps(self._built, self.rulebook)
                 self._built += 1
-            built = build_all(self.rulebook, replace(formulas, rules=missing))
+            # Whoever has met a second step will meet more.
+            more_will_come = self._header is not None
+            lacking = replace(formulas, rules=missing)
+            built = build_all(self.rulebook, lacking, more_will_come=more_will_come)
             self._header = replace(
                 built, source=self.rulebook, recompile=self, prefixes=prefix_machines
             )
