@@ -32,6 +32,17 @@ FILE_TOO_LARGE = Code(
     kind="command",
 )
 
+TOO_LONG_TO_READ = Code(
+    "R0736",
+    title="a file is longer than any of its kind",
+    why="Texts of laws, saved audits and monitors, compiled rulebooks and settings are read as a "
+    "whole, so each kind has a limit on its bytes, those of a packed file unpacked. A small file "
+    "may hide gigabytes.",
+    bad="head -c 6000000 /dev/zero | gzip > law.md.gz\nrulec audit vienna --law law.md.gz",
+    good="printf '### Article 1 Scope\\nText.\\n' > law.md\nrulec audit vienna --law law.md",
+    kind="command",
+)
+
 UNREADABLE_FILE = Code(
     "R0701",
     title="a file cannot be read",

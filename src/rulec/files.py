@@ -18,6 +18,7 @@ from unicodedata import normalize
 from rulec.diagnostics import Label, RulecError, Source, SourceLocation, Span
 from rulec.file_messages import (
     NOT_UTF8,
+    TOO_LONG_TO_READ,
     UNREADABLE_FILE,
     not_the_same,
     not_utf8,
@@ -28,6 +29,15 @@ from rulec.work_trees import refuse_link_out
 
 MAX_SOURCE_BYTES: Final = 5_000_000
 """A rulebook has thousands of characters; millions are a mistake."""
+
+MAX_LAW_BYTES: Final = 5_000_000
+"""The text of a law, or a saved audit; no state's road traffic act has half of it."""
+
+MAX_SAVED_BYTES: Final = 100_000_000
+"""A compiled rulebook or a saved monitor."""
+
+MAX_SETTINGS_BYTES: Final = 1_000_000
+"""A project's settings."""
 
 LARGEST_UNPACKED: Final = 4_000_000_000
 """Bytes of a packed file, unpacked; a thousandth of them may hide so many."""
@@ -225,6 +235,18 @@ def opened(
                 yield cast("IO[bytes]", unpacked)
         else:
             yield stream
+
+
+def read_whole(stream: IO[bytes], path: Path, most: int) -> bytes:
+    """The bytes of an open file that is read as a whole. Raises RulecError R0736 beyond a limit."""
+    data = stream.read(most + 1)
+    if len(data) > most:
+        raise TOO_LONG_TO_READ.error(
+            SourceLocation(str(path)),
+            f"the file has more than {most:,} bytes, packed ones unpacked",
+            help="no file of its kind is as long; is it another one?",
+        )
+    return data
 
 
 def _in_place_of(path: Path) -> Path:

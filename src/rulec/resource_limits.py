@@ -106,7 +106,16 @@ SEARCH: Final = ResourceLimit(
     "say less in one rule",
 )
 
-LIMITS: Final = {limit.name: limit for limit in (CHOICES, STEPS, CUBES, PAIRS, TYPE_DEPTH, SEARCH)}
+CITES: Final = ResourceLimit(
+    "cites",
+    100_000_000,
+    "characters of articles to look through for what its rules cite",
+    "give the text of the law with a heading for each article",
+)
+
+LIMITS: Final = {
+    limit.name: limit for limit in (CHOICES, STEPS, CUBES, PAIRS, TYPE_DEPTH, SEARCH, CITES)
+}
 """All limits that can be lifted."""
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
 from rulec.file_messages import OUT_OF_TREE, WRONG_SETTINGS
-from rulec.files import decoded, opened
+from rulec.files import MAX_SETTINGS_BYTES, decoded, opened, read_whole
 from rulec.toml import parsed_toml
 from rulec.work_trees import leads_out, refuse_link_out, tree_of
 
@@ -39,7 +39,7 @@ def search_path(folder: Path | None = None) -> tuple[Path, ...]:
 def _folders(file: Path) -> tuple[Path, ...]:
     refuse_link_out(file)
     with opened(file) as stream:
-        source = decoded(str(file), stream.read())
+        source = decoded(str(file), read_whole(stream, file, MAX_SETTINGS_BYTES))
     settings = parsed_toml(source, WRONG_SETTINGS, _HOW)
     for name in settings:
         if name != "search_path":

@@ -23,6 +23,9 @@ PAGE = (Path(__file__).parents[2] / "docs" / "limits.md").read_text(encoding="ut
 
 FIXED = {
     "bytes of a rulebook or vocabulary": files.MAX_SOURCE_BYTES,
+    "bytes of a law's text, of a saved audit": files.MAX_LAW_BYTES,
+    "bytes of a compiled rulebook, of a saved monitor": files.MAX_SAVED_BYTES,
+    "bytes of `rulec.toml`": files.MAX_SETTINGS_BYTES,
     "words and signs of a source": scanner.MAX_TOKENS,
     "operators, atoms and comparisons of a rule, definitions put in": size_limits.MOST_PARTS,
     "operators inside one another, definitions put in": size_limits.DEEPEST,

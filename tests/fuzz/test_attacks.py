@@ -1,5 +1,6 @@
 """Small inputs that once took minutes or gigabytes, each in a process of its own."""
 
+import gzip
 import json
 
 import pyarrow
@@ -67,6 +68,10 @@ SURFACES = "".join(
     f'[[road.surface]]\ntype = "crossing"\ns = [{n}.0, {n}.5]\n' for n in range(30_000)
 )
 ROAD = "[road]\ns = [0.0, 90000.0]\nlanes = [-1.75, 1.75]\n[ego]\ns = 0.0\nd = 0.0\n"
+CITES = "rulebook cites\nsignal p default false\n" + "".join(
+    f'hard rule r{n} {{ cite "Article 1({n}) no. {n}" require always p }}\n' for n in range(1, 100)
+)
+LONG_LAW = "### Article 1 Passing\n" + "(1) aa.\n" * 600_000
 RESTORE = ["monitor", "./soon.rules", "--restore", "m.json"]
 
 COSTLY = {
@@ -161,6 +166,36 @@ COSTLY = {
         ["verify", "ZAM_Road-1_1_T-1.xml", "-r", "de", "--threshold", "smoothing_s=1e308"],
         2,
         "smoothing_s",
+    ),
+    "a law's text of gigabytes, packed": (
+        {"law.md": lambda: gzip.compress(bytes(200_000_000), 1)},
+        ["audit", "./soon.rules", "--law", "law.md"],
+        2,
+        "R0736",
+    ),
+    "a law of two million paragraphs, and as many places as rules": (
+        {"cites.rules": lambda: CITES, "law.md": lambda: LONG_LAW},
+        ["audit", "./cites.rules", "--law", "law.md"],
+        2,
+        "--limit cites=",
+    ),
+    "a compiled rulebook of gigabytes, packed": (
+        {"book.json": lambda: gzip.compress(b"{" + b" " * 200_000_000, 1)},
+        ["verify-compiled", "book.json"],
+        2,
+        "R0736",
+    ),
+    "a saved audit of gigabytes, packed": (
+        {"old.json": lambda: gzip.compress(b" " * 100_000_000, 1)},
+        ["audit", "./soon.rules", "--compare", "old.json"],
+        2,
+        "R0736",
+    ),
+    "settings of gigabytes, packed": (
+        {"rulec.toml": lambda: gzip.compress(b"#" * 50_000_000, 1)},
+        ["check", "./soon.rules"],
+        2,
+        "R0736",
     ),
     "settings with a folder's name of 300 characters": (
         {"rulec.toml": lambda: f'search_path = ["{"a" * 300}"]\n'},

@@ -7,10 +7,13 @@ from functools import cached_property
 from pathlib import Path
 
 import click
+import pyarrow.csv
+import pyarrow.parquet
 
 from rulec.cli.main import VERBS, main, rulec
 from support.builders.compiled_files import sealed
 from support.fuzz.mutators import STRANGE_WORDS, mutated_json, mutated_words
+from support.generators.mutated_files import mutated_bytes
 
 TOP = Path(__file__).resolve().parents[3]
 LANE = """rulebook lane
@@ -41,6 +44,56 @@ s = 30
 d = 0
 speed = 2
 """
+LAW = """# Road Act
+
+## Article 1 Keeping right
+
+(1) Drivers keep right. They do so, too, where Nr. 2 says so.
+(2) Nobody passes
+1. at zebras,
+2. before bends.
+
+## Article 2 Passing
+
+(1) Who passes does so on the left.
+
+## Annex 1 Signs
+
+Sign 205 Give way
+Sign 206 Stop
+"""
+BASE = """rulebook base
+law "Treaty" as of 2020-01-01
+signal p, q, r default false
+topics { passing "Passing" of no_pass; lights "Lamps" }
+hard rule no_pass { cite "Art. 2" require always (p implies q) unless r }
+hard rule lamps { cite "Art. 1" topic lights require never (p then q then r) unless q at end }
+"""
+LISTED = """rulebook listed
+law "Road Act" as of 2024-01-01
+extends base
+signal s default false
+provisions "https://example.org/act" as of 2024-01-01 {
+  "Article 1" "Keeping right" not machine-readable because "it asks for care";
+  "Article 2" "Passing";
+  "Annex 1" "Signs" silent because "no driving"
+}
+confirm rule lamps { cite "Article 1(1), (2) no. 1" certainty verified }
+override rule no_pass { cite "Article 2(1) sentence 1" also unless s initially }
+soft rule calm weight 2 { cite "Annex 1 sign 205" require always not p and q }
+"""
+TABLE = """trace,step,step_s,object,type,surface,position
+a,0,1.0,,,R_cw,
+a,0,1.0,v1,vehicle,,b
+a,1,1.0,,,R_cw,
+a,1,1.0,v1,vehicle,,f
+"""
+PAIRS = ("lamps=calm", "calm=lamps", "=", "a=b")
+STATES = """{"objects": {"v": "vehicle"}, "state": {"surface": "R_cw", "position": {"v": "b"}}}
+{"state": {"surface": "R_cw", "position": {"v": "f"}}}
+"""
+STANDARD_INPUT = "standard_input"
+"""The file that stands for it, if a target writes one."""
 FORMULA = "(v: vehicle) always not (b(v) and eventually[<= 5 s] f(v))"
 
 
@@ -63,11 +116,19 @@ class Workplace:
         self.write("traces.jsonl", (TOP / "docs/samples/traces.jsonl").read_text())
         self.write("rulec.toml", 'search_path = ["books"]\n')
         (self.folder / "books").mkdir()
+        self.write("base.rules", BASE)
+        self.write("listed.rules", LISTED)
+        self.write("law.md", LAW)
+        self.write("table.csv", TABLE)
+        in_words("audit", self.folder / "listed.rules", "-o", self.folder / "audit.json")
+        in_words("verify", self.folder / "table.csv", "-r", "esterle2019")
+        in_words("monitor", "esterle2019", "--save", self.folder / "saved.json")
+        rows = pyarrow.csv.read_csv(self.folder / "table.csv")
+        pyarrow.parquet.write_table(rows, self.folder / "table.parquet", compression="none")
         in_words("compile", self.folder / "lane.rules", "--step", "1", "-o", self.folder / "out")
         findings = self.folder / "findings.jsonl"
         judged = self.folder / "traces.jsonl"
         in_words("verify", judged, "-r", "esterle2019", "--exposure", "-o", findings)
-        return self
 
     def write(self, name, content):
         """Write a file, and return it."""
@@ -157,6 +218,114 @@ def findings(place, pick):
     return ["rates", file]
 
 
+def laws(place, pick):
+    """Texts of a law that a rulebook cites, and how it cites it."""
+    file = place.write("tried.md", mutated_words(LAW, pick, [LAW, LISTED]))
+    book = place.write("tried.rules", mutated_words(LISTED, pick, [LISTED, LAW]))
+    book = pick.choice((book, str(place.folder / "listed.rules")))
+    now = ["--law-now", str(place.folder / "law.md")] if pick.random() < 0.5 else []
+    return ["audit", book, "--law", file, *now, *pick.choice(([], ["--json"]))]
+
+
+def listings(place, pick):
+    """Books that list topics and provisions, confirm rules, and add exceptions to others'."""
+    file = place.write("tried.rules", mutated_words(LISTED, pick, [LISTED, BASE]))
+    base = str(place.folder / "base.rules")
+    match pick.randrange(8):
+        case 0:
+            return ["audit", file, "--json"]
+        case 1:
+            return [
+                "diff",
+                base,
+                file,
+                "--pair",
+                pick.choice(("lamps=calm", "calm=lamps", "=", "a=b")),
+            ]
+        case 2:
+            return ["doc", file, "-o", str(place.folder / "doc.html")]
+        case 3:
+            return ["check", "--fix", file]
+        case 4:
+            return ["analyze", file, "-j", "1"]
+        case 5:
+            return ["tree", file]
+        case _:
+            return ["check", file]
+
+
+def saved_audits(place, pick):
+    """Audits that new ones are compared with."""
+    file = place.write("tried.json", mutated_json(place.text("audit.json"), pick))
+    return ["audit", str(place.folder / "listed.rules"), "--compare", file]
+
+
+def saved_monitors(place, pick):
+    """Monitors that go on where they were."""
+    file = place.write("tried.json", mutated_json(place.text("saved.json"), pick))
+    if pick.random() < 0.3:
+        return ["maneuvers", str(place.folder / "scenario.toml"), "--after", file]
+    return ["monitor", "esterle2019", "--restore", file]
+
+
+def state_lines(place, pick):
+    """States of a running monitor."""
+    place.write(STANDARD_INPUT, mutated_json(STATES, pick))
+    return ["monitor", "esterle2019"]
+
+
+def tables(place, pick):
+    """Traces as tables, to judge, to look moments up in, and for many machines."""
+    name = pick.choice(("table.csv", "table.csv", "table.parquet"))
+    data = (place.folder / name).read_bytes()
+    if name == "table.csv" and pick.random() < 0.7:
+        data = mutated_words(data.decode(), pick, [TABLE, '"=1",@x,-0,1e999,nan'])
+    else:
+        data = mutated_bytes(data, pick)
+    file = place.write(f"tried{Path(name).suffix}", data)
+    match pick.randrange(6):
+        case 0:
+            return ["find", "surface = R_cw", file, "-u", "paper"]
+        case 1 if name == "table.parquet":
+            out = str(place.folder / "fleet")
+            return ["fleet", file, "-r", "esterle2019", "-o", out, "-j", "1"]
+        case _:
+            return ["verify", file, "-r", "esterle2019", *pick.choice(([], ["--exposure"]))]
+
+
+def several_steps(place, pick):
+    """Steps that a rulebook is compiled for."""
+    steps = ["1", "0.5", "0.1", "2", "5", "0", "-1", "1e-300", "1e300", "nan", "1/3", "0.30000001"]
+    words = [word for _ in range(pick.randrange(1, 5)) for word in ("--step", pick.choice(steps))]
+    return ["compile", str(place.folder / "lane.rules"), *words, "-o", str(place.folder / "some")]
+
+
+def rate_tables(place, pick):
+    """Findings as a table, and what rates are told by."""
+    names = ("file", "trace", "rule", "opportunities", "violated", "duration_s", "distance_m")
+    rows = [
+        [pick.choice(("", "1", "-1", "1e308", "nan", "a", "=1+1")) for _ in names] for _ in "abc"
+    ]
+    text = "\n".join(map(",".join, [names, *rows]))
+    data = mutated_words(text, pick, [text]) if pick.random() < 0.5 else text.encode()
+    file = place.write("tried.csv", data)
+    more = pick.choice(
+        ([], ["--by", "file"], ["--confidence", pick.choice(("0", "nan", "1e-300"))])
+    )
+    return ["rates", file, *more]
+
+
+def signatures(place, pick):
+    """Signatures beside compiled rulebooks, and keys."""
+    key = "untrusted comment: key\nRWQf6LRCGA9i53mlYecO4IzT51TGPpvWucNSCh1CBM0QTaLn73Y7GFO3\n"
+    place.write("tried.json", place.text("out/lane.json"))
+    place.write("tried.json.minisig", mutated_words(key * 2, pick, [key]))
+    public = place.write("tried.pub", mutated_words(key, pick, [key]))
+    traces = str(place.folder / "traces.jsonl")
+    book = str(place.folder / "tried.json")
+    return ["verify", traces, "-r", book, "--require-signed", pick.choice((public, key[-57:-1]))]
+
+
 def formulas(place, pick):
     """A formula that moments are sought for."""
     text = mutated_words(FORMULA, pick, [LANE])
@@ -186,6 +355,15 @@ TARGETS = {
         settings,
         findings,
         formulas,
+        laws,
+        listings,
+        saved_audits,
+        saved_monitors,
+        state_lines,
+        tables,
+        several_steps,
+        rate_tables,
+        signatures,
         arguments,
     )
 }

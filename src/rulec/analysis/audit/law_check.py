@@ -9,6 +9,7 @@ from typing import Literal
 
 from rulec.analysis.audit.citations import Reference, each_reference, references_in
 from rulec.analysis.audit.law_text import LawText
+from rulec.resource_limits import CITES
 from rulec.rulebook.rulebook_model import Rulebook
 
 CiteResult = Literal["found", "not-found", "unread", "law-changed"]
@@ -34,13 +35,14 @@ def check_cites(
     """Look up what the rules that are the rulebook's own law cite, in the order of the rules.
 
     With ``law_now``, places whose text is not the same there, white space aside, have changed.
+    Raises RulecError R0718 if all of them together are too much to look through.
     """
-    return tuple(
-        check
-        for rule in rulebook.rules
-        if not rule.inherited_from
-        for check in _of_rule(rule.name, rule.cite, law, law_now)
-    )
+    own = [rule for rule in rulebook.rules if not rule.inherited_from]
+    texts = [law] if law_now is None else [law, law_now]
+    places = [place for rule in own for place in _looked_for(rule.cite, law)]
+    amount = sum(text.length_of(place) for text in texts for place in places)
+    CITES.within(amount, None, f"rulebook `{rulebook.name}`")
+    return tuple(check for rule in own for check in _of_rule(rule.name, rule.cite, law, law_now))
 
 
 def _of_rule(rule: str, cite: str, law: LawText, law_now: LawText | None) -> Iterator[CiteCheck]:

@@ -11,7 +11,7 @@ from typing import Final, TypeAlias
 from rulec.analysis.audit.audit_messages import NO_ARTICLES
 from rulec.analysis.audit.citations import PartKind, Reference, references_in
 from rulec.diagnostics import Source, SourceLocation
-from rulec.files import decoded, opened
+from rulec.files import MAX_LAW_BYTES, decoded, opened, read_whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +33,13 @@ class LawText:
         for kind, name in reference.parts:
             text = None if text is None else _part(text, kind, name)
         return None if text is None else " ".join(text.split())
+
+    def length_of(self, reference: Reference) -> int:
+        """How many characters are looked through for a place, for each of its parts anew."""
+        if reference.kind == "sign":
+            return sum(map(len, self.articles.values()))
+        text = self.articles.get((reference.kind, reference.number), "")
+        return len(text) * (1 + len(reference.parts))
 
     def missing(self, reference: Reference) -> str:
         """Why a place is not found: the first part of it that is not there."""
@@ -88,7 +95,7 @@ def _without_next_row(entry: str) -> str:
 def read_law_text(path: Path) -> LawText:
     """Read a law's text. Raises RulecError: unreadable (R0701), or without articles (R0714)."""
     with opened(path) as stream:
-        source = decoded(str(path), stream.read())
+        source = decoded(str(path), read_whole(stream, path, MAX_LAW_BYTES))
     return law_text(source)
 
 

@@ -11,7 +11,7 @@ from rulec.analysis.audit.audit_messages import NOT_AN_AUDIT
 from rulec.analysis.audit.rulebook_audit import Audit
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
-from rulec.files import opened
+from rulec.files import MAX_LAW_BYTES, opened, read_whole
 
 
 class _File(msgspec.Struct):
@@ -21,7 +21,7 @@ class _File(msgspec.Struct):
 def read_audits(path: Path) -> tuple[Audit, ...]:
     """Read the output of ``rulec audit --output-format json``. Raises R0701 or R0705."""
     with opened(path) as stream:
-        data = stream.read().removeprefix(codecs.BOM_UTF8)
+        data = read_whole(stream, path, MAX_LAW_BYTES).removeprefix(codecs.BOM_UTF8)
     try:
         return tuple(msgspec.json.decode(data, type=_File).audits)
     except msgspec.MsgspecError as problem:

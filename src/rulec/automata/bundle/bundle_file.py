@@ -36,7 +36,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
 from rulec.file_sets import write_together
-from rulec.files import make_folder, opened
+from rulec.files import MAX_SAVED_BYTES, make_folder, opened, read_whole
 from rulec.logic.codec import terms_to_data, to_data
 from rulec.logic.printing import formula_text, number_in_words
 from rulec.rulebook.rulebook_model import Rule, Rulebook, RuleParts, Variable
@@ -220,7 +220,7 @@ def read_compiled(path: Path) -> CompiledRulebook:
 def read_signed(path: Path) -> bytes:
     """The bytes of a file. Raises RulecError: R0701, and as ``check_signed``."""
     with opened(path) as stream:
-        data = stream.read()
+        data = read_whole(stream, path, MAX_SAVED_BYTES)
     check_signed(path, data)
     return data
 

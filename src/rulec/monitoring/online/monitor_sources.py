@@ -13,7 +13,7 @@ import msgspec
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.files import opened, written_whole
+from rulec.files import MAX_SAVED_BYTES, opened, read_whole, written_whole
 from rulec.logic.codec import number_from_data
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
@@ -66,7 +66,7 @@ def answer(monitor: Monitor, item: LiveState | RulecError) -> SoFar | RulecError
 def read_saved(path: Path) -> Any:
     """Read a file for ``Monitor.restore``. Raises RulecError R0701 or R0510."""
     with opened(path) as stream:
-        return saved_from(stream.read(), str(path))
+        return saved_from(read_whole(stream, path, MAX_SAVED_BYTES), str(path))
 
 
 def saved_from(data: bytes, name: str) -> Any:
