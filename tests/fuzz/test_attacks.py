@@ -179,6 +179,19 @@ COSTLY = {
         2,
         "--limit cites=",
     ),
+    "a provision of a million digits, and one that is a digit to no number": (
+        {
+            "digits.rules": lambda: (
+                "rulebook digits\nsignal p default false\n"
+                f'hard rule r {{ cite "Article {"9" * 1_000_000}(1)" require always p }}\n'
+                'hard rule s { cite "Article 1" require always p }\n'
+                'hard rule t { cite "\u00b2" require always p }\n'
+            )
+        },
+        ["audit", "./digits.rules", "-o", "digits.json"],
+        0,
+        "wrote",
+    ),
     "a compiled rulebook of gigabytes, packed": (
         {"book.json": lambda: gzip.compress(b"{" + b" " * 200_000_000, 1)},
         ["verify-compiled", "book.json"],

@@ -212,9 +212,11 @@ def articles_of(rules: Sequence[Rule], inherited: BookLineage) -> tuple[CitedArt
 
 def _natural(text: str) -> list[tuple[bool, int, str]]:
     """Something to sort by, in which 9 comes before 11."""
-    parts = re.findall(r"[0-9]+|[^0-9]+", text)
+    parts = ((part, part.lstrip("0")) for part in re.findall(r"[0-9]+|[^0-9]+", text))
+    # Of numbers the longer one is larger, however many digits they have.
     return [
-        (part.isdigit(), int(part), "") if part.isdigit() else (False, 0, part) for part in parts
+        (True, len(number), number) if "0" <= part[0] <= "9" else (False, 0, part)
+        for part, number in parts
     ]
 
 
