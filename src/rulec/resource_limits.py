@@ -113,8 +113,16 @@ CITES: Final = ResourceLimit(
     "give the text of the law with a heading for each article",
 )
 
+LOOKBACK: Final = ResourceLimit(
+    "lookback",
+    1_000_000,
+    "steps to look back, its bounds added up",
+    "give it bounds no longer than drives last",
+)
+
 LIMITS: Final = {
-    limit.name: limit for limit in (CHOICES, STEPS, CUBES, PAIRS, TYPE_DEPTH, SEARCH, CITES)
+    limit.name: limit
+    for limit in (CHOICES, STEPS, CUBES, PAIRS, TYPE_DEPTH, SEARCH, CITES, LOOKBACK)
 }
 """All limits that can be lifted."""
 

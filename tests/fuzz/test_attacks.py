@@ -192,6 +192,12 @@ COSTLY = {
         0,
         "wrote",
     ),
+    "moments of a formula that looks back for three million years": (
+        {"t.jsonl": lambda: traces(of_states([{"p": True}] * 2))},
+        ["find", "once[<= 99999999999999 s] p", "t.jsonl", "-r", "./soon.rules"],
+        2,
+        "--limit lookback=",
+    ),
     "a compiled rulebook of gigabytes, packed": (
         {"book.json": lambda: gzip.compress(b"{" + b" " * 200_000_000, 1)},
         ["verify-compiled", "book.json"],

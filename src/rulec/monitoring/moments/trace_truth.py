@@ -16,6 +16,7 @@ from rulec.monitoring.moments.array_tables import ArrayTables
 from rulec.monitoring.moments.name_tables import NameTables, StateTables
 from rulec.monitoring.moments.row_evaluation import Places, ReadyComparison, RowEvaluation
 from rulec.monitoring.moments.truth_rows import RowEnding, RowStretches
+from rulec.resource_limits import LOOKBACK
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
 from rulec.trace.trace_arrays import TraceArrays
@@ -59,6 +60,7 @@ class ReadyFormula:
     def __init__(self, formula: Formula, settles: int = 0) -> None:
         self.formula = formula
         self.settles = max(steps_to_settle(formula), settles)
+        LOOKBACK.within(self.settles, None, "the formula")
         self.world_parts = [
             part
             for part in conjuncts(formula)
@@ -99,7 +101,7 @@ class TraceTruth:
             rows = self._choices_of(variables)
         else:
             rows = np.array([[self._places[item] for item in choice]], dtype=np.intp)
-        for together in self._together(rows):
+        for together in self._together(rows, ready.settles):
             yield self._part(ready, variables, together)
 
     def stretches_of(self, variables: Sequence[Variable]) -> tuple[Places, Places]:
@@ -125,9 +127,9 @@ class TraceTruth:
         spans = self._spans[rows]
         return spans[:, :, 0].max(axis=1), spans[:, :, 1].min(axis=1)
 
-    def _together(self, rows: Places) -> Iterator[Places]:
+    def _together(self, rows: Places, settles: int) -> Iterator[Places]:
         """Rows that are evaluated together."""
-        most = max(1, MOST_ENTRIES // (self.n_states + 1))
+        most = max(1, MOST_ENTRIES // (self.n_states + settles + 1))
         if self._ends != "goes on":
             groups = [rows]
         else:
