@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import field
 from functools import cached_property
@@ -81,17 +82,18 @@ class Table:
 
 def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
     """Check (R0509) that columns are named, distinct, with trace and step."""
+    times = Counter(columns)
     for name in columns:
         if not name:
             raise problem("a column has no name", place)
-        if columns.count(name) > 1:
+        if times[name] > 1:
             raise problem(f"there are two columns `{name}`", place)
         for end, other in ((FROM, TO), (TO, FROM)):
-            if name.endswith(end) and name.removesuffix(end) + other not in columns:
+            if name.endswith(end) and name.removesuffix(end) + other not in times:
                 missing = name.removesuffix(end) + other
                 raise problem(f"there is a column `{name}`, but no `{missing}`", place, _BOUNDS)
     for name in (TRACE, STEP):
-        if name not in columns:
+        if name not in times:
             near = did_you_mean(name, columns)
             raise problem(f"there is no column `{name}`", place, near or _FORM)
 
