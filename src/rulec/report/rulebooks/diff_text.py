@@ -9,7 +9,7 @@ from textwrap import fill, wrap
 from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
 from rulec.analysis.trace_display import TraceTable
-from rulec.logic.sentences.facts import facts_in_words
+from rulec.logic.sentences.fact_clauses import facts_in_words
 from rulec.report.text.terminal_text import styled, table_lines, visible
 from rulec.report.verdicts.violation_table import shown
 from rulec.rulebook.vocabulary_phrases import phrases_of

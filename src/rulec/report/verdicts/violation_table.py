@@ -12,7 +12,7 @@ from textwrap import wrap
 from rulec.automata.thresholds import exact
 from rulec.lazy_dataclass import dataclass
 from rulec.logic.printing import number_in_words
-from rulec.logic.sentences.facts import facts_in_words
+from rulec.logic.sentences.fact_clauses import facts_in_words
 from rulec.monitoring.explain.explanation import Explanation, Observation
 from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.console import PAGE_WIDTH
