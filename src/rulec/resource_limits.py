@@ -11,10 +11,10 @@ import os
 import re
 from collections.abc import Iterable
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
-from rulec.lazy_dataclass import dataclass
 from rulec.limit_messages import NO_LIMIT, OVER_LIMIT
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ another matter in every state, so traces alone can tell (``rulec.monitoring.axio
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from rulec.automata import alphabet
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Variable

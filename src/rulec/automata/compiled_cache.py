@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import date
 from fractions import Fraction
 from hashlib import sha256
@@ -23,7 +23,6 @@ from rulec.automata.bundle.mapped_rulebook import MappedRulebook, placed, rulebo
 from rulec.automata.bundle.mapped_tables import TableWriter, mapped
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.lazy_dataclass import dataclass
 from rulec.rulebook.batch.check_cache import (
     is_as_it_was,
     program_digest,

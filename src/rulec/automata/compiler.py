@@ -13,6 +13,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -28,7 +29,6 @@ from rulec.automata.compiler_messages import no_machine, no_spot, not_confined
 from rulec.automata.spot_worker import Done, Failed, Job, WorkerGreeting
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_steps
 from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words

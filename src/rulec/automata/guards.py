@@ -9,12 +9,11 @@ optimization" (1987), greedily.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import reduce
 from operator import or_
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
-from rulec.lazy_dataclass import dataclass
 from rulec.resource_limits import CUBES
 
 Cube = tuple[frozenset[int], ...]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.formula import Term
 from rulec.value_display import short_repr
 

@@ -8,13 +8,13 @@ and greatest in what they can still come to need be kept: what lies between them
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Literal, TypeAlias
 
 import numpy as np
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
-from rulec.lazy_dataclass import dataclass
 from rulec.value_display import short_repr
 
 KEPT, PENDING, VIOLATED = range(3)

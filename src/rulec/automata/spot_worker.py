@@ -12,7 +12,7 @@ import sys
 import time
 import traceback
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import repeat
 from typing import Literal
@@ -22,7 +22,6 @@ from rulec.automata.axiom_instances import AxiomGroup, AxiomInstance, possible_l
 from rulec.automata.confinement import Confinement
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.tables import build_machine
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.bounds import BOOLEAN, operations_of, range_of
 from rulec.logic.formula import Atom, Binary, Constant, Formula, Unary, with_operands
 from rulec.logic.semantics import Letter, Semantics, holds, truth_values

@@ -8,13 +8,13 @@ Letters with equal columns are merged, then states that no word tells apart.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import reduce
 from operator import or_
 from typing import TypeVar
 
 from rulec.automata.alphabet import count_letters
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read, sink_of
-from rulec.lazy_dataclass import dataclass
 
 Output = TypeVar("Output")
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import inf, nextafter
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.formula import QuantityTerm
 from rulec.logic.free_names import names_in, variables_of
 from rulec.trace import Value

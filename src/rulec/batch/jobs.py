@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-
-from rulec.lazy_dataclass import dataclass
+from dataclasses import dataclass
 
 ALONE_S = 1.0
 """So many seconds of work are not worth the start of a process, which takes about as long."""

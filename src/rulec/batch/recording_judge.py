@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -12,7 +12,6 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
 from rulec.extraction.selection import RequestedDrives
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.verdict import NotJudged
 from rulec.recordings.recording import Recording
 from rulec.recordings.recording_files import read_recordings

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
 
@@ -11,7 +11,6 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.book_tests.book_test_messages import EXAMPLE_FAILED
 from rulec.diagnostics import Diagnostic, Label, RulecError
 from rulec.diagnostics.diagnostic import at
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.bounds import has_seconds
 from rulec.monitoring.axiom_violations import ImpossibleStateError, check_counting_axioms
 from rulec.monitoring.verify import letter_reader_of, run

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from rulec.batch.jobs import Jobs
@@ -20,7 +20,6 @@ from rulec.cli.output import print_lost
 from rulec.cli.standard_input import standard_input
 from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording_inputs import STANDARD_INPUT
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import progress

@@ -6,7 +6,7 @@ import os
 import stat
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from io import UnsupportedOperation
 from pathlib import Path
 from typing import IO, Any, cast
@@ -16,7 +16,6 @@ from rulec.cli.standard_input import standard_input
 from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
 from rulec.files import opened
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import rulebook_for, verify_items
 from rulec.monitoring.explain.explanation import Explanation, explain

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict
 
 from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, RulecError, Severity
 from rulec.diagnostics.source_text import SourceLocation, Span
-from rulec.lazy_dataclass import dataclass
 from rulec.value_display import short_repr
 
 if TYPE_CHECKING:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from rulec.diagnostics.source_text import SourceLocation, Span, address
-from rulec.lazy_dataclass import dataclass
 from rulec.value_display import Rows, short_repr
 
 Severity: TypeAlias = Literal["error", "warning"]

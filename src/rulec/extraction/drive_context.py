@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property, wraps
 from typing import TypeVar, cast
 
@@ -19,7 +19,6 @@ from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Recording, Side
 from rulec.trace.plain_arrays import distinct, median
 

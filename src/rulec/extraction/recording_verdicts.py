@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
@@ -13,7 +13,6 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
 from rulec.monitoring.verdict import NotJudged, Verdict, agreed

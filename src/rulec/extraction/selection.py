@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from fractions import Fraction
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
@@ -12,7 +12,6 @@ from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.traffic_thresholds import LARGEST, USUAL, Thresholds
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Recording
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.rulebook.rulebook_model import Traffic

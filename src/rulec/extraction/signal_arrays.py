@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
-from rulec.lazy_dataclass import dataclass
 from rulec.scenario.paper_words import PAPER_SURFACE
 from rulec.trace import Value
 from rulec.trace.trace_arrays import TraceArrays

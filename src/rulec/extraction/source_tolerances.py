@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from statistics import median
 from types import MappingProxyType
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Recording, Rounding
 
 

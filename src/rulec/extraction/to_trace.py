@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import count
 from math import hypot
@@ -48,7 +48,6 @@ from rulec.extraction.signals.settling import agreeing, settled
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace, Value

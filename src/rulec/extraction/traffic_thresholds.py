@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 
-from rulec.lazy_dataclass import dataclass
 from rulec.scenario.recorded.lane_coordinates import TOUCHING_M
 from rulec.value_display import short_repr
 

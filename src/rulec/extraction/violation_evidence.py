@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.to_trace import Drive, Place
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.free_names import names_in
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin

@@ -8,8 +8,8 @@ changes. What decides is enough, not all there is: of two false operands of `and
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.bounds import PAST, range_of
 from rulec.logic.formula import Binary, BinaryOperator, Formula, Unary, UnaryOperator
 from rulec.logic.semantics import Letter, Semantics, extended_values

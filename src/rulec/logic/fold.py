@@ -10,11 +10,11 @@ reference.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, MutableMapping
+from dataclasses import dataclass
 from functools import partial
 from operator import and_, or_, xor
 from typing import Generic, TypeAlias, TypeVar
 
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import Range, range_of
 

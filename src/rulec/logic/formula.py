@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
 from typing import Literal
 
 from rulec.diagnostics import Span
-from rulec.lazy_dataclass import dataclass
 
 
 class UnaryOperator(Enum):

@@ -7,11 +7,11 @@ to itself may be); nothing else is (Kleene, "Introduction to metamathematics", 1
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
 from typing import Protocol, TypeAlias
 
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
 from rulec.logic.linear_comparison import stands, surely_stands

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from rulec.diagnostics import RulecError
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.monitoring_messages import STEP_TOO_FAR_OFF
 from rulec.trace import Trace, Value
 from rulec.trace.trace_model import Ending

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.formula import Atom, Count, atoms_of
 from rulec.logic.free_names import names_in, rename_variables
 from rulec.logic.kleene import Unknown, holds, number_of

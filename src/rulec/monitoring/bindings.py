@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.diagnostics import SourceLocation
-from rulec.lazy_dataclass import dataclass
 from rulec.resource_limits import CHOICES
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import choices, number_of_choices

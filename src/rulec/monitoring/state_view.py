@@ -6,11 +6,11 @@ A value that a state does not give, and that has no default, is unknown.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 from rulec.automata.thresholds import exact
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.kleene import Between, Unknown
 from rulec.trace import State, Value
 from rulec.vocabulary import Declaration, Vocabulary

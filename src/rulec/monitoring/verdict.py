@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 from rulec.diagnostics import RulecError
-from rulec.lazy_dataclass import dataclass
 from rulec.rulebook.rulebook_model import Strength
 from rulec.value_display import Rows, short_repr
 

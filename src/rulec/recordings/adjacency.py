@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import cos, radians
 
 import numpy as np
@@ -11,7 +11,6 @@ import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Lanelet, Points, Recording, is_lane
 
 BORDER_M = 0.5

@@ -6,14 +6,13 @@ Places are in the file's own frame, x and y in metres; angles are radians, count
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.value_display import short_repr
 
 Points = NDArray[float64]

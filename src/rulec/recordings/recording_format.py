@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from rulec.files import opened
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.encodings.safe_xml import is_xml, root_of
 from rulec.recordings.encodings.xml_element import XmlFormat
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import glob
 import os
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.file_messages import UNREADABLE_FILE
 from rulec.files import is_folder
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_format import RECORDING, Glance
 from rulec.work_trees import refuse_link_out, tree_of

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Lanelet, Points, Side
 from rulec.value_display import short_repr
 

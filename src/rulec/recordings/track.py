@@ -7,13 +7,12 @@ objects only when somebody looks at them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy import float64, int64
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Points, TrackState
 
 _CORNERS = np.array([[1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1], [0, 1]]) / 2

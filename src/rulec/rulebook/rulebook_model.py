@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Literal
 
 from rulec.diagnostics import Span
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.formula import Formula
 from rulec.value_display import Rows, short_repr
 from rulec.vocabulary import Vocabulary

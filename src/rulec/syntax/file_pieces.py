@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
 
 from rulec.diagnostics import Diagnostic, Source, Span
-from rulec.lazy_dataclass import dataclass
 from rulec.syntax.scanner import Token
 
 PieceKind = Literal["item", "rule_head", "clause", "example_head", "state", "formula", "junk"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
@@ -11,7 +12,6 @@ from lark.exceptions import UnexpectedInput, UnexpectedToken
 from lark.grammar import Rule
 from lark.lexer import TerminalDef
 
-from rulec.lazy_dataclass import dataclass
 from rulec.resources import grammar_file
 from rulec.syntax import parser_tables
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from rulec.diagnostics import nearest_name
-from rulec.lazy_dataclass import dataclass
 from rulec.syntax import keywords
 from rulec.syntax.scanner import Token
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from types import ModuleType
 from typing import TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
-from rulec.lazy_dataclass import dataclass
 from rulec.source_detection import is_foreign
 from rulec.syntax import tree
 from rulec.syntax.assembly import Part, assemble_file, assemble_rule

@@ -7,10 +7,9 @@ such structural mistakes are reported here, one for each.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from rulec.diagnostics import Diagnostic, Source
-from rulec.lazy_dataclass import dataclass
 from rulec.syntax.file_pieces import Piece, RulePieces
 from rulec.syntax.item_boundaries import Landmarks
 from rulec.syntax.keywords import CLAUSE_WORDS

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from rulec.diagnostics import Diagnostic
-from rulec.lazy_dataclass import dataclass
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces
 from rulec.syntax.item_boundaries import Landmarks
 from rulec.syntax.keywords import CLAUSE_WORDS

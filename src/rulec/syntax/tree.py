@@ -7,11 +7,10 @@ resolved.
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Literal
 
 from rulec.diagnostics import Source, Span
-from rulec.lazy_dataclass import dataclass
 
 NOWHERE = Span(Source("", ""), 0, 0)
 """The span of a node that was made by a program and not read from a file."""

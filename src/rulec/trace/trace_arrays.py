@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.trace.trace_columns import Array
 from rulec.trace.trace_model import Ending, Trace
 from rulec.value_display import short_repr

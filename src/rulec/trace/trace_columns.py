@@ -8,13 +8,12 @@ of one step lie side by side, whatever the traces' lengths, and nothing is padde
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.trace.trace_model import State
 from rulec.value_display import short_repr
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import islice
 from typing import Literal
 
 from rulec.diagnostics import SourceLocation
-from rulec.lazy_dataclass import dataclass
 from rulec.trace.trace_messages import NO_STATES, NOT_A_TRACE, UNKNOWN_OBJECT
 from rulec.value_display import short_repr
 from rulec.vocabulary.partial_values import PartialValue

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
-
-from rulec.lazy_dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from typing import Final, Literal
-
-from rulec.lazy_dataclass import dataclass
 
 
 class UnknownValue(Enum):

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import permutations, product
 from types import MappingProxyType
 
-from rulec.lazy_dataclass import dataclass
 from rulec.resource_limits import CHOICES
 from rulec.value_display import short_repr
 

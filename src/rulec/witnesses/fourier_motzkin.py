@@ -8,11 +8,11 @@ handful of unknowns and of inequalities.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain, pairwise, product
 from math import floor
 
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.formula import Term
 
 _MOST_PLACES = 9

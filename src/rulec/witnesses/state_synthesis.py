@@ -7,12 +7,12 @@ Fourier-Motzkin elimination solves.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.formula import Count, QuantityTerm, Term
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
@@ -11,7 +11,6 @@ from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.formula import Formula
 from rulec.logic.printing import number_in_words
 from rulec.rulebook import rulebook_model as model

@@ -11,7 +11,7 @@ import os
 import sys
 from array import array
 from collections.abc import Iterable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from hashlib import sha256
 from itertools import chain
 from mmap import ACCESS_READ, mmap
@@ -20,7 +20,6 @@ from struct import Struct, error
 from typing import Literal, TypeAlias, TypeVar, get_args
 
 from rulec.files import is_own
-from rulec.lazy_dataclass import dataclass
 
 _Entry = TypeVar("_Entry", int, bool)
 

@@ -8,9 +8,8 @@ the first one and the comment that is trusted. Only signatures of a digest (``ED
 from __future__ import annotations
 
 from base64 import b64decode
+from dataclasses import dataclass
 from hashlib import blake2b
-
-from rulec.lazy_dataclass import dataclass
 
 _KEY, _DIGESTED = b"Ed", b"ED"
 _TRUSTED = "trusted comment: "

@@ -10,6 +10,7 @@ import os
 import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -18,7 +19,6 @@ import click
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.file_messages import OVERWRITES_INPUT
-from rulec.lazy_dataclass import dataclass
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -12,7 +13,6 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Lanelet
 
 _Value = TypeVar("_Value")

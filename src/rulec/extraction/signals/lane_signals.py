@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise, product
 
 import numpy as np
@@ -15,7 +16,6 @@ from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Lanelet, LaneMark
 from rulec.trace.plain_arrays import distinct
 

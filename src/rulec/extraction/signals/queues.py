@@ -6,7 +6,7 @@ queue at ego's speed have room. A lane's vehicles are those whose middle is in i
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy import intp
@@ -16,7 +16,6 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.lazy_dataclass import dataclass
 
 _BODY_M = 5.0
 """About how long a vehicle is."""

@@ -7,6 +7,7 @@ within a lane is in that lane. For the paper's ``position`` see ``docs/scenarios
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,6 @@ from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.lazy_dataclass import dataclass
 from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 
 if TYPE_CHECKING:

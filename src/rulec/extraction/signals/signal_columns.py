@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -11,7 +11,6 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.tracks import Flags
-from rulec.lazy_dataclass import dataclass
 
 SignalColumn = NDArray[Any]
 Bounds: TypeAlias = tuple[SignalColumn, SignalColumn]

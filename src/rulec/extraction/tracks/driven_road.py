@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
+from dataclasses import dataclass
 from itertools import groupby
 from math import radians
 
@@ -13,7 +14,6 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_route import pieces_of
 from rulec.extraction.tracks.tracks import Floats
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Lanelet, Points, Recording, is_lane
 from rulec.scenario.recorded.lane_coordinates import (
     Lanes,

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.map_matching import MatchedStretch
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Recording
 
 _SHIFT_COST, _SHORT_COST = 1e6, 1e5

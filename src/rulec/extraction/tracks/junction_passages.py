@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -18,7 +19,6 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.junctions import Interval, Junction, JunctionWay, junctions_of
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Recording
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import distinct

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise, takewhile
 
@@ -12,7 +12,6 @@ import numpy as np
 import shapely
 
 from rulec.extraction.tracks.driven_road import junction_lanelets
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Lanelet, Points, Recording, is_there
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import lanelet_area

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from math import pi, radians
 
@@ -11,7 +12,6 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.tracks import Floats, Tracks
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_at, lanelet_area

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.adjacency import bordering
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.scenario.recorded.route import lanelet_length, lanes_beside

@@ -16,6 +16,7 @@ recording jumps or somebody leaves a lanelet sideways, the drive breaks for a hi
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from math import hypot
 
@@ -26,7 +27,6 @@ from numpy.typing import NDArray
 from rulec.extraction.tracks.lane_candidates import SIGMA_M, LaneCandidates, candidates
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.tracks import Floats, Tracks
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Recording
 
 BETA_M = 2.0

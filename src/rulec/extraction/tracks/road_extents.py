@@ -9,7 +9,7 @@ their bounds: who reaches into a lane that opens by some centimetres is in it by
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.lazy_dataclass import dataclass
 from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
 

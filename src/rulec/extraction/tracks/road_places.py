@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -10,7 +11,6 @@ from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.lazy_dataclass import dataclass
 
 KMH = 3.6
 """km/h in one m/s."""

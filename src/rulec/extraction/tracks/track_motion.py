@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
@@ -9,7 +10,6 @@ from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.source_tolerances import Tolerances
-from rulec.lazy_dataclass import dataclass
 
 _LEAST_PART = 0.7
 """Whose motion is less along its heading than at 45° has a heading that says nothing."""

@@ -6,7 +6,7 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TypeAlias
 
@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from rulec.extraction.source_tolerances import tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.track import TrackOutlines, TrackStates
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines

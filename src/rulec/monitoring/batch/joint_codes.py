@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from math import prod
 
 import numpy as np
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.automata.thresholds import scale
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.batch.columns.column_reader import ColumnReader
 from rulec.monitoring.batch.verdict_columns import JointCells, RuleBinding
 from rulec.trace.trace_columns import Array, Layout, smallest_unsigned

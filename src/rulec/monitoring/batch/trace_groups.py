@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import chain, pairwise, repeat
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.verdict import Violation
 from rulec.trace import Trace

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.batch.machines.joint_machine import join_machines
 from rulec.monitoring.batch.machines.table_run import first_lost, first_lost_of_one, run, run_alone
 from rulec.trace.trace_columns import Array, Layout

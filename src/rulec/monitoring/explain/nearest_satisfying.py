@@ -7,6 +7,7 @@ in every state; of equally near ones that one is nearer which is like the given 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import islice
 from math import prod
 
@@ -15,7 +16,6 @@ from numpy.typing import NDArray
 
 from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.verify import run
 from rulec.witnesses.state_synthesis import are_consistent

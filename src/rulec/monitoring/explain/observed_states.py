@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TypeVar
 
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import Unknown, holds, weighted_sum
 from rulec.monitoring.explain.margins import Margin, margin_in

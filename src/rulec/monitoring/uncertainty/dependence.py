@@ -9,11 +9,11 @@ furthest apart, by what can still come of their states.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations, groupby, product
 from typing import TypeAlias
 
 from rulec.automata.outcome_machine import OutcomeMachine, bits_of
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.uncertainty.prospects import Prospects
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters

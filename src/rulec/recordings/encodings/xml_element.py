@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from xml.parsers.expat import XMLParserType
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording_messages import NOT_A_RECORDING
 
 LARGEST = 1e8

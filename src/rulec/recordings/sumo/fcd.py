@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import re
 from array import array
-from dataclasses import field
+from dataclasses import dataclass, field
 from html import unescape
 from operator import itemgetter
 from pathlib import Path, PurePosixPath
 
 from rulec.diagnostics import RulecError, SourceLocation, named
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.encodings.safe_xml import scan
 from rulec.recordings.encodings.xml_element import LARGEST, XmlElement, XmlFormat, short
 from rulec.recordings.recording_messages import NET_MISSING

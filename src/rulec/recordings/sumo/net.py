@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.encodings.safe_xml import scan
 from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat, short
 from rulec.recordings.recording import LONGEST_M, Light, Points, Side

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.sumo.net import NetConnection, NetJunction, SumoNet
 
 UNREGULATED = frozenset({"right_before_left", "left_before_right", "unregulated"})

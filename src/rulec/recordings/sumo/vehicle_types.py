@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.encodings.safe_xml import root_of, scan
 from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.source_text import SourceLocation, address
-from rulec.lazy_dataclass import dataclass
 from rulec.report.text.console import print_aside
 from rulec.report.text.terminal_text import cell_width, styled, visible, wants_color
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
@@ -13,7 +13,6 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.to_trace import Drive
 from rulec.extraction.violation_evidence import evidence_of
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Violation
 from rulec.report.verdict_findings.verdict_finding import (

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Literal
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.lazy_dataclass import dataclass
 from rulec.report.json_document import JsonDocument, as_line, filled
 from rulec.rulebook.rulebook_model import cited_law
 from rulec.value_display import short_repr

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.recording_verdicts import ViolationTally
-from rulec.lazy_dataclass import dataclass
 from rulec.report.text.terminal_text import table_lines, visible
 from rulec.report.verdicts import verdict_report
 

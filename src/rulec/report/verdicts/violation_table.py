@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from operator import itemgetter
 from textwrap import wrap
 
 from rulec.automata.thresholds import exact
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.printing import number_in_words
 from rulec.logic.sentences.fact_clauses import facts_in_words
 from rulec.monitoring.explain.explanation import Explanation, Observation

@@ -7,10 +7,10 @@ which exactly one holds at any time.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice, product
 
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import comparison
 from rulec.vocabulary.dimensions import Dimension

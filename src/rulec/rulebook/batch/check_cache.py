@@ -13,14 +13,13 @@ import os
 import stat
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 from rulec.diagnostics import Diagnostic, Fix, Label, RulecError, SourceLocation
 from rulec.files import OF_OTHERS, is_own, written_whole
-from rulec.lazy_dataclass import dataclass
 from rulec.resources import package_files
 from rulec.rulebook.files.search_path import Dependency, locate_base, locate_vocabulary, read_bytes
 from rulec.version import __version__

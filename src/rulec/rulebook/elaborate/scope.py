@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import Diagnostic, Label, Span
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.formula import Atom, QuantityTerm
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.arithmetic.size_limits import OverLimitError

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import TypeVar
 
-from rulec.lazy_dataclass import dataclass
 from rulec.work_trees import is_ordinary, leads_out
 
 MOST_BYTES = 100_000

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Literal
 
 from rulec.diagnostics import Diagnostic, RulecError, Source
-from rulec.lazy_dataclass import dataclass
 from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.files import reference_messages as say
 from rulec.rulebook.files import search_path as search

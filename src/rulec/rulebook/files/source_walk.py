@@ -6,12 +6,11 @@ import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.file_messages import NOTHING_LEFT, UNREADABLE_FILE
-from rulec.lazy_dataclass import dataclass
 from rulec.rulebook.files.git_ignores import IgnoreFile, ignore_files, is_ignored, patterns_in
 from rulec.source_detection import LEAD_BYTES, beginning_of, is_foreign
 from rulec.work_trees import is_ordinary, refuse_no_source, tree_of

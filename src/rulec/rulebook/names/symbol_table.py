@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from rulec.diagnostics import Diagnostic, Label, Source, Span
-from rulec.lazy_dataclass import dataclass
 from rulec.resource_limits import TYPE_DEPTH
 from rulec.rulebook.names import declaration_messages as say
 from rulec.rulebook.names.declaration_messages import TYPE_CIRCLE

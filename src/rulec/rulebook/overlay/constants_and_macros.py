@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from rulec.lazy_dataclass import dataclass
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, OverLimitError
 from rulec.rulebook.overlay.rulebook_overlay import Overlay

@@ -7,10 +7,9 @@ definitions of the rulebook that inherits it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import Diagnostic, Span
-from rulec.lazy_dataclass import dataclass
 from rulec.rulebook.names.declaration_messages import twice
 from rulec.rulebook.names.referenced_names import names_in_examples, names_used
 from rulec.rulebook.overlay import overlay_messages as say

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.free_names import rename_variables, required_inputs
 from rulec.logic.kleene import Unknown, holds
 from rulec.logic.printing import formula_text

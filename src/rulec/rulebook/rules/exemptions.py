@@ -11,12 +11,11 @@ the rule if no exception exempts it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 from math import comb
 from typing import Literal
 
-from rulec.lazy_dataclass import dataclass
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
 from rulec.logic.opportunities import trigger_of_parts
 from rulec.rulebook.arithmetic.linear_arithmetic import all_of, any_of, negated

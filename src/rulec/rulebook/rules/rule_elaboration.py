@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from rulec.diagnostics import Diagnostic, Label
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import NotAMultipleError, in_steps
 from rulec.rulebook.arithmetic.linear_arithmetic import negated

@@ -9,6 +9,7 @@ have the width that they have there.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import TYPE_CHECKING
@@ -17,7 +18,6 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.polylines import densified
 from rulec.recordings.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines

@@ -8,12 +8,12 @@ is one product of matrices. Single precision will do, since who may have a foot 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy import float32, float64, intp
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Points
 
 _MARGIN_M, _MARGIN_PART = 1e-2, 1e-6

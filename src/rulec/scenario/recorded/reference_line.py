@@ -10,6 +10,7 @@ line goes on straight.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
 
@@ -17,7 +18,6 @@ import numpy as np
 from numpy import float64, intp
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.polylines import densified, without_repeats
 from rulec.recordings.recording import Points
 from rulec.scenario.recorded.line_fans import LineFans, line_fans

@@ -7,13 +7,13 @@ it is in one fan only, and a guess that proves right is the answer. What is not 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Points
 
 _INSIDE = 1e-3

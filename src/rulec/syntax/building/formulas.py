@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
 from rulec.diagnostics import Diagnostic, Source, Span
-from rulec.lazy_dataclass import dataclass
 from rulec.syntax import tree
 from rulec.syntax.grammar import ParseLeaf, ParseNode
 from rulec.syntax.keywords import SYMBOLS, token_kind

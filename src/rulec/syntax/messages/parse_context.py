@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 from rulec.diagnostics import Source, any_of
-from rulec.lazy_dataclass import dataclass
 from rulec.syntax.keywords import PRECEDENCE, UNARY_OPERATORS, token_kind
 from rulec.syntax.scanner import Token
 

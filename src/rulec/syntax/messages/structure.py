@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from rulec.diagnostics import Diagnostic, Label, Source, Span
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.source_text import SourceLocation
-from rulec.lazy_dataclass import dataclass
 from rulec.source_detection import first_word_at
 from rulec.syntax.keywords import ITEM_WORDS
 from rulec.syntax.scanner import Token

@@ -8,7 +8,7 @@ and the values are read where they have to be. Whatever is written otherwise is 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, overload
 
 import msgspec
@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.lazy_dataclass import dataclass
 from rulec.trace.formats.byte_columns import PADDING, Bytes, Places, bytes_from, read_values
 from rulec.trace.formats.partial_json import BOUNDS
 from rulec.trace.formats.table_blocks import Coded, Column, Numbers

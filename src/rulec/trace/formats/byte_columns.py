@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.trace.formats.table_blocks import Coded, Column, Numbers
 
 Bytes = NDArray[np.uint8]

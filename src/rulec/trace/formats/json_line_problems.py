@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Generic, TypeVar, get_args, get_type_hints
 
@@ -10,7 +11,6 @@ import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
 from rulec.diagnostics.json_problems import json_words
-from rulec.lazy_dataclass import dataclass
 from rulec.trace.formats.stream_lines import not_utf8, placed
 from rulec.trace.trace_messages import NOT_A_TRACE
 

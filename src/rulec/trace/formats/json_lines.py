@@ -6,14 +6,13 @@ import gc
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import chain
 from typing import IO, TYPE_CHECKING, Any, cast
 
 import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.lazy_dataclass import dataclass
 from rulec.trace.formats import json_line_problems
 from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_float
 from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json

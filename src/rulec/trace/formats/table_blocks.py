@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.lazy_dataclass import dataclass
 from rulec.trace.formats import table_reader as tables
 from rulec.trace.formats.table_reader import OBJECT, OTHER, STEP, STEP_S, TRACE, TYPE
 from rulec.trace.trace_model import Trace

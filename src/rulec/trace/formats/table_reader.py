@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain, groupby
 from typing import Any, cast, get_args
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
-from rulec.lazy_dataclass import dataclass
 from rulec.trace.trace_messages import NOT_A_TABLE
 from rulec.trace.trace_model import Ending, State, Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue

@@ -6,6 +6,8 @@ those that can be seen are looked for as far ahead as ego might have to think of
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
@@ -16,7 +18,6 @@ from rulec.extraction.signals.measured_numbers import moves
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, next_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.lazy_dataclass import dataclass
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import distinct
 

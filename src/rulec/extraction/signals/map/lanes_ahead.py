@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from enum import Enum, auto
 from itertools import pairwise
 
@@ -15,7 +16,6 @@ from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import once_a_recording, once_a_road
 from rulec.extraction.tracks.junctions import JunctionWay
 from rulec.extraction.tracks.tracks import Flags
-from rulec.lazy_dataclass import dataclass
 from rulec.recordings.recording import Lanelet
 from rulec.scenario.recorded.reference_line import turn
 

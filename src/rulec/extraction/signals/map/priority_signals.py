@@ -7,6 +7,7 @@ both are on their way to where these cross or join (``conflicts``).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
@@ -22,7 +23,6 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import Junction, approaches, before_joining
 from rulec.extraction.tracks.tracks import Flags
-from rulec.lazy_dataclass import dataclass
 from rulec.scenario.recorded.reference_line import turn
 
 _ONCOMING = "in_way_of_oncoming"

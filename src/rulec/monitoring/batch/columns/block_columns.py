@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.batch.columns.columnize import UnencodableError, column_dtype, encode_values
 from rulec.monitoring.batch.trace_groups import Names
 from rulec.trace.formats.table_blocks import NOBODY, Block, BlockPresence, Coded, Column

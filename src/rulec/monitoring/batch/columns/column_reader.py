@@ -6,7 +6,7 @@ Truth is that of Kleene's strong three-valued logic, as ``StateView`` has it for
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.automata.thresholds import exact, scale
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
 from rulec.logic.free_names import names_in

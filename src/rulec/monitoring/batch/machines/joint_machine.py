@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.tables import minimise
-from rulec.lazy_dataclass import dataclass
 
 MOST_ENTRIES = 256
 """The states times the letters of a joint machine: as many as a byte can name."""

@@ -7,13 +7,13 @@ state and every such number, where that leads.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise, repeat
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.trace.trace_columns import Array, Layout
 
 Rows = tuple[tuple[int, ...], ...]

@@ -6,11 +6,11 @@ There the numbers of its reads, one by one, do not say which letters are possibl
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.batch.stacked.crowded_states import CrowdedStates, supposed_instead
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule

@@ -7,6 +7,7 @@ stands in *cells*, one for each state in which an object is there, object by obj
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.thresholds import EXACT_IN_FLOATS
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.batch.columns.columnize import (
     UnencodableError,
     column_dtype,

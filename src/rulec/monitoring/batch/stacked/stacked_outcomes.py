@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.outcome_machine import KEPT
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.batch.stacked.entangled_letters import EntangledLetters, entangled_letters
 from rulec.monitoring.batch.stacked.instances import Instances, doubtful_instances, numbers_at
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader

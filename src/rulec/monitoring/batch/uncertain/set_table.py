@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.batch.machines.joint_machine import JointMachine
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterSets, Numbers
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.lazy_dataclass import dataclass
 from rulec.monitoring.batch.engine import rule_bindings
 from rulec.monitoring.batch.machines.table_run import run
 from rulec.monitoring.batch.uncertain.partial_reader import (

@@ -7,7 +7,7 @@ one counted object or one axiom speaks of both.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
 from math import prod
@@ -16,7 +16,6 @@ from typing import TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import (
     Between,

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import ceil
 
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.vocabulary.partial_values import PartialValue

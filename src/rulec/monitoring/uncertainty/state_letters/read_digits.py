@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any, TypeAlias
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import scale
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import Between, Unknown, holds, weighted_sum
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (

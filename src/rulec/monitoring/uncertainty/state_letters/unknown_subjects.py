@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Protocol, TypeAlias
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
-from rulec.lazy_dataclass import dataclass
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import PartialState, Unknown
 from rulec.trace import Value
