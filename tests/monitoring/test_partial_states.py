@@ -11,6 +11,8 @@ from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.online.four_valued import WORST_FIRST, best_of, worst_of
 from rulec.monitoring.online.running_monitor import Monitor
+from rulec.monitoring.uncertainty import uncertain_machine
+from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
@@ -191,6 +193,30 @@ def test_rules_that_a_source_says_too_little_for_are_not_judged(told, judged):
     for one in (judge, again):
         assert list(one.so_far.rules) == judged
         assert {*judged, *one.not_judged} == {"no_p", "answered"}
+
+
+def test_whether_a_source_says_too_little_is_not_looked_for_without_end(monkeypatch):
+    """A rule of many states whose every letter leads elsewhere is taken to be one to judge."""
+    monkeypatch.setattr(uncertain_machine, "MOST_LOOKED_AT", -1)
+    judge = monitor(rule("no_p", always(no(P))), told=["q"])
+    assert list(judge.so_far.rules) == ["no_p"]
+
+
+def test_a_duty_of_many_steps_is_found_to_be_one_that_q_alone_violates(monkeypatch):
+    text = "signal p, q default false hard rule d { require never historically[<= 2 s] (p or q) }"
+    parsed = parse_rulebook(f"rulebook long {text}")
+    compiled = rulec.compile_rulebook(parsed, step_s=Fraction(1, 100))
+    steps = []
+
+    def counted(self, here, symbols):
+        steps.append(here)
+        return after(self, here, symbols)
+
+    after = uncertain_machine.UncertainMachine._after
+    monkeypatch.setattr(uncertain_machine.UncertainMachine, "_after", counted)
+    assert judged_rules(compiled, frozenset({"q"}), cut=True).not_judged == ()
+    # As many as the duty has steps, once or twice.
+    assert 200 <= len(steps) <= 1000
 
 
 def test_what_a_source_cannot_tell_is_unknown_though_it_has_a_default():

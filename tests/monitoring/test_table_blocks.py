@@ -234,7 +234,7 @@ def test_only_traces_of_which_something_is_not_known_are_read(form, monkeypatch)
         monkeypatch.setattr(module, "traces_in", noted(module.traces_in, read))
     assert by_columns(data, form, traffic()) == alone
     # What columns say of it, as `?`, they are read from.
-    assert read == (["t70"] if form == "csv" else ["t5", "t20", "t70"])
+    assert read == ["t70"]
 
 
 def noted(traces_in, read):

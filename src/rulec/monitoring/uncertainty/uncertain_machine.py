@@ -40,6 +40,12 @@ from rulec.monitoring.verdict import ConditionalOutcome, OpenReasons, OutcomeNam
 MOST_OUTCOMES = 1 << 4
 """For so many combinations of values it is said how an open verdict comes out."""
 
+MOST_LOOKED_AT = 1 << 21
+"""After so many states with a letter a rule is taken to be one that some word can violate."""
+
+MOST_REPETITIONS = 1 << 12
+"""A letter is repeated no more often than this."""
+
 _MOST_REMEMBERED = 1 << 14
 _BITS = 64
 _NAMES: Mapping[tuple[int, int], OutcomeName] = {
@@ -260,24 +266,61 @@ class UncertainMachine:
         return tuple(lacking)
 
     def _can_fire(self, untold: frozenset[str]) -> bool:
-        """Whether all completions of some word violate the rule."""
+        """Whether all completions of some word violate the rule.
+
+        Beyond ``MOST_LOOKED_AT`` it is taken to be so: then the rule is judged, and open at worst.
+        """
         machine = self.machine
         letters = [list(bits_of(classes)) for classes in self._classes_in_the_dark(untold)]
         # If they do from the least states, they do from all.
         start = machine.least(sum(1 << state for state in machine.starts))
+        if self._is_lost_by_runs(start, letters):
+            return True
         reached = {start}
+        looked_at = 0
         for here in (waiting := [start]):
-            states = list(bits_of(here))
+            looked_at += here.bit_count() * sum(map(len, letters))
+            if looked_at > MOST_LOOKED_AT:
+                return True
             for symbols in letters:
-                pairs = list(product(states, symbols))
-                if all(machine.outputs[state][symbol] == VIOLATED for state, symbol in pairs):
+                after = self._after(here, symbols)
+                if after is None:
                     return True
-                targets = {machine.successors[state][symbol] for state, symbol in pairs}
-                after = machine.least(sum(1 << target for target in targets))
                 if after not in reached:
                     reached.add(after)
                     waiting.append(after)
         return False
+
+    def _is_lost_by_runs(self, start: int, letters: Sequence[Sequence[int]]) -> bool:
+        """Whether one letter for long, or after it another one for long, violates the rule.
+
+        Most duties come to that, and with a short step no search would get so far.
+        """
+        for first in letters:
+            middle = self._at_last(start, first)
+            if middle is None or any(self._at_last(middle, second) is None for second in letters):
+                return True
+        return False
+
+    def _at_last(self, here: int, symbols: Sequence[int]) -> int | None:
+        """The least states in which a letter leaves for good; None if it violates the rule."""
+        met: set[int] = set()
+        while here not in met and len(met) < MOST_REPETITIONS:
+            met.add(here)
+            after = self._after(here, symbols)
+            if after is None:
+                return None
+            here = after
+        return here
+
+    def _after(self, here: int, symbols: Sequence[int]) -> int | None:
+        """The least states after a letter that may be any of these; None if all of it violates."""
+        machine = self.machine
+        pairs = list(product(bits_of(here), symbols))
+        if all(machine.outputs[state][symbol] == VIOLATED for state, symbol in pairs):
+            return None
+        targets = {machine.successors[state][symbol] for state, symbol in pairs}
+        return machine.least(sum(1 << target for target in targets))
 
     @cached_property
     def _table(self) -> NDArray[np.intp]:
