@@ -12,11 +12,11 @@ from rulec.analysis.lineage.rule_lineage import ConstantKind
 from rulec.cli.main import main
 from rulec.report.rulebooks import rule_provenance
 from rulec.report.rulebooks.document_language import document_language
-from rulec.rulebook.files.catalogue import list_rulebooks
 from rulec.rulebook.loader import load_rulebook
 from support.builders import rulebook_family as island
 
 SOURCES = Path(rule_provenance.__file__).parent
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
@@ -292,11 +292,13 @@ def test_every_text_and_title_is_there_in_each_language(language):
     assert said <= texts.texts.keys() <= constants
     for text, instead in texts.texts.items():
         assert text.count("{}") == instead.count("{}"), text
-    books = [load_rulebook(entry.name) for entry in list_rulebooks()]
-    # The paper's rules have numbers.
-    rules = {rule.name for book in books for rule in book.rules if book.name != "esterle2019"}
+    # The paper's rules have numbers. What stands in the files is enough: to load all takes long.
+    files = (ROOT / "rulebooks").glob("*/*.rules")
+    sources = [x.read_text(encoding="utf-8") for x in files if x.stem != "esterle2019"]
+    rules = {name for x in sources for name in re.findall(r"^(?:hard|soft) rule (\w+)", x, re.M)}
+    assert len(rules) > 100
     assert rules - texts.titles.keys() == set()
-    topics = {topic.name for book in books for topic in book.topics}
+    topics = {topic.name for topic in load_rulebook("vienna").topics}
     assert topics == texts.topics.keys()
 
 
