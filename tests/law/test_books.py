@@ -1,11 +1,8 @@
-"""Every national rulebook is sound: no warnings, in form, examples both ways, automata, sources."""
-
-from pathlib import Path
+"""Every national rulebook is sound: no warnings, examples both ways, automata, sources."""
 
 import pytest
 
 from rulec.book_tests.example_runs import run_rulebook_examples
-from rulec.rulebook.batch.batch_format import formatted
 from rulec.rulebook.loader import read_rulebook
 from support.builders.national_books import FOLDER, NATIONAL, compiled, read
 
@@ -16,11 +13,6 @@ of_every_book = pytest.mark.parametrize("name", NATIONAL)
 def test_a_book_has_no_mistakes_and_no_warnings(name: str) -> None:
     assert read(name).warnings == ()
     assert read(name).rulebook.name == name
-
-
-@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.rules")), ids=lambda path: path.stem)
-def test_a_file_has_its_form(path: Path) -> None:
-    assert not formatted(path.name, path, path.read_bytes()).changed
 
 
 def test_the_shared_patterns_have_no_mistakes() -> None:
