@@ -128,6 +128,7 @@ def test_what_verbs_return_is_public():
         "Iterable",
         "Iterator",
         "Kind",
+        "LanguageCode",
     }
     helpers |= {
         "Literal",

@@ -36,7 +36,7 @@ def explained(rules, name, *states, width=100):
     violation = next(one for one in verify(trace, rules).violations if one.rule == name)
     explanation = explain(violation, trace, rules)
     return explanation.margins(), violation_table.as_text(
-        explanation, violation_table.Wish(width=width)
+        explanation, violation_table.TableOptions(width=width)
     )
 
 

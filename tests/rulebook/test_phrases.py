@@ -3,10 +3,11 @@
 import pytest
 
 from rulec.logic.sentences.english import ENGLISH
+from rulec.logic.sentences.language import LANGUAGES
 from rulec.logic.sentences.spoken_words import forms, spoken_formula
 from rulec.logic.sentences.wording import atom_clause
 from rulec.rulebook.loader import load_rulebook, load_vocabulary
-from rulec.rulebook.vocabulary_phrases import LANGUAGES, phrases_in, phrases_of
+from rulec.rulebook.vocabulary_phrases import phrases_in, phrases_of
 from rulec.vocabulary import Enumeration, Quantity
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rulec.book_tests.example_runs import ExampleRun
     from rulec.diagnostics import Diagnostic
     from rulec.diagnostics.code import Code
+    from rulec.logic.sentences.language import LanguageCode
     from rulec.monitoring.explain.explanation import Explanation
     from rulec.monitoring.verdict import Violation
     from rulec.recordings.recording_format import RecordingSource
@@ -304,7 +305,7 @@ class RulebookVerbs(SessionSettings):
         self,
         reference: str | Path,
         form: Literal["html", "markdown"] = "html",
-        language: Literal["en", "de", "fr"] = "en",
+        language: LanguageCode = "en",
     ) -> str:
         """A rulebook as a lawyers' document, HTML or Markdown. Raises RulecError.
 

@@ -278,19 +278,20 @@ class SetMonitor:
                 return VIOLATED, VIOLATED, index
         return step.best, step.worst, None
 
-    def run_stretches(self, stretches: Iterable[tuple[int, int]]) -> tuple[int, int]:
-        """The best and the worst outcome of a word of sets of classes, each for so many letters."""
-        here, lost = self.start, self.machine.lost
+    def run_stretches(self, stretches: Iterable[tuple[int, int]]) -> tuple[int, int, int | None]:
+        """``run`` of a word that is given by sets of classes, each for so many letters."""
+        here, lost, start = self.start, self.machine.lost, 0
         step = OutcomeRange(here, KEPT, KEPT)
         for classes, length in stretches:
-            for _ in range(length):
+            for index in range(start, start + length):
                 before, step = here, self.step(here, classes)
                 here = step.states
                 if step.best == VIOLATED and lost.issuperset(self._sets[here]):
-                    return VIOLATED, VIOLATED
+                    return VIOLATED, VIOLATED, index
                 if here == before:
                     break  # the same again, however often
-        return step.best, step.worst
+            start += length
+        return step.best, step.worst, None
 
     def number(self, *states: int) -> int:
         """The number of a set of states, reduced to its extremes."""

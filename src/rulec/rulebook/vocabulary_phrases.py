@@ -16,8 +16,6 @@ from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.rulebook_model import SourceFile
 from rulec.toml import parsed_toml
 
-LANGUAGES = ("en", "de", "fr")
-
 
 class HasSources(Protocol):
     """A rulebook, compiled or not, which knows the files that it was made of."""

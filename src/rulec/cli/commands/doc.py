@@ -9,12 +9,9 @@ import click
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.output import open_session, put_answer
+from rulec.logic.sentences.language import LANGUAGES, LanguageCode
 
 Format: TypeAlias = Literal["html", "markdown"]
-
-Language: TypeAlias = Literal["en", "de", "fr"]
-
-LANGUAGES: tuple[Language, ...] = ("en", "de", "fr")
 
 
 @click.command()
@@ -42,4 +39,4 @@ def command(rulebook: str, to: Output, language: str, at: str) -> None:
     """
     shared.only_sources([rulebook], "cannot be made a document of")
     session = open_session(at)
-    put_answer(session.doc(rulebook, cast("Format", to.form), cast("Language", language)), to)
+    put_answer(session.doc(rulebook, cast("Format", to.form), cast("LanguageCode", language)), to)

@@ -6,10 +6,15 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 from rulec.logic.formula import BinaryOperator, Relation, UnaryOperator
 from rulec.logic.printing import number_in_words
+
+LanguageCode: TypeAlias = Literal["en", "de", "fr"]
+
+LANGUAGES: tuple[LanguageCode, ...] = get_args(LanguageCode)
+"""The languages of sentences and documents, by the codes of ISO 639."""
 
 Pair: TypeAlias = tuple[str, str]
 """What is said where something holds, and where it does not."""
@@ -78,7 +83,7 @@ class Language:
     ``runs_on``, there is no comma.
     """
 
-    code: str
+    code: LanguageCode
     semicolon: str = ";"
     decimal_mark: Literal[".", ","] = "."
     quoted: str

@@ -152,7 +152,8 @@ class UncertainMachine:
 
     def _run(self, word: _Stretches) -> tuple[int, int]:
         own = [(self.classes.of(letters), length) for letters, length in word]
-        return self.monitor.run_stretches(own)
+        best, worst, _ = self.monitor.run_stretches(own)
+        return best, worst
 
     def _outcomes(
         self,

@@ -11,7 +11,7 @@ from rulec.diagnostics import Source
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.french import FRENCH
 from rulec.logic.sentences.german import GERMAN
-from rulec.logic.sentences.language import Language
+from rulec.logic.sentences.language import Language, LanguageCode
 from rulec.logic.sentences.wording import spoken
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.rulebook_model import Rulebook
@@ -47,7 +47,7 @@ class DocumentLanguage:
 IN_ENGLISH = DocumentLanguage(ENGLISH, {}, {}, {})
 
 
-def document_language(rulebook: Rulebook, code: str) -> DocumentLanguage:
+def document_language(rulebook: Rulebook, code: LanguageCode) -> DocumentLanguage:
     """The language of a document on a rulebook, by its code, such as ``de``."""
     titles = titles_in(code)
     if code == "en":
@@ -56,12 +56,12 @@ def document_language(rulebook: Rulebook, code: str) -> DocumentLanguage:
     return DocumentLanguage(language, _texts(code), titles, topics_in(code))
 
 
-def _language(code: str) -> Language:
+def _language(code: LanguageCode) -> Language:
     return {"de": GERMAN, "fr": FRENCH}[code]
 
 
 @cache
-def _texts(code: str) -> Mapping[str, str]:
+def _texts(code: LanguageCode) -> Mapping[str, str]:
     path = _FOLDER / f"{code}.toml"
     source = Source(str(path), path.read_text(encoding="utf-8"))
     return parsed_toml(source, NAME_NOT_FOUND, 'write `"text in English" = "…"`')

@@ -36,7 +36,7 @@ def as_text(
     """Write a trace's violations, a line each, below its name; with what is open and not judged.
 
     ``explained`` are explanations of the first violations; each follows its line, folded to a
-    ``width`` unless ``every_part`` of it is wanted.
+    ``width`` unless ``every_part`` of it is asked for.
     """
     doubtful = [*_open_lines(verdict, rulebook), *_not_judged_lines(verdict)] if doubts else []
     if not verdict.violations and not doubtful:
@@ -56,8 +56,10 @@ def as_text(
 
             if phrases is None:
                 phrases = phrases_of(rulebook)
-            wish = violation_table.Wish(width=width, every_part=every_part, phrases=phrases)
-            lines.append(violation_table.as_text(explained[number], wish))
+            options = violation_table.TableOptions(
+                width=width, every_part=every_part, phrases=phrases
+            )
+            lines.append(violation_table.as_text(explained[number], options))
     if len(verdict.violations) > len(shown):
         lines.append(f"  and {len(verdict.violations) - len(shown):,} more; --json has them all")
     return "\n".join([*lines, *doubtful])

@@ -45,8 +45,8 @@ INDENT = "    "
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
-    """How a table is wanted.
+class TableOptions:
+    """How a table is laid out and worded.
 
     One that is large or wider than ``width`` is folded, unless ``every_part`` is wanted.
     ``phrases`` are those that the decisive state is told in.
@@ -57,14 +57,14 @@ class Wish:
     phrases: Mapping[str, str] = field(default_factory=dict)
 
 
-DEFAULT_WISH = Wish()
+DEFAULT_OPTIONS = TableOptions()
 
 
-def as_text(explanation: Explanation, wish: Wish = DEFAULT_WISH) -> str:
+def as_text(explanation: Explanation, options: TableOptions = DEFAULT_OPTIONS) -> str:
     """The rule's sentence and table, ``*`` marking changes at the decisive state."""
-    width = wish.width
+    width = options.width
     decisive = explanation.states.index(explanation.decisive)
-    table = _table(explanation, decisive, width, every_part=wish.every_part)
+    table = _table(explanation, decisive, width, every_part=options.every_part)
     columns = [
         [
             styled(cell, "bold" if decisive in places else "")
@@ -75,11 +75,11 @@ def as_text(explanation: Explanation, wish: Wish = DEFAULT_WISH) -> str:
     lines = [INDENT + line for line in wrap(visible(explanation.rule.says), width - len(INDENT))]
     rows = [[f"{title} " for title in ("state", *table.titles)], *columns]
     lines += table_lines(list(zip(*rows, strict=True)), indent=INDENT, ruled=(0, table.n_facts))
-    lines += [*_left_out(explanation, table), *_in_words(explanation, decisive, wish)]
+    lines += [*_left_out(explanation, table), *_in_words(explanation, decisive, options)]
     return "\n".join([*lines, *_repair(explanation, width)])
 
 
-def _in_words(explanation: Explanation, decisive: int, wish: Wish) -> Iterator[str]:
+def _in_words(explanation: Explanation, decisive: int, options: TableOptions) -> Iterator[str]:
     """What decides in the decisive state, as a sentence."""
     facts = []
     for fact in explanation.facts:
@@ -87,10 +87,10 @@ def _in_words(explanation: Explanation, decisive: int, wish: Wish) -> Iterator[s
         if fact.decides and fact.objects is None and value is not None:
             number = value.middle if isinstance(value, Interval) else value
             facts.append((fact.text, number, shown(value)))
-    said = facts_in_words(facts, explanation.vocabulary, wish.phrases)
+    said = facts_in_words(facts, explanation.vocabulary, options.phrases)
     if said:
         line = f"at state {explanation.decisive}: {visible(said)}"
-        yield from wrap(line, wish.width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+        yield from wrap(line, options.width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
 
 
 def _repair(explanation: Explanation, width: int) -> Iterator[str]:

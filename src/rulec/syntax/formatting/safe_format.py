@@ -30,7 +30,7 @@ def format_source(source: Source) -> str:
         raise RulecError(mistakes)
     text = arranged(source)
     if text == source.text:
-        return text  # which has nothing to be checked
+        return text  # it is the file itself
     made = Source(source.name, text)
     again, of_it = parse(made)
     if len(of_it) != len(mistakes) or again != tree:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.automata.outcome_machine import VIOLATED
 from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
@@ -153,24 +152,10 @@ class StackedRule:
             if self._bytes > MOST_BYTES:
                 self._answers.clear()
                 self._bytes = len(key)
-            found = self._answers[key] = self._run(stretches.tolist())
+            sets = self.letters.sets
+            word = ((sets[number], length) for number, length in stretches.tolist())
+            found = self._answers[key] = Answer(*self.machine.monitor.run_stretches(word))
         return found
-
-    def _run(self, stretches: Sequence[tuple[int, int]]) -> Answer:
-        monitor, sets = self.machine.monitor, self.letters.sets
-        lost = monitor.machine.lost
-        here, start = monitor.start, 0
-        for number, length in stretches:
-            classes = sets[number]
-            for place in range(start, start + length):
-                before, step = here, monitor.step(here, classes)
-                here = step.states
-                if step.best == VIOLATED and lost.issuperset(monitor.states(here)):
-                    return Answer(VIOLATED, VIOLATED, place)
-                if here == before:
-                    break  # the same again, however often
-            start += length
-        return Answer(step.best, step.worst)
 
 
 def _stacked(read: Read | NumberRead, vocabulary: Vocabulary) -> StackedRead:

@@ -87,7 +87,7 @@ def as_markdown(
     sources = ", ".join(code(source.name) for source in rulebook.sources)
     made_from = words.say("Made by rulec {} from {}.", __version__, sources)
     advice = f"{made_from} {words.say(NO_ADVICE)}"
-    end = (*_index(rulebook, inherited, (index, rules), words), "---", advice)
+    end = (*_index(rulebook, inherited, index, rules, words), "---", advice)
     return markdown.written([*top, contents, *body, *end])
 
 
@@ -104,10 +104,7 @@ def _top(rulebook: Rulebook, words: DocumentLanguage) -> Iterator[Block]:
         [say("rulebook"), code(rulebook.name)],
         [say("law"), law or say("none is named")],
         [say("shown as of"), rulebook.at],
-        [
-            say("builds upon"),
-            bases or say("no other rulebook"),
-        ],
+        [say("builds upon"), bases or say("no other rulebook")],
         [say("traffic"), say(_SIDES[rulebook.traffic])],
         [say("a trace is"), say(_ENDS[rulebook.semantics])],
         [say("rules"), say("{} hard, {} soft", f"{n_hard:,}", f"{n_soft:,}")],
@@ -152,10 +149,10 @@ def _articles_section(rulebook: Rulebook, words: DocumentLanguage) -> Iterator[B
 def _index(
     rulebook: Rulebook,
     inherited: BookLineage,
-    places: tuple[Heading, Mapping[str, str]],
+    heading: Heading,
+    anchors: Mapping[str, str],
     words: DocumentLanguage,
 ) -> Iterator[Block]:
-    heading, anchors = places
     yield heading
     laws = {book.name: book.law or book.title or book.name for book in inherited.books}
     articles = articles_of(rulebook.rules, inherited)

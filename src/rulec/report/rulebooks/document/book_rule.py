@@ -73,7 +73,7 @@ def rule_section(
     yield Heading(3, rule_heading(rule, words))
     if rule.says:
         yield f"> {escaped(rule.says)}"
-    facts = _facts(rule, history, inherited, (elsewhere, words))
+    facts = _facts(rule, history, inherited, elsewhere, words)
     titles = [
         escaped(words.topics.get(topic.name, topic.title))
         for topic in rulebook.topics
@@ -94,7 +94,7 @@ def rule_section(
         yield say("The states are {} apart.", amount(rule.step_s, "s", language))
     for number, example in enumerate(rule.examples, 1):
         drawn = "" if picture is None else picture(example, rule)
-        yield from _example(example, (number, drawn), vocabulary, words)
+        yield from _example(example, number, drawn, vocabulary, words)
     base = history.before(book)
     if (
         history.last.deed in ("overridden", "confirmed")
@@ -109,9 +109,9 @@ def _facts(
     rule: Rule,
     history: RuleHistory,
     inherited: BookLineage,
-    told: tuple[str, DocumentLanguage],
+    elsewhere: str,
+    words: DocumentLanguage,
 ) -> Iterator[tuple[str, str]]:
-    elsewhere, words = told
     say, language = words.say, words.language
     open_law = say("; inherited, not confirmed") if rule.inherited_from else ""
     cited = f"{rule.cite}{elsewhere}" if rule.cite else say("none is cited")
@@ -174,10 +174,9 @@ def _clause(word: str, text: str) -> list[str]:
 
 
 def _example(
-    example: Example, told: tuple[int, str], vocabulary: Vocabulary, words: DocumentLanguage
+    example: Example, number: int, drawn: str, vocabulary: Vocabulary, words: DocumentLanguage
 ) -> Iterator[str]:
     say, language = words.say, words.language
-    number, drawn = told
     verdict = say("allowed ✔") if example.accepts else say("forbidden ✘")
     name = f" ({escaped(example.label)})" if example.label else ""
     objects = [
