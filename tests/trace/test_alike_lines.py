@@ -174,10 +174,24 @@ def test_what_is_odd_about_one_line_changes_nothing_for_others(case, last, rules
     held_against_one_by_one(text, rules)
 
 
-def test_bytes_that_are_no_text(rules):
+@pytest.mark.parametrize("line", [0, 2])
+@pytest.mark.parametrize(
+    ("text", "no_text"),
+    [
+        (b'"left"', b'"\xffeft"'),
+        (b'"speed"', b'"spe\xff\xff"'),
+        (b': {"%d.0": "', b': {"%d\x80": "'),
+        (b', "speed"', b'\xc3, "speed"'),
+        (b'"id": "t', b'"id": "\xff'),
+    ],
+    ids=["a value", "a name", "an object", "between", "the trace's name"],
+)
+def test_bytes_that_are_no_text(line, text, no_text, rules):
     every = [line.encode() for line in lines()]
-    every[2] = every[2].replace(b'"left"', b'"\xffeft"')
-    assert 2 not in alike_in(b"\n".join(every))
+    text, no_text = (part.replace(b"%d", b"%d" % line) for part in (text, no_text))
+    assert text in every[line]
+    every[line] = every[line].replace(text, no_text)
+    assert line not in alike_in(b"\n".join(every))
     held_against_one_by_one(b"\n".join(every), rules)
 
 

@@ -187,7 +187,7 @@ def _form_of(first: bytes, comma: bytes, colon: bytes, objects: Mapping[str, str
     """How a state is written; None if it is unusual."""
     try:
         state = _DECODE(first)
-    except (msgspec.DecodeError, RecursionError):
+    except (ValueError, RecursionError):  # msgspec's errors are the former, and Unicode's
         return None
     parts = _Parts(comma, colon, {name: place for place, name in enumerate(objects)})
     if not parts.add_state(state) or not parts.paths:
