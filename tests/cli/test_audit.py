@@ -104,6 +104,19 @@ def test_a_law_s_text_that_has_changed_since(folder, capsys):
     assert [article["state"] for article in data["provisions"]] == ["covered", "to do"]
 
 
+def test_articles_of_two_years_and_whether_they_were_read(folder, capsys):
+    listed = """\
+provisions "https://a.example" as of 1989-01-01 certainty verified { "reg. 1 (1989)" "Horns" }
+provisions "https://a.example" certainty unverified { "reg. 1 (2017)" "Quiet"; "reg. 2 (2017)" "" }
+hard"""
+    text = CLEAN.replace("§ 1", "reg. 1, 2 (2017)").replace("hard", listed, 1)
+    (folder / "clean.rules").write_text(text, encoding="utf-8")
+    out = run(capsys, "clean.rules")[1]
+    assert "\n  articles as listed read in the law  1 of 3\n" in out
+    assert "\n  reg. 1 (1989)  Horns: to do\n  reg. 1 (2017)  Quiet (from memory): covered" in out
+    assert "\n  reg. 2 (2017)   (from memory): covered by quiet\n" in out
+
+
 @pytest.mark.parametrize(
     ("arguments", "why"),
     [

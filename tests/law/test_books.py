@@ -46,6 +46,15 @@ def test_a_book_says_whose_law_it_is_and_on_which_day(name: str) -> None:
 
 
 @of_every_book
+def test_a_book_lists_its_law_s_articles_and_says_whether_they_were_read(name: str) -> None:
+    provisions = read(name).rulebook.provisions
+    assert provisions
+    for article in provisions:
+        assert all((article.number, article.heading, article.link, article.as_of)), article.number
+        assert article.certainty, article.number
+
+
+@of_every_book
 def test_each_rule_has_an_automaton_that_can_be_kept_and_violated(name: str) -> None:
     for rule in compiled(name).rules:
         assert rule.hoa.startswith("HOA: v1")

@@ -103,6 +103,7 @@ def resolve(
                 item.as_of,
                 treatment=entry.treatment,
                 because=entry.because.value if entry.because else "",
+                certainty=item.certainty,
             )
             for file, item in laid.provisions
             if any(file is one for one in own)

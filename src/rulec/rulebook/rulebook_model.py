@@ -162,10 +162,10 @@ Treatment = Literal["to do", "silent", "not machine-readable"]
 
 @dataclass(frozen=True, slots=True)
 class Provision:
-    """An article of the rulebook's law, in the text of a day (ISO), read at ``link``.
+    """An article of the rulebook's law, in the text of a day (ISO); ``link`` is its official page.
 
     ``number`` is how rules cite it. ``treatment`` is what becomes of it as long as no rule does,
-    and ``because`` why.
+    and ``because`` why; ``certainty`` is how sure number and heading are.
     """
 
     number: str
@@ -174,6 +174,7 @@ class Provision:
     as_of: str = ""
     treatment: Treatment = "to do"
     because: str = ""
+    certainty: Certainty = ""
 
 
 @dataclass(frozen=True)

@@ -188,6 +188,9 @@ class ExampleItem(_SyntaxNode):
     objects: tuple[Parameter, ...] = ()
 
 
+Certainty = Literal["", "verified", "secondary", "unverified"]
+"""How sure something is: read in the law itself, read elsewhere, from memory; empty if unsaid."""
+
 Scope = Literal["initially", "at start", "throughout", "at some point", "at end"]
 
 
@@ -225,7 +228,7 @@ class RuleItem(_SyntaxNode):
     unless: tuple[Unless, ...] = ()
     when: Formula | None = None
     source: Text | None = None
-    certainty: Literal["", "verified", "secondary", "unverified"] = ""
+    certainty: Certainty = ""
     in_force: InForce | None = None
     confirm: bool = False
     topics: tuple[Name, ...] = ()
@@ -419,14 +422,15 @@ class ArticleEntry(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class ProvisionsItem(_SyntaxNode):
-    """``provisions "link" as of DATE { … }``: the articles of a law, as its text was on a day.
+    """``provisions "link" as of DATE certainty WORD { … }``: the articles of a law on a day.
 
-    The date is ISO text, empty when not given.
+    The date is ISO text, empty when not given, as is how sure the headings are.
     """
 
     link: Text
     as_of: str
     entries: tuple[ArticleEntry, ...]
+    certainty: Certainty = ""
 
 
 Listing = TopicsItem | ProvisionsItem

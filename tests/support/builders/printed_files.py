@@ -148,7 +148,8 @@ def print_listing(item):
         for entry in item.entries
     )
     as_of = f" as of {item.as_of}" if item.as_of else ""
-    return f"provisions {quoted(item.link.value)}{as_of} {{ {'; '.join(entries)} }}"
+    certainty = f" certainty {item.certainty}" if item.certainty else ""
+    return f"provisions {quoted(item.link.value)}{as_of}{certainty} {{ {'; '.join(entries)} }}"
 
 
 def _dates(in_force):

@@ -257,6 +257,16 @@ ITEMS = [
     ),
     Construct(
         (
+            'provisions "https://a" as of 2021-07-12 certainty verified { "§ 1" "Care" }',
+            'provisions "https://a" as of\n2021-07-12\n  certainty\nverified\n{ "§ 1" "Care" }',
+        ),
+        (
+            'provisions "https://a" certainty sure { "§ 1" "Care" }',
+            'provisions "https://a" certainty verified as of 2021-07-12 { "§ 1" "Care" }',
+        ),
+    ),
+    Construct(
+        (
             'provisions "a" { "1" "C" silent because "b"; "2" "" not machine-readable because "" }',
             (
                 'provisions "a" {\n"1" "C"\nsilent\nbecause "b"; '

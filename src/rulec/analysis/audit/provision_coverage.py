@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from rulec.analysis.audit.citations import Reference, article_listed, covers, each_reference
-from rulec.rulebook.rulebook_model import Provision, Rule, Rulebook
+from rulec.rulebook.rulebook_model import Certainty, Provision, Rule, Rulebook
 from rulec.value_display import short_repr
 
 ProvisionState = Literal["covered", "silent", "not machine-readable", "to do"]
@@ -18,7 +19,7 @@ class ListedProvision:
     """An article of the rulebook's law, and the rules that cite it.
 
     It is ``covered`` if a rule does that is the rulebook's own law; else ``state`` is what the
-    rulebook says of it, ``because`` why.
+    rulebook says of it, ``because`` why. ``certainty`` is that of its number and heading.
     """
 
     __repr__ = short_repr
@@ -30,6 +31,7 @@ class ListedProvision:
     because: str = ""
     link: str = ""
     as_of: str = ""
+    certainty: Certainty = ""
 
 
 def provisions_of(rulebook: Rulebook) -> tuple[ListedProvision, ...]:
@@ -48,6 +50,7 @@ def provisions_of(rulebook: Rulebook) -> tuple[ListedProvision, ...]:
             "" if article.number in citing else article.because,
             link=article.link,
             as_of=article.as_of,
+            certainty=article.certainty,
         )
         for article in rulebook.provisions
     )
@@ -83,8 +86,15 @@ def _known(listed: Listed) -> frozenset[tuple[str, str]]:
 
 def _cited(rule: Rule, listed: Listed) -> Iterator[str]:
     yield from (number for number, reference in listed if reference is None and number in rule.cite)
+    of_its_year = [entry for entry in listed if _year(entry[0]) in rule.cite]
     for reference in each_reference(rule.cite, _known(listed)):
-        yield from _covering(reference, listed)[:1]
+        yield from _covering(reference, of_its_year)[:1]
+
+
+def _year(number: str) -> str:
+    """The year behind an article's number, as in `reg. 6 (1989)`; empty if there is none."""
+    found = re.search(r"\((?:19|20)\d\d\)$", number)
+    return found[0] if found else ""
 
 
 def _covering(cited: Reference, listed: Listed) -> list[str]:

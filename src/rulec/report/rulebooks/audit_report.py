@@ -78,6 +78,8 @@ def counts(audit: Audit) -> Iterator[tuple[str, str]]:
     yield "provisions of the law", f"{n.articles:,}"
     if audit.provisions:
         yield "articles dealt with", progress(audit.provisions)
+        n_read = sum(article.certainty == "verified" for article in audit.provisions)
+        yield "articles as listed read in the law", f"{n_read:,} of {len(audit.provisions):,}"
     if audit.law_text:
         yield f"cites found in {audit.law_text}", f"{n.cites_found:,} of {n.cites_looked_for:,}"
     yield "words of the vocabulary in use", f"{n.words_used:,} of {n.words:,}"
@@ -105,7 +107,8 @@ def provision_row(
     say = words.say
     rules = say(" by {}", ", ".join(article.rules)) if article.rules else ""
     because = say(", because {}", article.because) if article.because else ""
-    return article.number, article.heading, f"{say(article.state)}{rules}{because}"
+    recalled = f" {say('(from memory)')}" if article.certainty == "unverified" else ""
+    return article.number, f"{article.heading}{recalled}", f"{say(article.state)}{rules}{because}"
 
 
 def provision_table(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import Literal, cast, get_args
 
 from rulec.syntax import tree
 from rulec.syntax.building.formulas import NodeValues, amount, atom, formula, parameters
@@ -70,7 +70,9 @@ def item(
         case "provisions_item":
             date = "".join(map(values.date, node.leaves("DATE")))
             articles = tuple(_article(values, entry) for entry in node.branches("article"))
-            return tree.ProvisionsItem(values.text(node), date, articles, span=span)
+            sure = [clause(values, said) for said in node.branches("certainty_clause")]
+            certainty = cast("tree.Certainty", sure[0] if sure else "")
+            return tree.ProvisionsItem(values.text(node), date, articles, certainty, span=span)
         case _:
             return _definition(values, node)
 

@@ -12,6 +12,7 @@ from rulec.logic.printing import formula_text
 from rulec.logic.sentences.wording import listed, spoken
 from rulec.report.rulebooks.audit_report import progress, provision_table
 from rulec.report.rulebooks.document.book_rule import (
+    CERTAINTY,
     WIDTH,
     ExamplePicture,
     rule_heading,
@@ -139,9 +140,10 @@ def _articles_section(rulebook: Rulebook, words: DocumentLanguage) -> Iterator[B
     provisions = provisions_of(rulebook)
     if provisions:
         yield Heading(2, words.say("Articles of the law"))
-        pages = dict.fromkeys((article.link, article.as_of) for article in provisions)
-        for link, as_of in pages:
+        pages = dict.fromkeys((one.link, one.as_of, one.certainty) for one in provisions)
+        for link, as_of, certainty in pages:
             yield linked(words.say("{} , as of {}", link, as_of) if as_of else link)
+            yield words.say("This list: {}.", words.say(CERTAINTY[certainty]))
         yield words.say("Dealt with: {}.", progress(provisions, words))
         yield provision_table(provisions, words)
 
