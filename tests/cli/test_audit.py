@@ -112,7 +112,7 @@ hard"""
     text = CLEAN.replace("§ 1", "reg. 1, 2 (2017)").replace("hard", listed, 1)
     (folder / "clean.rules").write_text(text, encoding="utf-8")
     out = run(capsys, "clean.rules")[1]
-    assert "\n  articles as listed read in the law  1 of 3\n" in out
+    assert "\n  listed articles that were read   1 of 3\n" in out
     assert "\n  reg. 1 (1989)  Horns: to do\n  reg. 1 (2017)  Quiet (from memory): covered" in out
     assert "\n  reg. 2 (2017)   (from memory): covered by quiet\n" in out
 

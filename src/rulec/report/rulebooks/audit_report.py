@@ -79,7 +79,7 @@ def counts(audit: Audit) -> Iterator[tuple[str, str]]:
     if audit.provisions:
         yield "articles dealt with", progress(audit.provisions)
         n_read = sum(article.certainty == "verified" for article in audit.provisions)
-        yield "articles as listed read in the law", f"{n_read:,} of {len(audit.provisions):,}"
+        yield "listed articles that were read", f"{n_read:,} of {len(audit.provisions):,}"
     if audit.law_text:
         yield f"cites found in {audit.law_text}", f"{n.cites_found:,} of {n.cites_looked_for:,}"
     yield "words of the vocabulary in use", f"{n.words_used:,} of {n.words:,}"
