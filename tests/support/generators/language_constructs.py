@@ -258,7 +258,7 @@ ITEMS = [
     Construct(
         (
             'provisions "https://a" as of 2021-07-12 certainty verified { "§ 1" "Care" }',
-            'provisions "https://a" as of\n2021-07-12\n  certainty\nverified\n{ "§ 1" "Care" }',
+            'provisions "https://a"\n  as of\n2021-07-12 certainty verified {\n "§ 1" "Care"\n}',
         ),
         (
             'provisions "https://a" certainty sure { "§ 1" "Care" }',
