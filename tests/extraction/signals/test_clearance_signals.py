@@ -243,6 +243,16 @@ def test_nobody_goes_to_the_near_lane_across_a_solid_line(mark, free):
     assert signals(lanes, ego(100, y=4), behind)["near_lane_is_free"][0] == free
 
 
+@pytest.mark.parametrize(
+    ("mps", "beside", "free"), [(10.0, True, "?"), (10.0, False, "True"), (20.0, True, "True")]
+)
+def test_who_is_in_a_slow_queue_need_not_use_a_hole_beside_it(mps, beside, free):
+    """Two are ahead of ego in its lane, 11 m apart, and one on the other lane, far enough away."""
+    queue = [steady(number, x, 4, mps) for number, x in ((8, 115), (6, 130), (9, 0))]
+    others = [*queue, *([steady(5, 160, 0, mps)] if beside else [])]
+    assert signals(two_lanes(), ego(100, mps, y=4), *others)["near_lane_is_free"][0] == free
+
+
 @pytest.mark.parametrize(("kind", "free"), [("busLane", "False"), ("urban", "True")])
 def test_nobody_goes_to_a_lane_for_buses(kind, free):
     lanes = [

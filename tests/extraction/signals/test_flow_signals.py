@@ -232,6 +232,24 @@ def test_a_lane_too_short_for_a_queue_does_not_decide():
     assert not first(*line(10, 2))["dense_all_lanes"]
 
 
+@pytest.mark.parametrize(("lanes", "unknown"), [(2, False), (3, True)])
+def test_a_queue_on_one_lane_of_three_does_not_tell_of_the_others(lanes, unknown):
+    """Lanes of 40 m beside the one that goes on have no room for a queue."""
+    beside = [straight(4, 100, 140, y=-4, left_of=3), straight(6, 100, 140, y=4, right_of=3)]
+    road = [
+        straight(1, -100, 100, successors=("3",)),
+        straight(3, 100, 140, predecessors=("1",), right_of=4, successors=("5",)),
+        straight(5, 140, 300, predecessors=("3",)),
+        *beside[: lanes - 1],
+    ]
+    if lanes == 3:
+        road[1] = replace(road[1], left_of="6")
+    found = recording(road, [steady(7, 100, 0), *line(10, 3, start=110.0)])
+    signals = flow_signals(context_of(found, ("1", "3")))
+    assert signals.world["dense_all_lanes"][2]
+    assert signals.unknown["dense_all_lanes"][2] == unknown
+
+
 def test_where_the_map_ends_soon_nothing_is_said_of_queues():
     short = recording([straight(1, 0, 40)], [steady(7, 10, 0)])
     assert flow_signals(context_of(short)).unknown["dense_all_lanes"].all()

@@ -98,6 +98,16 @@ def test_ego_has_seen_one_stand_that_it_brakes_for(ahead, brakes, word):
     assert ("?" if unknown else bool(signals.about["safe_gap"][0, 1])) == word
 
 
+@pytest.mark.parametrize(("ahead", "word"), [(8.0, "?"), (5.0, False), (11.0, True)])
+def test_who_is_slow_can_stop_at_once_behind_one_that_stands(ahead, word):
+    """From 5 m/s within 1.56 m, and it reacts within 5 m more; bodies are 4 m long."""
+    stands = vehicle(8, dict.fromkeys(range(6), (ahead, 0)), speed=0)
+    ego = steady(7, -5.0 * STEP_S, 0, speed=5.0, steps=6)
+    signals = participant_signals(context_of(recording(lanes(1), [ego, stands])))
+    unknown = bool(signals.unknown["safe_gap"][0, 1])
+    assert ("?" if unknown else bool(signals.about["safe_gap"][0, 1])) == word
+
+
 @pytest.mark.parametrize(("leaves_at", "unknown"), [(8, True), (9, False)])
 def test_the_gap_to_one_that_ego_parts_from_soon_is_moot(leaves_at, unknown):
     """Steps are of 0.5 s, and in the state 4 s later it is in the other lane, or not yet."""
@@ -218,16 +228,18 @@ def test_who_stands_beside_the_lanes_all_the_time_is_parked(y, moves_on, parked)
 
 
 @pytest.mark.parametrize(
-    ("x", "goes_on", "elsewhere"), [(90, False, True), (90, True, False), (40, False, False)]
+    ("x", "goes_on", "elsewhere"),
+    [(90, False, True), (90, True, False), (40, False, False), (113, False, True)],
 )
 def test_a_lane_that_ends_at_the_junction_leads_elsewhere(x, goes_on, elsewhere):
-    """The junction begins at 112 m: near it is who is 50 m before it."""
+    """The junction begins at 112 m: near it is who is 50 m before it, or stands at its edge."""
     inside = frozenset({"intersection"})
     road = [
         straight(1, 0, 112, successors=(2,), left_of=5),
-        straight(2, 112, 132, predecessors=(1,), successors=(3,), types=inside),
+        straight(2, 112, 132, predecessors=(1,), successors=(3,), types=inside, left_of=4),
         straight(3, 132, 300, predecessors=(2,), left_of=6 if goes_on else None),
-        straight(5, 0, 112, 4, right_of=1),
+        straight(4, 112, 132, 4, predecessors=(5,), types=inside, right_of=2),
+        straight(5, 0, 112, 4, successors=(4,), right_of=1),
         *([straight(6, 132, 300, 4, right_of=3)] if goes_on else []),
     ]
     other = vehicle(8, dict.fromkeys(range(8), (x, 4)), speed=0)

@@ -52,8 +52,8 @@ def test_lanes_that_lead_the_same_way_are_neighbours(read):
     assert (found.side, found.country) == ("left", "GBR")
 
 
-def test_without_a_country_and_oncoming_traffic_nobody_knows_the_side(read):
-    assert read(both(1, 0)).side is None
+def test_without_a_country_and_oncoming_traffic_the_side_is_the_usual_one(read):
+    assert read(both(1, 0)).side == "right"
 
 
 def test_a_lane_beside_a_part_of_another_is_no_neighbour(read):

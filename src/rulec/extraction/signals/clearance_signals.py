@@ -10,7 +10,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
-from rulec.extraction.signals.queues import LOOSE, lanes_that_go_on, queues_by_lane
+from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -227,15 +227,19 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
 def _of_no_use(context: DriveContext) -> Flags:
     """Flags of states in which nobody can tell whether ego has to go to the next lane to the kerb.
 
-    It begins or ends near ego while others go on, as beside a ramp; it is full, but for a hole; or
-    drivers sort themselves by lanes before a junction.
+    It begins or ends near ego while others go on, as beside a ramp; it is full, but for a hole; ego
+    is in a slow queue itself, with others on the next lane, too; or drivers sort themselves by
+    lanes before a junction.
     """
     lane, there = _next_lane(context, context.side)
     states = np.arange(context.states)
     side_lane = ~lanes_that_go_on(context)[states, lane]
-    queues, _ = queues_by_lane(context)
+    queues, speed_kmh = queues_by_lane(context)
+    full, own = (queues[LOOSE, states, number] for number in (lane, context.ego_lane))
+    slow = speed_kmh[states, context.ego_lane] < context.thresholds.slow_queue_kmh
+    used = (close_by(context) & (context.extents.lane == lane)).any(axis=0)
     _, sorting = _sorted_ahead(context)
-    no_use: Flags = there & (side_lane | queues[LOOSE, states, lane] | sorting)
+    no_use: Flags = there & (side_lane | full | (own & slow & used) | sorting)
     return no_use
 
 

@@ -131,7 +131,10 @@ def _dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     )
     # Nor is there a queue where the world ends, whose traffic is all recorded
     nobody_knows = ~decides[MEASURED].any(axis=-1) & (not whole)
-    return dense, surely, perhaps & ~surely | cut_off | nobody_knows
+    # What a few lanes are is not told of the others
+    few = 2 * decides[MEASURED].sum(axis=-1) < context.existing_lanes.sum(axis=-1)
+    surely &= ~few
+    return dense, surely, (perhaps | dense) & ~surely | cut_off | nobody_knows
 
 
 def _gap_ahead(context: DriveContext) -> Floats:

@@ -24,11 +24,14 @@ from rulec.recordings.osi.moving_objects import participants, standing
 from rulec.recordings.osi.signs_and_marks import with_crossings, with_signs, with_stop_lines
 from rulec.recordings.osi.trace_content import TraceContent, read_content
 from rulec.recordings.osi.trace_file import OSI
-from rulec.recordings.recording import Lanelet, Participant, Recording, is_lane
+from rulec.recordings.recording import Lanelet, Participant, Recording, Side, is_lane
 from rulec.recordings.recording_format import Glance
 from rulec.recordings.recording_messages import NET_MISSING
 
 _NAMED = 5
+
+_USUAL_SIDE: Side = "right"
+"""That of OpenDRIVE's roads that do not say theirs."""
 
 
 def read_osi(path: Path, map_path: Path | None = None) -> Recording:
@@ -54,7 +57,7 @@ def read_osi(path: Path, map_path: Path | None = None) -> Recording:
         participants=tuple(_participants(content, grid, file)),
         problems=(),
         form="ASAM OSI trace",
-        side=by_country or (network.side if road is None else road.side),
+        side=by_country or (network.side or _USUAL_SIDE if road is None else road.side),
         remarks=(
             *_remarks(content, grid),
             *(_network_remarks(network) if road is None else road.remarks),

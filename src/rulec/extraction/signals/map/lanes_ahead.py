@@ -135,7 +135,8 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
         near &= others.s >= end
         unknown |= near & parted[np.clip(others.lane, 0, len(parted) - 1)]
     for junction in junctions_ahead(context):
-        near = context.on_lanes & (others.s < junction.low)
+        # Who waits there may be past the place where the junction begins for ego
+        near = context.on_lanes & (others.s <= junction.high)
         near &= junction.low - others.s_max <= reach
         if not near.any():
             continue
