@@ -93,6 +93,18 @@ class RulebookVerbs(SessionSettings):
 
         return tuple(write_compiled(rulebook, Path(folder)))
 
+    def write_monitor(
+        self, rules: Rules, folder: str | Path, objects: Mapping[str, int] | None = None
+    ) -> tuple[Path, ...]:
+        """Write a monitor in C99: header, source, Makefile, CMakeLists.txt; the paths.
+
+        ``objects`` are how many there may be at a time, by type; without it 16 of each type that is
+        below no other. Raises RulecError R0750 if there can be no such monitor.
+        """
+        from rulec.code_generation.monitor_files import write_monitor
+
+        return tuple(write_monitor(self._compiled(rules), Path(folder), objects or {}))
+
     def verify_compiled(self, path: str | Path) -> tuple[RuleProof, ...]:
         """Hold the tables of a compiled rulebook's file against its formulas, without Spot.
 

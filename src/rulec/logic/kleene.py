@@ -99,7 +99,7 @@ def objects_counted(
     fitting: dict[str, bool] = {}
     inner = dict(binding)
     present = state.objects
-    alias, evaluate = _alias_of(count.variable, count.body), _evaluator_of(count.body)
+    alias, evaluate = alias_of(count.variable, count.body), _evaluator_of(count.body)
     candidates = present if alias is None else [binding[alias]] if binding[alias] in present else []
     for name in candidates:
         type_name = present[name]
@@ -115,13 +115,13 @@ def objects_counted(
     return tuple(result)
 
 
-def _alias_of(variable: str, formula: ltl.Formula) -> str | None:
+def alias_of(variable: str, formula: ltl.Formula) -> str | None:
     """Another variable for the same object wherever the formula holds, or None."""
     match formula:
         case ltl.Same(left, right) if variable in (left, right) and left != right:
             return right if left == variable else left
         case ltl.Binary(ltl.BinaryOperator.AND, left, right):
-            return _alias_of(variable, left) or _alias_of(variable, right)
+            return alias_of(variable, left) or alias_of(variable, right)
     return None
 
 

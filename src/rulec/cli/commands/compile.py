@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 
@@ -14,6 +14,16 @@ from rulec.cli.output import open_session
 from rulec.report.text.console import print_line
 
 _WRITTEN = (".hoa", ".json")
+
+
+def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for value in values:
+        kind, number = value.partition("=")[::2]
+        if not number.isdecimal() or len(number) > 9 or kind in found:
+            raise click.BadParameter(f"`{value}` is not once TYPE=N, such as `vehicle=16`")
+        found[kind] = int(number)
+    return found
 
 
 @click.command()
@@ -30,14 +40,40 @@ _WRITTEN = (".hoa", ".json")
     metavar="DIR",
     help="The folder for the files, made if need be.",
 )
+@shared.choice_option(
+    "--emit",
+    ["automata", "c"],
+    "What is written: automata and the compiled rulebook, or a monitor in C.",
+)
+@click.option(
+    "--objects",
+    metavar="TYPE=N",
+    multiple=True,
+    callback=_bounds,
+    help="How many objects of a type a monitor in C watches at a time; several times.  [default: "
+    "16 of each type that is below no other]",
+)
 @shared.at_option
-def command(rulebook: str, output: str, steps_s: Sequence[Fraction], at: str) -> None:
+def command(
+    rulebook: str,
+    *,
+    output: str,
+    steps_s: Sequence[Fraction],
+    emit: str,
+    objects: Mapping[str, int],
+    at: str,
+) -> None:
     """Compile RULEBOOK: a name, or the path of a source.
 
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
     RULEBOOK.json, which every other command takes in place of the source and which runs without
-    Spot. Each file appears whole or not at all.
+    Spot. With `--emit c` it writes header, source, Makefile and CMakeLists.txt of a monitor in C99
+    instead. Each file appears whole or not at all.
     """
+    if objects and emit != "c":
+        raise click.UsageError("--objects is about monitors in C: add `--emit c`")
+    if emit == "c" and len(steps_s) > 1:
+        raise click.UsageError("a monitor in C is for one step: give --step once")
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     refuse_standard_output(output)
@@ -46,5 +82,9 @@ def command(rulebook: str, output: str, steps_s: Sequence[Fraction], at: str) ->
         refuse_overwriting([Output(str(Path(output, Path(rulebook).name)), "")], [rulebook])
     session = open_session(at)
     compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
-    for path in session.write_compiled(compiled, output):
+    if emit == "c":
+        paths = session.write_monitor(compiled, output, objects)
+    else:
+        paths = session.write_compiled(compiled, output)
+    for path in paths:
         print_line(f"wrote {path}")

@@ -1,0 +1,1 @@
+"""Compiled rulebooks as monitors in C."""

@@ -1,0 +1,106 @@
+/* What a proof asks of a monitor's source, of which this is the end. */
+
+size_t rulec_state_size(void);
+size_t rulec_state_size(void)
+{
+    return sizeof(rulec_state);
+}
+
+/* The part of a state that lasts from one step to the next. */
+size_t rulec_kept_size(void);
+size_t rulec_kept_size(void)
+{
+    return offsetof(rulec_state, next_id);
+}
+
+/* The classes of all letters of a rule, the first read counting ones. */
+void rulec_all_classes(uint32_t number, const uint32_t *reads, const uint32_t *sizes, uint32_t n,
+    uint16_t *classes);
+void rulec_all_classes(uint32_t number, const uint32_t *reads, const uint32_t *sizes, uint32_t n,
+    uint16_t *classes)
+{
+    static uint16_t digits[RULEC_SOURCES][0x1000];
+    const uint16_t *sources[RULEC_SOURCES];
+    uint32_t each;
+    uint32_t letter = 0u;
+    bool more = true;
+    for (each = 0u; each < RULEC_SOURCES; each++) {
+        sources[each] = digits[each];
+    }
+    for (each = 0u; each < n; each++) {
+        digits[reads[each] >> 12][reads[each] & 0xfffu] = RULEC_KNOWN(0u);
+    }
+    while (more) {
+        classes[letter] = rulec_class(&rulec_rules[number], sources);
+        letter++;
+        more = false;
+        for (each = 0u; (each < n) && !more; each++) {
+            uint16_t *digit = &digits[reads[each] >> 12][reads[each] & 0xfffu];
+            const uint16_t next = (uint16_t)((*digit & 0xffu) + 1u);
+            more = next < sizes[each];
+            *digit = more ? RULEC_KNOWN(next) : RULEC_KNOWN(0u);
+        }
+    }
+}
+
+/* The classes, as bits, of the letters that reads with several digits have. */
+void rulec_some_classes(uint32_t number, const uint32_t *reads, const uint16_t *given, uint32_t n,
+    uint32_t *classes);
+void rulec_some_classes(uint32_t number, const uint32_t *reads, const uint16_t *given, uint32_t n,
+    uint32_t *classes)
+{
+    static uint16_t digits[RULEC_SOURCES][0x1000];
+    static rulec_state state;
+    const uint16_t *sources[RULEC_SOURCES];
+    uint32_t each;
+    for (each = 0u; each < RULEC_SOURCES; each++) {
+        sources[each] = digits[each];
+    }
+    for (each = 0u; each < n; each++) {
+        digits[reads[each] >> 12][reads[each] & 0xfffu] = given[each];
+    }
+    (void)rulec_classes(&state, &rulec_rules[number], sources);
+    for (each = 0u; each < RULEC_CLASS_WORDS; each++) {
+        classes[each] = state.classes[each];
+    }
+}
+
+/* The state reached and the verdict from each state by each class, taken as a set of one. */
+void rulec_all_steps(uint32_t number, uint16_t *reached, uint8_t *verdicts, uint16_t *by_sets);
+void rulec_all_steps(uint32_t number, uint16_t *reached, uint8_t *verdicts, uint16_t *by_sets)
+{
+    static rulec_state state;
+    const rulec_rule *const rule = &rulec_rules[number];
+    uint32_t from;
+    uint32_t by;
+    for (from = 0u; from < rule->n_states; from++) {
+        for (by = 0u; by < rule->n_classes; by++) {
+            const uint32_t place = (from * rule->n_classes) + by;
+            const uint16_t entry = rulec_entries[rule->first_entry + place];
+            reached[place] = (uint16_t)(entry >> 2);
+            verdicts[place] = (uint8_t)(entry & 3u);
+            state.at[rule->first_instance] = (uint16_t)from;
+            rulec_clear(state.classes, rule->n_classes);
+            rulec_set(state.classes, by);
+            rulec_advance_all(&state, rule, rule->first_instance);
+            by_sets[place] = (uint16_t)((uint32_t)state.at[rule->first_instance] << 2)
+                | (state.verdict[rule->first_instance] & 3u);
+        }
+    }
+}
+
+/* The digits that are read of an input: of nobody, of one object, of several. */
+void rulec_digits(const rulec_input *in, const size_t *who, uint32_t source, uint16_t *digits);
+void rulec_digits(const rulec_input *in, const size_t *who, uint32_t source, uint16_t *digits)
+{
+    uint16_t read;
+    if (source == 0u) {
+        rulec_read_world(in, digits);
+    } else if (source == 7u) {
+        for (read = 0u; read < RULEC_SHARED_READS; read++) {
+            digits[read] = rulec_read_together(in, who, read);
+        }
+    } else {
+        rulec_read_own(in, who[source - 1u], digits);
+    }
+}

@@ -1,0 +1,197 @@
+/* Reading: what an input says, as digits. A digit is a number below 255 that says on which side of
+ * its limits a value is, or which one it is. Where the value is not known there are several: the
+ * lower byte has the least of them, the upper byte the greatest. */
+
+#define RULEC_KNOWN(digit) ((uint16_t)((uint16_t)(digit) * 0x101u))
+#define RULEC_FROM_TO(low, high) ((uint16_t)((uint16_t)(low) | (uint16_t)((uint16_t)(high) << 8)))
+#define RULEC_MOST 9007199254740992.0 /* 2^53: numbers beyond it, infinity and NaN are unknown */
+
+/* Truth values of S. C. Kleene, "Introduction to metamathematics", 1952 */
+#define RULEC_NO ((uint8_t)0u)
+#define RULEC_PERHAPS ((uint8_t)1u)
+#define RULEC_YES ((uint8_t)2u)
+
+typedef struct {
+    const double *factors;
+    const double *limits;
+    const uint8_t *inclusive;
+    const int64_t *whole_factors; /* NULL if they are too large */
+    const int64_t *whole_limits;
+    uint8_t n_terms;
+    uint8_t n_limits;
+} rulec_shape;
+
+static inline bool rulec_is_number(double value)
+{
+    /* False for NaN, too */
+    return (value >= -RULEC_MOST) && (value <= RULEC_MOST);
+}
+
+static inline uint16_t rulec_truth(uint8_t value)
+{
+    return (value <= 1u) ? RULEC_KNOWN(value) : RULEC_FROM_TO(0u, 1u);
+}
+
+static inline uint16_t rulec_value(uint8_t value, const uint8_t *digits, uint8_t n, uint8_t size)
+{
+    return (value < n) ? RULEC_KNOWN(digits[value]) : RULEC_FROM_TO(0u, size - 1u);
+}
+
+static inline uint16_t rulec_number(double value, const double *floors, uint8_t n)
+{
+    uint16_t passed = 0u;
+    uint8_t each;
+    if (!rulec_is_number(value)) {
+        return RULEC_FROM_TO(0u, n);
+    }
+    for (each = 0u; each < n; each++) {
+        passed = (uint16_t)(passed + ((value >= floors[each]) ? 1u : 0u));
+    }
+    return RULEC_KNOWN(passed);
+}
+
+static inline uint8_t rulec_is(uint8_t value)
+{
+    return (value == 1u) ? RULEC_YES : ((value == 0u) ? RULEC_NO : RULEC_PERHAPS);
+}
+
+static inline uint8_t rulec_has(uint8_t value, uint8_t asked, uint8_t n)
+{
+    return (value == asked) ? RULEC_YES : ((value < n) ? RULEC_NO : RULEC_PERHAPS);
+}
+
+static inline uint8_t rulec_not(uint8_t truth)
+{
+    return (uint8_t)(RULEC_YES - truth);
+}
+
+static inline uint8_t rulec_and(uint8_t left, uint8_t right)
+{
+    return (left < right) ? left : right;
+}
+
+static inline uint8_t rulec_or(uint8_t left, uint8_t right)
+{
+    return (left > right) ? left : right;
+}
+
+static inline uint8_t rulec_same(uint8_t left, uint8_t right)
+{
+    const bool known = (left != RULEC_PERHAPS) && (right != RULEC_PERHAPS);
+    return known ? ((left == right) ? RULEC_YES : RULEC_NO) : RULEC_PERHAPS;
+}
+
+/* Whether the digits are among some, given as bits. */
+static inline uint8_t rulec_among(uint16_t digits, uint32_t some)
+{
+    const uint32_t high = (uint32_t)digits >> 8;
+    bool all = true;
+    bool any = false;
+    uint32_t each;
+    for (each = (uint32_t)digits & 0xffu; each <= high; each++) {
+        const bool is = ((some >> each) & 1u) != 0u;
+        all = all && is;
+        any = any || is;
+    }
+    return all ? RULEC_YES : (any ? RULEC_PERHAPS : RULEC_NO);
+}
+
+/* An object's part of a count: lower half for sure, upper half perhaps. */
+static inline uint32_t rulec_counts(const rulec_input *in, size_t one, uint8_t kind, uint8_t truth)
+{
+    uint32_t counts = 0u;
+    if (rulec_fits[kind][in->objects[one].type] != 0u) {
+        counts = ((truth == RULEC_YES) ? 1u : 0u) | ((truth != RULEC_NO) ? 0x10000u : 0u);
+    }
+    return counts;
+}
+
+static inline uint16_t rulec_counted(uint32_t counts, const uint32_t *limits, uint8_t n)
+{
+    uint16_t low = 0u;
+    uint16_t high = 0u;
+    uint8_t each;
+    for (each = 0u; each < n; each++) {
+        low = (uint16_t)(low + (((counts & 0xffffu) >= limits[each]) ? 1u : 0u));
+        high = (uint16_t)(high + (((counts >> 16) >= limits[each]) ? 1u : 0u));
+    }
+    return RULEC_FROM_TO(low, high);
+}
+
+/* Which of two numbers is the greater; sides: 1 for at least, 2 for more. */
+static inline uint16_t rulec_order(double first, double second, uint8_t sides)
+{
+    const bool known = rulec_is_number(first) && rulec_is_number(second);
+    const uint16_t least = ((sides & 1u) != 0u) ? 1u : 0u;
+    const uint16_t more = ((sides & 2u) != 0u) ? 1u : 0u;
+    uint16_t digits = RULEC_FROM_TO(0u, least + more);
+    if (known) {
+        digits = RULEC_KNOWN(((first >= second) ? least : 0u) + ((first > second) ? more : 0u));
+    }
+    return digits;
+}
+
+/* Eight times a number, if that is a whole one and the number below 1e9. */
+static inline bool rulec_eighths(double value, int64_t *eighths)
+{
+    bool is_whole = false;
+    if ((value > -1e9) && (value < 1e9)) {
+        *eighths = (int64_t)(value * 8.0);
+        is_whole = ((double)*eighths / 8.0 >= value) && ((double)*eighths / 8.0 <= value);
+    }
+    return is_whole;
+}
+
+/* A sum of factors times numbers, each between two bounds. Whole numbers of eighths are weighed
+ * exactly. Of others every factor, limit, product and sum, and every number as a decimal, is wrong
+ * by 2^-53 of its size at most: all together by less than (n + 8) 2^-53 times the sum of all sizes.
+ * Where that could decide, the digits on both sides are possible. */
+static uint16_t rulec_weigh(const double *low, const double *high, const rulec_shape *shape)
+{
+    double least = 0.0;
+    double most = 0.0;
+    double size = 0.0;
+    int64_t whole_least = 0;
+    int64_t whole_most = 0;
+    bool is_whole = shape->whole_factors != NULL;
+    uint16_t passed_least = 0u;
+    uint16_t passed_most = 0u;
+    uint8_t each;
+    for (each = 0u; each < shape->n_terms; each++) {
+        const bool up = shape->factors[each] > 0.0;
+        const double first = shape->factors[each] * (up ? low[each] : high[each]);
+        const double last = shape->factors[each] * (up ? high[each] : low[each]);
+        int64_t below = 0;
+        int64_t above = 0;
+        if (!rulec_is_number(low[each]) || !rulec_is_number(high[each])) {
+            return RULEC_FROM_TO(0u, shape->n_limits);
+        }
+        least += first;
+        most += last;
+        size += ((first < 0.0) ? -first : first) + ((last < 0.0) ? -last : last);
+        is_whole = is_whole && rulec_eighths(low[each], &below);
+        is_whole = is_whole && rulec_eighths(high[each], &above);
+        if (is_whole) {
+            whole_least += shape->whole_factors[each] * (up ? below : above);
+            whole_most += shape->whole_factors[each] * (up ? above : below);
+        }
+    }
+    for (each = 0u; each < shape->n_limits; each++) {
+        const double limit = shape->limits[each];
+        const double all = size + ((limit < 0.0) ? -limit : limit);
+        const double error = (((double)shape->n_terms + 8.0) * 0x1p-53 * all) + 0x1p-900;
+        bool surely;
+        bool perhaps;
+        if (is_whole) {
+            const int64_t bound = shape->whole_limits[each] + ((shape->inclusive[each] != 0u) ? 0 : 1);
+            surely = whole_least >= bound;
+            perhaps = whole_most >= bound;
+        } else {
+            surely = (least - limit) > error;
+            perhaps = (most - limit) >= -error;
+        }
+        passed_least = (uint16_t)(passed_least + (surely ? 1u : 0u));
+        passed_most = (uint16_t)(passed_most + (perhaps ? 1u : 0u));
+    }
+    return RULEC_FROM_TO(passed_least, passed_most);
+}

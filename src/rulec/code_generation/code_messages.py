@@ -1,0 +1,64 @@
+"""Messages about code that cannot be generated."""
+
+from __future__ import annotations
+
+from rulec.diagnostics import RulecError
+from rulec.diagnostics.code import Code
+
+NO_MONITOR_IN_C = Code(
+    "R0750",
+    title="there can be no monitor in C",
+    why="A monitor in C has a size that is known when it is compiled, and tables whose entries "
+    "have 16 bits: a rule has at most 16,383 states and 6 variables, and all rules together 65,535 "
+    "choices of objects, with as many objects as `--objects` allows. It is for one step: of a "
+    "rulebook that was compiled for several one has to be chosen. And a rulebook without rules has "
+    "nothing to watch. Types are those of the vocabulary.",
+    bad="rulec compile esterle2019 --emit c --objects lorry=2 -o build\n",
+    good="rulec compile esterle2019 --emit c --objects vehicle=2 -o build\n",
+    kind="command",
+)
+
+
+def too_large(what: str, way_out: str = "") -> RulecError:
+    """The error (R0750) about what is too large, or not there."""
+    return NO_MONITOR_IN_C.error(
+        None,
+        f"there can be no monitor in C: {what}",
+        help=way_out or "split the rule, or leave it out",
+    )
+
+
+NO_C_COMPILER = Code(
+    "R0751",
+    title="there is no C compiler",
+    why="Monitors in C are proved, and judge as the engine `c`, after the user's own compiler has "
+    "compiled them: the one that the environment variable `CC` names, or `cc`. rulec brings none "
+    "along, and takes no other engine instead.",
+    kind="circumstance",
+)
+
+C_COMPILER_FAILED = Code(
+    "R0752",
+    title="the C compiler has failed",
+    why="What rulec writes is C99, and has to compile without a warning. The message has the "
+    "command and what the compiler said. If it is no compiler for C99, name another one in the "
+    "environment variable `CC`; else please report the rulebook.",
+    kind="circumstance",
+)
+
+
+def no_compiler(command: str) -> RulecError:
+    """The error (R0751) about a compiler that is not there."""
+    return NO_C_COMPILER.error(
+        None,
+        f"there is no C compiler: `{command}` is not found",
+        help="install one, or name it in the environment variable `CC`",
+    )
+
+
+def compiler_failed(command: str, said: str) -> RulecError:
+    """The error (R0752) about a compiler that has failed."""
+    first = "\n".join(said.strip().splitlines()[:5])
+    return C_COMPILER_FAILED.error(
+        None, f"`{command}` has failed: {first}", help="name another compiler in `CC`"
+    )

@@ -1,0 +1,103 @@
+"""The fields of a monitor's input: the names of the vocabulary that its rules read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.mealy_monitor import Read
+from rulec.code_generation.code_messages import too_large
+from rulec.code_generation.written_names import Identifiers
+from rulec.logic.free_names import names_in
+from rulec.vocabulary import Declaration, Enumeration, Vocabulary
+
+NOBODY_KNOWN = "object"
+"""The type of a vocabulary that has none."""
+
+TYPE, RULE = " type", " rule"
+"""What no enumeration is called."""
+
+_OWN = """
+    SATISFIED HOLDS_SO_FAR PENDING VIOLATED OK NULL BAD_TYPE TWICE TOO_MANY EXCLUDED_BY_FACTS
+    UNKNOWN UNKNOWN_NUMBER RULES TYPES SEATS MOST_OBJECTS N_SOURCES STEP_S VARIABLES INSTANCES WORDS
+    WORLD_READS OWN_READS SHARED_READS CELL_WORDS CLASS_WORDS STATE_WORDS SOURCES MONITOR_H
+    KNOWN FROM_TO MOST NO PERHAPS YES NOBODY EMPTY SEVERAL LEAF EXCLUDED EXACTLY WITHIN LOST DOUBTED
+"""
+_OWN_CONSTANTS = frozenset(_OWN.split())
+"""What a monitor defines itself, whatever its rulebook says."""
+
+MOST_VALUES = 254
+"""Of an enumeration; 255 is unknown."""
+
+
+@dataclass(frozen=True)
+class InputFields:
+    """The names that are read, in order of declaration, and their identifiers."""
+
+    vocabulary: Vocabulary
+    read: tuple[Declaration, ...]
+    rules: tuple[str, ...]
+
+    @cached_property
+    def types(self) -> tuple[str, ...]:
+        """All types of objects; there is one at least."""
+        return tuple(self.vocabulary.types) or (NOBODY_KNOWN,)
+
+    @cached_property
+    def identifiers(self) -> dict[str, str]:
+        """The field of each name."""
+        identifiers = Identifiers()
+        return {item.name: identifiers.of(item.name) for item in self.read}
+
+    @cached_property
+    def constants(self) -> dict[tuple[str, str], str]:
+        """The constants of types, of rules, and of values by the name of their enumeration."""
+        identifiers = Identifiers(_OWN_CONSTANTS)
+        found = {}
+        for what, names in ((TYPE, self.types), (RULE, self.rules)):
+            found.update({(what, one): identifiers.of(what, one, upper=True) for one in names})
+        for item in self.read:
+            if isinstance(item, Enumeration):
+                for value in item.values:
+                    found[item.name, value] = identifiers.of(item.name, value, upper=True)
+        return found
+
+    def about(self, n_objects: int) -> Iterable[Declaration]:
+        """The names about so many objects; 2 stands for more, too."""
+        return (item for item in self.read if min(len(item.parameters), 2) == n_objects)
+
+    def values_of(self, name: str) -> tuple[str, ...]:
+        """The values of an enumeration."""
+        declaration = self.vocabulary.declarations[name]
+        assert isinstance(declaration, Enumeration)
+        return declaration.values
+
+    def expression(self, name: str, places: Sequence[str]) -> str:
+        """What an input says of the objects at these places."""
+        field = self.identifiers[name]
+        if not places:
+            return f"in->{field}"
+        if len(places) == 1:
+            return f"in->objects[{places[0]}].{field}"
+        return f"rulec_of_{field}(in, {', '.join(places)})"
+
+
+def input_fields(rulebook: CompiledRulebook) -> InputFields:
+    """The fields that the rules of a rulebook read. Raises RulecError R0750."""
+    names = set[str]()
+    for rule in rulebook.rules:
+        for read in rule.machine.reads:
+            if isinstance(read, Read):
+                names.add(read.name)
+            else:
+                names.update(name for _, term in read.terms for name in names_in(term))
+    vocabulary = rulebook.vocabulary
+    found = tuple([item for name, item in vocabulary.declarations.items() if name in names])
+    for item in found:
+        if isinstance(item, Enumeration) and len(item.values) > MOST_VALUES:
+            raise too_large(f"`{item.name}` has {len(item.values)} values, at most {MOST_VALUES}")
+    if len(vocabulary.types) > MOST_VALUES:
+        raise too_large(f"there are {len(vocabulary.types)} types, at most {MOST_VALUES}")
+    return InputFields(vocabulary, found, tuple([rule.name for rule in rulebook.rules]))

@@ -1,0 +1,241 @@
+"""Where everything of a monitor has its place: seats, reads, cells, entries, instances.
+
+A rule has an instance for each choice of seats that its variables may stand for. Objects of a type
+sit on the seats of the nearest type above it for which there are any.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.code_generation.code_messages import too_large
+from rulec.code_generation.input_fields import InputFields, input_fields
+from rulec.code_generation.letter_cells import LEAF, letter_cells
+from rulec.code_generation.reading_code import ReadingCode
+from rulec.logic.free_names import variables_of
+from rulec.monitoring.online.four_valued import WORST_FIRST, four_valued
+from rulec.vocabulary import Vocabulary
+
+USUAL_SEATS = 16
+"""For objects of each type that is below no other one."""
+
+MOST_SEATS = 4096
+MOST_VARIABLES = 6
+MOST_STATES = (1 << 14) - 1
+MOST_INSTANCES = (1 << 16) - 1
+MOST_READS = 1 << 12
+
+WORLD, OWN, TOGETHER = 0, 1, 7
+"""Where digits are: of no object; of the first variable's, the next ones following; of several."""
+
+VERDICTS = WORST_FIRST[::-1]
+"""Their numbers in C, the best being 0."""
+
+
+@dataclass(frozen=True)
+class RuleLayout:
+    """A rule's part of all arrays.
+
+    ``seats`` are for each variable the first and the one behind the last that its objects may have.
+    ``reads`` say of each read where its digits are: the source and the place there. ``together``
+    are the places of reads of several objects.
+    """
+
+    rule: CompiledRule
+    cells: tuple[int, ...]
+    entries: tuple[int, ...]
+    seats: tuple[tuple[int, int], ...]
+    reads: tuple[tuple[int, int], ...]
+    together: tuple[int, ...]
+
+    @property
+    def n_instances(self) -> int:
+        """How many choices of seats there are."""
+        return prod(end - first for first, end in self.seats)
+
+    @property
+    def n_words(self) -> int:
+        """How many words of 32 bits the sets of states of all instances take."""
+        return self.n_instances * (len(self.rule.machine.successors) // 32 + 1)
+
+    @property
+    def start(self) -> int:
+        """The verdict before the first state."""
+        return VERDICTS.index(
+            "satisfied" if self.rule.machine.accepting_sink == 0 else "holds so far"
+        )
+
+
+@dataclass(frozen=True)
+class MonitorLayout:
+    """A monitor, but for its text.
+
+    ``seats`` are by type the first and the one behind the last for its objects. ``digits`` are
+    expressions for the reads of no object, of one (at the place ``one``) and of several (at places
+    ``who``), ``sizes`` how many digits each of them has. ``definitions`` are what they take.
+    """
+
+    rulebook: CompiledRulebook
+    fields: InputFields
+    seats: Mapping[str, tuple[int, int]]
+    rules: tuple[RuleLayout, ...]
+    digits: tuple[tuple[str, ...], ...]
+    sizes: tuple[tuple[int, ...], ...]
+    definitions: tuple[str, ...]
+
+    @property
+    def n_seats(self) -> int:
+        """The number of seats."""
+        return max(end for _, end in self.seats.values())
+
+    @property
+    def n_variables(self) -> int:
+        """The most variables that a rule has, at least 1."""
+        return max(1, *[len(own.seats) for own in self.rules])
+
+
+def monitor_layout(rulebook: CompiledRulebook, bounds: Mapping[str, int]) -> MonitorLayout:
+    """The layout for a rulebook, at the step of its first rule that has one.
+
+    ``bounds`` are how many objects there may be at a time, by type. Raises RulecError R0750.
+    """
+    steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
+    if steps:
+        rulebook = rulebook.fitted_to(steps[0])
+    if not rulebook.rules:
+        raise too_large(f"rulebook `{rulebook.name}` has no rules", "give one that has some")
+    fields = input_fields(rulebook)
+    seats = _seats(fields, bounds)
+    placing = _Placing(ReadingCode(fields), fields, seats)
+    rules = tuple([placing.rule(rule) for rule in rulebook.rules])
+    if sum(own.n_instances for own in rules) > MOST_INSTANCES:
+        raise too_large(
+            f"its rules have {sum(own.n_instances for own in rules):,} choices of objects, "
+            f"at most {MOST_INSTANCES:,}",
+            "allow fewer objects with `--objects`",
+        )
+    return MonitorLayout(
+        rulebook,
+        fields,
+        seats,
+        rules,
+        digits=tuple([tuple(own) for own in placing.places]),
+        sizes=tuple([tuple(own.values()) for own in placing.places]),
+        definitions=tuple(placing.code.definitions),
+    )
+
+
+def _seats(fields: InputFields, bounds: Mapping[str, int]) -> dict[str, tuple[int, int]]:
+    """The seats for objects of each type, as those of its nearest bound."""
+    vocabulary = fields.vocabulary
+    kinds = fields.types
+    unknown = [kind for kind in bounds if kind not in kinds]
+    if unknown:
+        raise too_large(
+            f"`--objects` names the type `{unknown[0]}`, which vocabulary `{vocabulary.name}` "
+            f"does not know",
+            f"known: {', '.join(kinds)}",
+        )
+    if not bounds:
+        bounds = {kind: USUAL_SEATS for kind in kinds if _parent(kind, vocabulary) is None}
+    if any(not 0 < bound <= MOST_SEATS for bound in bounds.values()):
+        raise too_large(f"a bound on objects is from 1 to {MOST_SEATS}", "change `--objects`")
+    found: dict[str, tuple[int, int]] = {}
+    end = 0
+    # A type's seats are followed by those of types below it, so that each has a stretch.
+    for kind in sorted(kinds, key=lambda kind: [kinds.index(one) for one in _above(kind, fields)]):
+        parent = _parent(kind, vocabulary)
+        if kind in bounds:
+            found[kind] = end, end + bounds[kind]
+            end = found[kind][1]
+        else:
+            found[kind] = found[parent] if parent is not None else (0, 0)
+    return found
+
+
+def _parent(kind: str, vocabulary: Vocabulary) -> str | None:
+    return vocabulary.types[kind].parent if kind in vocabulary.types else None
+
+
+def _above(kind: str, fields: InputFields) -> list[str]:
+    """The types from the root down to this one."""
+    if kind not in fields.vocabulary.types:
+        return [kind]
+    return list(fields.vocabulary.ancestors(kind))[::-1]
+
+
+class _Placing:
+    """Places given to reads as rules need them: ``places`` by source, expression to size."""
+
+    def __init__(
+        self, code: ReadingCode, fields: InputFields, seats: Mapping[str, tuple[int, int]]
+    ) -> None:
+        self.code = code
+        self.places: tuple[dict[str, int], dict[str, int], dict[str, int]] = ({}, {}, {})
+        self._fields = fields
+        self._seats = seats
+
+    def rule(self, rule: CompiledRule) -> RuleLayout:
+        """The layout of a rule."""
+        machine, what = rule.machine, f"rule `{rule.name}` has"
+        if len(rule.variables) > MOST_VARIABLES:
+            raise too_large(f"{what} {len(rule.variables)} variables, at most {MOST_VARIABLES}")
+        if len(machine.successors) > MOST_STATES:
+            raise too_large(f"{what} {len(machine.successors)} states, at most {MOST_STATES}")
+        cells = letter_cells(machine.letters, [read.size for read in machine.reads])
+        if len(cells) >= LEAF or len(machine.successors[0]) >= LEAF - 1:
+            raise too_large(f"{what} too many letters that are not alike")
+        reads = [self._placed(read, rule) for read in machine.reads]
+        at = 1
+        while at < len(cells):
+            read = cells[at]
+            source, place = reads[read]
+            cells[at] = source << 12 | place
+            at += 1 + machine.reads[read].size
+        entries = [
+            target << 2 | VERDICTS.index(four_valued(machine, target, accepted))
+            for targets, row in zip(machine.successors, machine.outputs, strict=True)
+            for target, accepted in zip(targets, row, strict=True)
+        ]
+        return RuleLayout(
+            rule,
+            cells=tuple(cells),
+            entries=tuple(entries),
+            seats=tuple([self._seats_of(variable.type) for variable in rule.variables]),
+            reads=tuple(reads),
+            together=tuple(dict.fromkeys(place for source, place in reads if source == TOGETHER)),
+        )
+
+    def _placed(self, read: Read | NumberRead, rule: CompiledRule) -> tuple[int, int]:
+        """The source of a read's digits, and their place there."""
+        names = [variable.name for variable in rule.variables]
+        if isinstance(read, Read):
+            used = set(read.variables)
+        else:
+            used = {name for _, term in read.terms for name in variables_of(term)}
+        if len(used) > 1:
+            kind, source = 2, TOGETHER
+            places = {name: f"who[{number}u]" for number, name in enumerate(names)}
+        else:
+            kind = len(used)
+            source = OWN + names.index(used.pop()) if used else WORLD
+            places = dict.fromkeys(names, "one")
+        known = self.places[kind]
+        expression = self.code.digits(read, places)
+        known.setdefault(expression, read.size)
+        if len(known) > MOST_READS:
+            raise too_large(f"its rules read {len(known):,} things, at most {MOST_READS:,}")
+        return source, list(known).index(expression)
+
+    def _seats_of(self, kind: str) -> tuple[int, int]:
+        """The seats that objects of a type may have, and perhaps others."""
+        vocabulary = self._fields.vocabulary
+        stretches = [
+            self._seats[own] for own in vocabulary.types if vocabulary.is_subtype(own, kind)
+        ]
+        taken = [stretch for stretch in stretches if stretch[0] < stretch[1]] or [(0, 0)]
+        return min(first for first, _ in taken), max(end for _, end in taken)

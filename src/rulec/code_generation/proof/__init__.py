@@ -1,0 +1,1 @@
+"""Monitors in C, held against the tables that they were made of."""

@@ -1,0 +1,197 @@
+"""A monitor in C, compiled by the user's compiler and stepped from Python."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shlex
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rulec.code_generation.c_files import c_header, c_source, in_own_names
+from rulec.code_generation.code_messages import compiler_failed, no_compiler
+from rulec.code_generation.monitor_layout import VERDICTS, MonitorLayout
+from rulec.code_generation.written_names import prefix_of
+from rulec.monitoring.online.four_valued import FourValued, RunningVerdict, within
+from rulec.trace import State
+from rulec.vocabulary import Declaration, Enumeration, Quantity
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES
+
+FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic")
+
+UNKNOWN_CODE = 255
+UNKNOWN_NUMBER = float("nan")
+
+_HARNESS = Path(__file__).parent.parent / "c_texts" / "harness.c"
+
+
+def compiler() -> list[str]:
+    """The command of the C compiler: what ``CC`` says, or ``cc``. Raises RulecError R0751."""
+    command = shlex.split(os.environ.get("CC", "cc"))
+    if not command or shutil.which(command[0]) is None:
+        raise no_compiler(command[0] if command else "cc")
+    return command
+
+
+class CLibrary:
+    """A monitor's source, compiled with what a proof asks of it.
+
+    ``source`` is that of the layout, unless another one is given.
+
+    Raises RulecError R0751 if there is no compiler, R0752 if it fails.
+    """
+
+    def __init__(
+        self, layout: MonitorLayout, source: str | None = None, *, optimised: bool = True
+    ) -> None:
+        self.layout = layout
+        self._level = "-O2" if optimised else "-O0"
+        self._prefix = prefix_of(layout.rulebook.name)
+        with tempfile.TemporaryDirectory(prefix="rulec-") as folder:
+            self._library = ctypes.CDLL(str(self._compiled(Path(folder), source)))
+        self.object_type, self.input_type = structures(layout)
+        self.call("state_size").restype = ctypes.c_size_t
+        self.call("kept_size").restype = ctypes.c_size_t
+        self.call("step").restype = ctypes.c_uint8
+
+    def _compiled(self, folder: Path, source: str | None) -> Path:
+        layout, name = self.layout, self._prefix
+        harness = in_own_names(_HARNESS.read_text(encoding="utf-8"), layout)
+        text = (c_source(layout) if source is None else source) + harness
+        (folder / f"{name}.h").write_text(c_header(layout), "utf-8")
+        (folder / f"{name}.c").write_text(text, "utf-8")
+        library = folder / f"{name}.so"
+        flags = [*FLAGS, self._level, "-fPIC", "-shared", f"{name}.c", "-o", library.name]
+        command = [*compiler(), *flags]
+        try:
+            done = subprocess.run(
+                command, cwd=folder, capture_output=True, text=True, timeout=300, check=False
+            )
+        except (OSError, subprocess.TimeoutExpired) as problem:
+            raise compiler_failed(shlex.join(command), str(problem)) from None
+        if done.returncode:
+            raise compiler_failed(shlex.join(command), done.stderr)
+        return library
+
+    def call(self, name: str) -> Any:
+        """A function of the library."""
+        return getattr(self._library, f"{self._prefix}_{name}")
+
+
+def structures(layout: MonitorLayout) -> tuple[type[ctypes.Structure], type[ctypes.Structure]]:
+    """The structures of an object and of an input, as the header has them."""
+    fields = layout.fields
+
+    own = [(fields.identifiers[item.name], _kind(item)) for item in fields.about(1)]
+    given = [("id", ctypes.c_uint32), ("type", ctypes.c_uint8), *own]
+    object_type = type("CObject", (ctypes.Structure,), {"_fields_": given})
+    pointer: Any = ctypes.POINTER(object_type)
+    world = [(fields.identifiers[item.name], _kind(item)) for item in fields.about(0)]
+    several = [
+        (fields.identifiers[item.name], ctypes.POINTER(_kind(item))) for item in fields.about(2)
+    ]
+    given = [("n_objects", ctypes.c_size_t), ("objects", pointer), *world, *several]
+    return object_type, type("CInput", (ctypes.Structure,), {"_fields_": given})
+
+
+@dataclass(frozen=True, slots=True)
+class CSaid:
+    """What a step of a monitor in C says: its ``status``, and the verdicts if that is 0."""
+
+    status: int
+    verdict: RunningVerdict
+    rules: Mapping[str, RunningVerdict]
+    violations: int
+    left_out: int
+
+
+class CMonitor:
+    """A monitor in C that is stepped with states as Python's monitor is."""
+
+    def __init__(self, library: CLibrary) -> None:
+        self._library = library
+        self.state = ctypes.create_string_buffer(library.call("state_size")())
+        n_rules = len(library.layout.rules)
+        # Two bytes for the rulebook and each rule, and two numbers of 32 bits.
+        self.said = ctypes.create_string_buffer(2 + 2 * n_rules + 16)
+        self._ids: dict[str, int] = {}
+        library.call("init")(self.state)
+
+    def take(self, given: ctypes.Structure) -> int:
+        """Take the next state as C has it; the status."""
+        step = self._library.call("step")
+        return int(step(self.state, ctypes.byref(given), self.said))
+
+    def step(self, state: State, objects: Mapping[str, str]) -> CSaid:
+        """Take the next state."""
+        library = self._library
+        given = input_of(library, state, objects, self._ids)
+        status = self.take(given)
+        said = self.said.raw
+        names = [own.rule.name for own in library.layout.rules]
+        verdicts = [
+            within(_four(said[place]), _four(said[place + 1]))
+            for place in range(0, 2 * len(names) + 2, 2)
+        ]
+        end = (2 * len(names) + 2 + 3) // 4 * 4
+        numbers = [int.from_bytes(said[at : at + 4], "little") for at in (end, end + 4)]
+        return CSaid(
+            status, verdicts[0], dict(zip(names, verdicts[1:], strict=True)), numbers[0], numbers[1]
+        )
+
+
+def _four(number: int) -> FourValued:
+    return VERDICTS[number & 3]
+
+
+def input_of(
+    library: CLibrary, state: State, objects: Mapping[str, str], ids: dict[str, int]
+) -> ctypes.Structure:
+    """The input that says what a state says, or else the defaults; new objects get new ``ids``."""
+    fields = library.layout.fields
+    names = list(objects)
+    seated = (library.object_type * max(1, len(names)))()
+    given: Any = library.input_type()
+    given.n_objects = len(names)
+    given.objects = ctypes.cast(seated, ctypes.POINTER(library.object_type))
+    for one, name in zip(seated, names, strict=False):
+        one.id = ids.setdefault(name, len(ids) + 1)
+        one.type = fields.types.index(objects[name])
+        for item in fields.about(1):
+            setattr(one, fields.identifiers[item.name], _code(item, _said(state, item, [name])))
+    for item in fields.about(0):
+        setattr(given, fields.identifiers[item.name], _code(item, _said(state, item, [])))
+    for item in fields.about(2):
+        places: list[list[str]] = [[]]
+        for _ in item.parameters:
+            places = [[*before, name] for before in places for name in names]
+        kind: Any = _kind(item)
+        values = [_code(item, _said(state, item, place)) for place in places]
+        setattr(given, fields.identifiers[item.name], (kind * max(1, len(values)))(*values))
+    return given  # type: ignore[no-any-return]
+
+
+def _kind(item: Declaration) -> Any:
+    return ctypes.c_double if isinstance(item, Quantity) else ctypes.c_uint8
+
+
+def _said(state: State, item: Declaration, names: Sequence[str]) -> Any:
+    value: Any = state.get(item.name)
+    for name in names:
+        if value is None or value is UNKNOWN:
+            break
+        value = value.get(name)
+    return item.default if value is None else value
+
+
+def _code(item: Declaration, value: Any) -> float | int:
+    if isinstance(item, Quantity):
+        return UNKNOWN_NUMBER if value is None or type(value) in UNKNOWN_TYPES else float(value)
+    if value is None or value is UNKNOWN:
+        return UNKNOWN_CODE
+    return item.values.index(value) if isinstance(item, Enumeration) else int(value)

@@ -1,0 +1,107 @@
+"""A rulebook's texts in code of other languages: identifiers, comments, literals.
+
+A rulebook may be anybody's. Whatever its texts hold, they end no comment, splice no lines, form no
+trigraph and turn no writing round.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable
+from itertools import count
+
+_KEYWORDS = """
+    alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t
+    class compl concept const const_cast consteval constexpr constinit continue co_await co_return
+    co_yield decltype default delete do double dynamic_cast else enum explicit export extern false
+    float for friend goto if inline int long mutable namespace new noexcept not not_eq nullptr
+    operator or or_eq private protected public register reinterpret_cast requires restrict return
+    short signed sizeof static static_assert static_cast struct switch template this thread_local
+    throw true try typedef typeid typename typeof union unsigned using virtual void volatile wchar_t
+    while xor xor_eq
+    abstract as async await become box crate dyn extern final fn gen impl in let loop macro match
+    mod move mut override priv pub ref self static super trait type unsafe unsized use where yield
+    linux unix i386 arm mips sun near far errno assert stdin stdout stderr environ main
+    id objects n_objects
+"""
+_RESERVED = frozenset(_KEYWORDS.split())
+"""Keywords of C, C++ and Rust, macros of compilers that are no words of the standard, and the
+monitor's own fields."""
+
+_SHOWN = frozenset({"Lu", "Ll", "Lt", "Lm", "Lo", "Nd", "Nl", "No", "Pd", "Po", "Ps", "Pe", "Sc"})
+"""Categories of characters beyond ASCII that a comment may have as they are."""
+
+_RIGHT_TO_LEFT = frozenset({"R", "AL", "AN"})
+
+
+class Identifiers:
+    """Identifiers for names, each another one than all before, and than those ``taken``."""
+
+    def __init__(self, taken: Iterable[str] = ()) -> None:
+        self._taken = set(taken)
+
+    def of(self, *parts: str, upper: bool = False) -> str:
+        """An identifier of C, C++ and Rust; the same parts again have another one."""
+        text = _letters("_".join(part.strip() for part in parts))
+        text = text.upper() if upper else text
+        if text in _RESERVED or not text:
+            text = f"{text}_of_rule"
+        elif text[0] in "_0123456789" or text.lower().startswith("rulec_"):
+            text = f"x{text}"
+        name = text
+        numbers = count(2)
+        while name in self._taken:
+            name = f"{text}_{next(numbers)}"
+        self._taken.add(name)
+        return name
+
+
+def prefix_of(name: str) -> str:
+    """What all of a monitor's identifiers begin with, in lower case."""
+    return Identifiers().of(name.lower())
+
+
+def _letters(text: str) -> str:
+    """A name in letters, digits and single underscores of ASCII, no two different ones alike."""
+    mapped = "".join(
+        one
+        if one.isascii() and (one.isalnum() or one == "_")
+        else f"_{ord(one):x}_"
+        if one not in "- "
+        else "_"
+        for one in text
+    )
+    # Identifiers with two underscores belong to C++.
+    return re.sub("_{2,}", "_", mapped).rstrip("_")
+
+
+def in_comment(text: str) -> str:
+    """A text on one line of a comment; characters that could do harm by their numbers."""
+    shown = "".join(map(_shown, " ".join(text.split())))
+    return re.sub(_HARMFUL, lambda found: _number(found[0]), shown)
+
+
+_HARMFUL = r"(?<=\*)/|(?<=/)[*/]|(?<=\?)\?|(?<=rulec)_|(?<=RULEC)_"
+"""Ends and beginnings of comments, trigraphs, and names that get the monitor's own prefix."""
+
+
+def _shown(one: str) -> str:
+    if one.isascii():
+        return one if one.isprintable() and one != "\\" else _number(one)
+    plain = unicodedata.category(one) in _SHOWN
+    return one if plain and unicodedata.bidirectional(one) not in _RIGHT_TO_LEFT else _number(one)
+
+
+def _number(one: str) -> str:
+    return f"<U+{ord(one):04X}>"
+
+
+def c_string(text: str) -> str:
+    """A literal of C: its bytes in UTF-8, all but plain letters as three octal digits each."""
+    plain = frozenset(b" !#$%&'()+,-.0123456789:;<=>@[]^_`{|}~")
+    shown = "".join(
+        chr(byte) if byte in plain or (byte < 128 and chr(byte).isalpha()) else f"\\{byte:03o}"
+        for byte in text.encode("utf-8", "surrogatepass")
+    )
+    return '"{}"'.format(re.sub("(?<=rulec)_|(?<=RULEC)_", r"\\137", shown))

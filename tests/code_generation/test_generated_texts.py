@@ -1,0 +1,159 @@
+"""Generated code: harmless whatever a rulebook says, without warnings, as the page shows it."""
+
+import re
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import rulec
+from rulec.cli.main import main
+from rulec.code_generation.letter_cells import class_of, letter_cells
+from rulec.code_generation.monitor_files import monitor_texts
+from rulec.code_generation.monitor_layout import monitor_layout
+from rulec.code_generation.proof.c_library import CLibrary
+from rulec.code_generation.written_names import Identifiers, c_string, in_comment
+from rulec.diagnostics import RulecError
+from rulec.rulebook.rulebook_model import SourceFile
+
+PAGE = Path(__file__).parents[2] / "docs" / "onboard.md"
+COMPILER = shutil.which("cc")
+needs_a_compiler = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+
+HOSTILE = [
+    "*/ int main(void) { return system(0); } /*",
+    "ends in a backslash \\",
+    "trigraph ??/",
+    "lines\nbroken\r\nand\u2028again\u0085and\x0bso",
+    "turned \u202e round \u2066 \u200f \u05d0",
+    '"); system("',
+    "zero\0and\x1b[31m",
+    "%s %n // rulec_step",
+    "lone \udcff",
+]
+
+
+@pytest.fixture(scope="module")
+def esterle():
+    return rulec.compile_rulebook("esterle2019", step_s=1)
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_a_comment_stays_one(text):
+    shown = in_comment(text)
+    assert shown.isprintable()
+    assert not re.search(r"\*/|/\*|//|\?\?|\\|rulec_", shown)
+    assert not re.search("[\u0590-\u08ff\u200b-\u200f\u202a-\u202e\u2066-\u2069]", shown)
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_a_literal_has_the_bytes_of_its_text(text):
+    literal = c_string(text)
+    assert re.fullmatch(r'"([ !#-)+->@-\[\]-~]|\\[0-7]{3})*"', literal)
+    found = re.sub(rb"\\([0-7]{3})", lambda x: bytes([int(x[1], 8)]), literal[1:-1].encode())
+    assert found == text.encode("utf-8", "surrogatepass")
+
+
+@needs_a_compiler
+def test_a_hostile_rulebook_compiles_to_the_same_code(esterle, tmp_path):
+    evil = " ".join(HOSTILE)
+    rules = [replace(rule, cite=evil, says=evil) for rule in esterle.rules]
+    book = replace(
+        esterle,
+        rules=tuple(rules),
+        title=evil,
+        law=evil,
+        as_of=evil,
+        sources=(SourceFile(evil, evil),) * len(esterle.sources),
+    )
+    CLibrary(monitor_layout(book, {}), optimised=False)
+    codes = []
+    for one in (esterle, book):
+        source = monitor_texts(monitor_layout(one, {}))["esterle2019.c"]
+        source = re.sub(r"/\*.*?\*/", "", source, flags=re.DOTALL)
+        source = re.sub(r'"(\\.|[^"\\])*"', '""', source)
+        codes.append(re.sub(r"\s+", " ", source))
+    assert codes[0] == codes[1]
+
+
+def test_identifiers_are_apart_and_none_of_a_language():
+    identifiers = Identifiers()
+    names = ["int", "class", "fn", "a-b", "a b", "a__b", "_a", "9", "é", "É", "rulec_x", "int_"]
+    found = [identifiers.of(name) for name in names]
+    assert len(set(found)) == len(names)
+    assert all(re.fullmatch("[a-z](_?[a-zA-Z0-9])*_?[0-9]*", one) for one in found)
+    assert not {"int", "class", "fn"} & set(found)
+    assert not any("__" in one or one.startswith("rulec_") for one in found)
+
+
+def test_a_diagram_has_the_class_of_every_letter(esterle):
+    for rule in [*esterle.rules, *rulec.compile_rulebook("un-r157", step_s=1).rules]:
+        sizes = [read.size for read in rule.machine.reads]
+        cells = letter_cells(rule.machine.letters, sizes)
+        assert len(cells) <= 2000, "less than 4 kB a rule"
+        for letter, expected in enumerate(rule.machine.letters):
+            digits = []
+            for size in sizes:
+                letter, digit = divmod(letter, size)
+                digits.append(digit)
+            assert class_of(cells, digits) == expected
+
+
+def blocks(language):
+    text = PAGE.read_text(encoding="utf-8")
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
+@needs_a_compiler
+def test_the_page_leads_to_a_running_monitor(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["compile", "esterle2019", "--emit", "c", "-o", "build"]) == 0
+    Path("watch.c").write_text(blocks("c")[0], encoding="utf-8")
+    lines = blocks("c")[0].splitlines()
+    assert len(lines) - lines.index("int main(void)") <= 30
+    shown = next(block for block in blocks("console") if block.startswith("$ cc "))
+    build, run, *printed = shown.splitlines()
+    subprocess.run(build[2:], shell=True, check=True)
+    done = subprocess.run(run[2:], shell=True, check=True, capture_output=True, text=True)
+    assert done.stdout.splitlines() == printed
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="there is no make")
+@needs_a_compiler
+def test_make_builds_a_library(esterle, tmp_path):
+    rulec.write_monitor(esterle, tmp_path)
+    done = subprocess.run(["make", "CFLAGS=-O0 -Werror"], cwd=tmp_path, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "libesterle2019.a").exists()
+
+
+def test_what_there_can_be_no_monitor_of(esterle, tmp_path):
+    for rules, objects, said in [
+        (replace(esterle, rules=()), {}, "has no rules"),
+        (esterle, {"lorry": 2}, "the type `lorry`"),
+        (esterle, {"vehicle": 0}, "from 1 to 4096"),
+        (rulec.compile_rulebook("de", step_s=1), {"vehicle": 300}, "choices of objects"),
+    ]:
+        with pytest.raises(RulecError) as caught:
+            rulec.write_monitor(rules, tmp_path, objects)
+        (diagnostic,) = caught.value.diagnostics
+        assert (diagnostic.code, said in diagnostic.message) == ("R0750", True)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "options", [["--objects", "vehicle=2"], ["--emit", "c", "--objects", "vehicle"]]
+)
+def test_options_that_make_no_sense(options, tmp_path, capsys):
+    assert main(["compile", "esterle2019", "-o", str(tmp_path / "out"), *options]) == 2
+    assert "--objects" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("command", "code"), [("no-such-compiler", "R0751"), ("false", "R0752")])
+def test_a_compiler_that_is_not_there_or_fails(esterle, command, code, monkeypatch):
+    monkeypatch.setenv("CC", command)
+    with pytest.raises(RulecError) as caught:
+        CLibrary(monitor_layout(esterle, {}))
+    assert caught.value.diagnostics[0].code == code

@@ -1,0 +1,166 @@
+"""Monitors in C say what Python's say, after every state, on random rulebooks and drives."""
+
+import ctypes
+import shutil
+from fractions import Fraction
+
+import pytest
+from hypothesis import Phase, given, settings
+
+import rulec
+from rulec.automata.axiom_instances import counts
+from rulec.automata.mealy_monitor import NumberRead
+from rulec.code_generation.monitor_layout import VERDICTS, monitor_layout
+from rulec.code_generation.proof.c_library import CLibrary, CMonitor
+from rulec.diagnostics import RulecError
+from rulec.logic.formula import Count
+from rulec.monitoring.online.four_valued import best_of, worst_of
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from support.builders.rulebooks import compile_here
+from support.generators.blurred_traces import blurred
+from support.generators.random_rulebooks import rulebook
+from support.generators.random_traces import traces
+from support.generators.seeds import seeds
+from support.oracles.presence import there
+
+needs_a_compiler = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+EXCLUDED, UNTAKEN = 5, {1, 2, 3, 4, 5}
+
+
+def values_in(value):
+    if isinstance(value, dict):
+        for inner in value.values():
+            yield from values_in(inner)
+    else:
+        yield value
+
+
+def is_plain(state):
+    """All is known, and no number is so large that a double may not be it."""
+    return not any(
+        value is UNKNOWN
+        or isinstance(value, Interval)
+        or (not isinstance(value, bool | str) and not abs(value) < 1e9)
+        for value in values_in(state)
+    )
+
+
+def without_intervals(value):
+    if isinstance(value, dict):
+        return {key: without_intervals(inner) for key, inner in value.items()}
+    return UNKNOWN if isinstance(value, Interval) else value
+
+
+def is_within(said, wider):
+    best, worst = map(VERDICTS.index, (best_of(wider), worst_of(wider)))
+    return best <= VERDICTS.index(best_of(said)) and VERDICTS.index(worst_of(said)) <= worst
+
+
+def sums(rule):
+    """Does it read sums of several numbers, which doubles may not decide?"""
+    return any(
+        isinstance(read, NumberRead)
+        and (len(read.terms) > 1 or isinstance(read.terms[0][1], Count))
+        for read in rule.machine.reads
+    )
+
+
+@needs_a_compiler
+@given(seeds)
+@settings(phases=[Phase.generate], max_examples=settings().max_examples // 12)
+def test_what_python_says(chance):
+    step_s = chance.choice([Fraction(1), Fraction(1, 2)])
+    book = rulebook(chance, step_s)
+    compiled = compile_here(book, step_s)
+    counting = any(counts(axiom.formula) for axiom in compiled.axioms)
+    library = CLibrary(monitor_layout(compiled, {}), optimised=False)
+    for trace in traces(chance, step_s):
+        names = {name for state in trace.states for name in state}
+        trace = blurred(chance, trace, names, most=chance.choice([0, 0, 3]))
+        ours, theirs = Monitor(compiled, step_s), CMonitor(library)
+        plain = True
+        for number, state in enumerate(trace.states):
+            state = without_intervals(state)
+            objects = there(trace, number)
+            try:
+                said = ours.step(state, objects)
+            except RulecError as error:
+                # What is missing is not known in C; facts that count are not looked at.
+                if error.diagnostics[0].code != "R0508" or counting:
+                    break
+                # What is not known together may contradict a fact that C takes by itself.
+                found = theirs.step(state, objects)
+                assert found.status == EXCLUDED or not is_plain(state)
+                if found.status != EXCLUDED:
+                    break
+                continue
+            found = theirs.step(state, objects)
+            assert found.status == 0
+            plain = plain and is_plain(state)
+            for rule in compiled.rules:
+                own, other = said.rules[rule.name], found.rules[rule.name]
+                assert is_within(own, other)
+                assert own == other or not plain or sums(rule)
+            assert is_within(said.verdict, found.verdict)
+            if plain and not any(map(sums, compiled.rules)):
+                assert found.violations == len(ours.violations)
+
+
+@pytest.fixture(scope="module")
+def esterle():
+    return CLibrary(monitor_layout(rulec.compile_rulebook("esterle2019", step_s=1), {"vehicle": 2}))
+
+
+def drive(monitor, *positions):
+    return [
+        monitor.step({"position": state}, dict.fromkeys(state, "vehicle")) for state in positions
+    ]
+
+
+@needs_a_compiler
+def test_who_has_no_seat_is_reported_and_doubted(esterle):
+    first, second = drive(CMonitor(esterle), {"a": "b", "b": "b"}, {"a": "b", "b": "b", "c": "b"})
+    assert (first.left_out, first.verdict) == (0, "holds so far")
+    assert second.left_out == 1
+    assert second.verdict == ("holds so far", "violated")
+
+
+@needs_a_compiler
+def test_who_has_left_gives_away_the_seat(esterle):
+    passing = [{"a": "b", "b": "b"}, {"b": "r", "c": "b"}, {"b": "f", "c": "b", "a": "b"}]
+    *_, third = drive(CMonitor(esterle), *passing)
+    assert (third.verdict, third.violations, third.left_out) == ("violated", 1, 1)
+
+
+@needs_a_compiler
+@pytest.mark.parametrize(
+    ("kinds", "ids", "status"), [([0, 99], [1, 2], 2), ([1, 1], [3, 3], 3), ([1, 1], [3, 4], 0)]
+)
+def test_what_is_no_input_is_refused_and_changes_nothing(esterle, kinds, ids, status):
+    monitor = CMonitor(esterle)
+    drive(monitor, {"a": "b"})
+    before = bytes(monitor.state)
+    given = esterle.input_type()
+    objects = (esterle.object_type * 2)()
+    for one, kind, number in zip(objects, kinds, ids, strict=True):
+        one.type, one.id = kind, number
+    given.n_objects, given.objects = 2, objects
+    assert monitor.take(given) == status
+    if status in UNTAKEN:
+        # From here on in the state is what a step works with.
+        kept = esterle.call("kept_size")()
+        assert bytes(monitor.state)[:kept] == before[:kept]
+
+
+@needs_a_compiler
+def test_a_pointer_that_leads_nowhere(esterle):
+    step = esterle.call("step")
+    monitor = CMonitor(esterle)
+    given = esterle.input_type()
+    assert step(None, ctypes.byref(given), monitor.said) == 1
+    given.n_objects = 1
+    assert monitor.take(given) == 1
+    given.n_objects = 60_001
+    given.objects = (esterle.object_type * 1)()
+    assert monitor.take(given) == 4
