@@ -106,6 +106,13 @@ SEARCH: Final = ResourceLimit(
     "say less in one rule",
 )
 
+STATES: Final = ResourceLimit(
+    "states",
+    3_000_000,
+    "rows or JSON objects that tell the states of one trace",
+    "cut the drive into several traces, or tell it with a longer step",
+)
+
 CITES: Final = ResourceLimit(
     "cites",
     100_000_000,
@@ -122,7 +129,7 @@ LOOKBACK: Final = ResourceLimit(
 
 LIMITS: Final = {
     limit.name: limit
-    for limit in (CHOICES, STEPS, CUBES, PAIRS, TYPE_DEPTH, SEARCH, CITES, LOOKBACK)
+    for limit in (CHOICES, STEPS, STATES, CUBES, PAIRS, TYPE_DEPTH, SEARCH, CITES, LOOKBACK)
 }
 """All limits that can be lifted."""
 

@@ -17,7 +17,7 @@ from rulec.rulebook.arithmetic import size_limits
 from rulec.scenario import scenario_files, time_grid
 from rulec.scenario.toml import schema
 from rulec.syntax import scanner
-from rulec.trace.formats import json_line_problems
+from rulec.trace.formats import json_line_problems, table_reader
 
 PAGE = (Path(__file__).parents[2] / "docs" / "limits.md").read_text(encoding="utf-8")
 
@@ -35,6 +35,7 @@ FIXED = {
     "steps of a bound, which are states of it": spot_worker.MOST_STEPS_AHEAD,
     "bytes of a packed file, unpacked": files.LARGEST_UNPACKED,
     "bytes of one line of traces": json_line_problems.LONGEST_LINE_BYTES,
+    "characters of a row of CSV": table_reader.LONGEST_ROW,
     "time steps of a recording, from the first to the last": recording.MOST_STEPS,
     "time steps of a recording for one that is in it": recording.SPARSEST,
     "a number in findings that `rates` reads": finding_rows.LARGEST,

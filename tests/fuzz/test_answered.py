@@ -40,6 +40,13 @@ ANSWERED = {
         MEASURED,
         "automata/test_edges.py::test_a_condition_of_too_many_cubes_is_refused_before_it_is_put_together",
     ),
+    "states of one trace, and rows that never end": (
+        MEASURED,
+        "trace/test_large_traces.py::test_a_line_of_too_many_states_is_refused_and_the_others_are_read",
+        "trace/test_large_traces.py::test_a_trace_that_goes_on_through_blocks_is_refused_where_it_is_too_long",
+        "trace/test_large_traces.py::test_a_row_of_csv_has_an_end",
+        "trace/test_large_traces.py::test_many_columns_are_few_enough",
+    ),
     "explanation of a long trace": (
         MEASURED,
         "monitoring/test_explanation.py::test_a_long_trace_is_shown_around_the_decisive_state",
@@ -56,6 +63,7 @@ ANSWERED = {
     "limits that the documentation tells": (
         "docs/test_limits.py::test_the_page_lists_the_limits_that_can_be_lifted",
         "docs/test_limits.py::test_the_page_lists_the_limits_that_are_fixed",
+        "cli/test_limit_places.py::test_the_place_is_told",
     ),
     # Edges of libraries
     "Parquet whose texts are none": (

@@ -1,8 +1,11 @@
 """Small inputs that once took minutes or gigabytes, each in a process of its own."""
 
 import gzip
+import io
 import json
+import os
 
+import numpy
 import pyarrow
 import pyarrow.parquet
 import pytest
@@ -15,6 +18,11 @@ from support.builders.rulebooks import compile_here
 from support.own_process import cost_of
 
 MOST_MIB = 500
+MOST_CPU_S = 2
+LITTLE_CPU_S = 0.5
+"""What `rulec verify` takes for a short trace where nothing else runs; more where much does."""
+
+IS_LONG = os.environ.get("RULEC_TEST_PROFILE") == "long"
 
 SOON = """rulebook soon
 signal p, q default false
@@ -57,6 +65,22 @@ def parquet_of_no_text():
     sink = pyarrow.BufferOutputStream()
     pyarrow.parquet.write_table(table, sink, compression="none")
     return sink.getvalue().to_pybytes().replace(b"tQQ", b"t\xff\xff")
+
+
+def parquet_of_one_trace(n_states):
+    steps = pyarrow.array(numpy.arange(n_states))
+    same = pyarrow.DictionaryArray.from_arrays(
+        pyarrow.array(numpy.zeros(n_states, numpy.int8)), ["a"]
+    )
+    sink = io.BytesIO()
+    pyarrow.parquet.write_table(
+        pyarrow.table({"trace": same, "step": steps}),
+        sink,
+        compression="zstd",
+        use_dictionary=["trace"],
+        column_encoding={"step": "DELTA_BINARY_PACKED"},
+    )
+    return sink.getvalue()
 
 
 THIRTY = {f"o{number}": "car" for number in range(30)}
@@ -225,10 +249,51 @@ COSTLY = {
 }
 
 
-@pytest.mark.parametrize("attack", COSTLY)
+COSTLY_TO_MAKE = {
+    "a row of 200 MB, packed": (
+        {
+            "t.csv.gz": lambda: gzip.compress(
+                b"trace,step,p\na,0,true\nb,0," + bytes(200_000_000).replace(b"\0", b","), 1
+            )
+        },
+        ["verify", "t.csv.gz", "-r", "./soon.rules"],
+        2,
+        "R0509",
+    ),
+    "a trace of 20 million states, packed": (
+        {"t.jsonl.gz": lambda: gzip.compress(b'{"states": [' + b"{}," * 20_000_000 + b"{}]}\n", 1)},
+        ["verify", "t.jsonl.gz", "-r", "./soon.rules"],
+        2,
+        "R0718",
+    ),
+    "a trace of 20 million rows in half a megabyte of Parquet": (
+        {"t.parquet": lambda: parquet_of_one_trace(20_000_000)},
+        ["verify", "t.parquet", "-r", "./soon.rules"],
+        2,
+        "R0718",
+    ),
+    "a row of 200,000 columns": (
+        {
+            "t.csv": lambda: (
+                "trace,step,"
+                + ",".join(f"p{n}" for n in range(200_000))
+                + "\na,0"
+                + ",true" * 200_000
+            )
+        },
+        ["verify", "t.csv", "-r", "./soon.rules"],
+        2,
+        "R0502",
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    "attack", [*COSTLY, *(pytest.param(one, marks=pytest.mark.long) for one in COSTLY_TO_MAKE)]
+)
 def test_what_is_small_takes_little(attack, tmp_path, record_property):
     """In a process of its own, so that its memory is its own; without a traceback."""
-    files, arguments, status, says = COSTLY[attack]
+    files, arguments, status, says = {**COSTLY, **COSTLY_TO_MAKE}[attack]
     made = {name: make() for name, make in files.items()}
     standard_input = made.pop("-", "")
     for name, data in {"soon.rules": SOON, "crowd.rules": CROWD, **made}.items():
@@ -237,3 +302,7 @@ def test_what_is_small_takes_little(attack, tmp_path, record_property):
     record_property("processor seconds", cost.cpu_s)
     assert (cost.status, says in cost.said, "Traceback" in cost.said) == (status, True, False), cost
     assert cost.peak_mib < MOST_MIB
+    if IS_LONG:
+        (tmp_path / "t.jsonl").write_text('{"states": [{}]}\n')
+        little = cost_of(["verify", "t.jsonl", "-r", "./soon.rules"], tmp_path)
+        assert cost.cpu_s < MOST_CPU_S * max(1, little.cpu_s / LITTLE_CPU_S)

@@ -14,6 +14,7 @@ from functools import reduce
 from operator import or_
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
+from rulec.diagnostics import SourceLocation
 from rulec.resource_limits import CUBES
 
 Cube = tuple[frozenset[int], ...]
@@ -36,13 +37,15 @@ class GuardedEdge:
     otherwise: bool = False
 
 
-def edges(machine: MealyMonitor, whose: str = "") -> tuple[GuardedEdge, ...]:
+def edges(
+    machine: MealyMonitor, whose: str = "", place: SourceLocation | None = None
+) -> tuple[GuardedEdge, ...]:
     """Guarded edges of a monitor by source state, except from sinks.
 
-    Raises RulecError R0718, which names ``whose`` they are, for an edge of more cubes than the
-    limit `cubes`: those of a parity, for one, are half of all letters.
+    Raises RulecError R0718, which names ``whose`` they are and its place, for an edge of more cubes
+    than the limit `cubes`: those of a parity, for one, are half of all letters.
     """
-    cover = _Covers(machine, whose)
+    cover = _Covers(machine, whose, place)
     guarded_edges: list[GuardedEdge] = []
     for source, row in enumerate(machine.successors):
         if source in (machine.rejecting_sink, machine.accepting_sink):
@@ -80,8 +83,8 @@ class _Covers:
     ``of_class`` are the letters of each class; no matter whether those of ``_free`` are covered.
     """
 
-    def __init__(self, machine: MealyMonitor, whose: str) -> None:
-        self._whose, self._most = whose, CUBES.value()
+    def __init__(self, machine: MealyMonitor, whose: str, place: SourceLocation | None) -> None:
+        self._whose, self._place, self._most = whose, place, CUBES.value()
         self.sizes = [read.size for read in machine.reads]
         total = len(machine.letters)
         self._everything = (1 << total) - 1
@@ -106,10 +109,10 @@ class _Covers:
             chosen: dict[Cube, int] = {}
             remaining = onset
             if self._lonely(onset).bit_count() > self._most:
-                raise CUBES.exceeded(None, self._whose)
+                raise CUBES.exceeded(self._place, self._whose)
             while remaining:
                 if len(chosen) == self._most:
-                    raise CUBES.exceeded(None, self._whose)
+                    raise CUBES.exceeded(self._place, self._whose)
                 letter = (remaining & -remaining).bit_length() - 1
                 primes = {self._prime(letter, onset | self._free, order) for order in self._orders}
                 best = max(primes, key=lambda cube: self._worth(cube, remaining))

@@ -9,6 +9,7 @@ from typing import Literal
 
 from rulec.analysis.audit.citations import Reference, each_reference, references_in
 from rulec.analysis.audit.law_text import LawText
+from rulec.diagnostics.diagnostic import at
 from rulec.resource_limits import CITES
 from rulec.rulebook.rulebook_model import Rulebook
 
@@ -39,9 +40,11 @@ def check_cites(
     """
     own = [rule for rule in rulebook.rules if not rule.inherited_from]
     texts = [law] if law_now is None else [law, law_now]
-    places = [place for rule in own for place in _looked_for(rule.cite, law)]
-    amount = sum(text.length_of(place) for text in texts for place in places)
-    CITES.within(amount, None, f"rulebook `{rulebook.name}`")
+    amount = 0
+    for rule in own:
+        places = list(_looked_for(rule.cite, law))
+        amount += sum(text.length_of(place) for text in texts for place in places)
+        CITES.within(amount, at(rule.span), f"rulebook `{rulebook.name}` up to rule `{rule.name}`")
     return tuple(check for rule in own for check in _of_rule(rule.name, rule.cite, law, law_now))
 
 

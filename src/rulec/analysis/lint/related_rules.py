@@ -31,7 +31,8 @@ class RelatedRules:
             for topic in own:
                 self._about.setdefault(topic, []).append(name)
         sharing = sum(len(own) * (len(own) - 1) // 2 for own in self._about.values())
-        PAIRS.within(sharing, None, f"rulebook `{book}`")
+        first = rules[names[0]].rulebook.place_of(names[0]) if names else None
+        PAIRS.within(sharing, first, f"rulebook `{book}`")
 
     def of(self, name: str) -> list[str]:
         """The others that a rule is related to, in order."""

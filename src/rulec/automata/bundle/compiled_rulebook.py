@@ -11,6 +11,7 @@ from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.diagnostic import at
 from rulec.logic.formula import Formula
 from rulec.logic.printing import number_in_words
 from rulec.rulebook import rulebook_model as model
@@ -114,6 +115,11 @@ class CompiledRulebook(Rows):
     recompile: Recompiler | None = field(default=None, compare=False, repr=False)
     prefixes: PrefixCompiler | None = field(default=None, compare=False, repr=False)
     prepared: Prepared = field(init=False, default_factory=Prepared, compare=False, repr=False)
+
+    def place_of(self, name: str) -> SourceLocation | None:
+        """Where a rule is written; None if it was read from a compiled file."""
+        rules = () if self.source is None else self.source.rules
+        return next((at(rule.span) for rule in rules if rule.name == name), None)
 
     def at_step(self, step_s: Fraction | float) -> CompiledRulebook:
         """These rules for traces whose states are ``step_s`` seconds apart.

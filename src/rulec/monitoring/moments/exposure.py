@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.thresholds import exact_step
+from rulec.diagnostics import SourceLocation
 from rulec.logic.bounds import in_steps
 from rulec.logic.opportunities import breach_of
 from rulec.logic.semantics import steps_to_settle
@@ -86,18 +87,22 @@ def exposures(
 def _watched(rulebook: CompiledRulebook, step_s: Fraction) -> Sequence[_Watched]:
     known: dict[Fraction, Sequence[_Watched]] = rulebook.prepared.setdefault(_Watched, {})
     if step_s not in known:
-        known[step_s] = [_watched_rule(rule, step_s) for rule in rulebook.rules]
+        known[step_s] = [
+            _watched_rule(rule, step_s, rulebook.place_of(rule.name)) for rule in rulebook.rules
+        ]
     return known[step_s]
 
 
-def _watched_rule(rule: CompiledRule, step_s: Fraction) -> _Watched:
+def _watched_rule(rule: CompiledRule, step_s: Fraction, place: SourceLocation | None) -> _Watched:
     breach = in_steps(breach_of(rule.formula), step_s, math.floor)
     if rule.trigger is None:
-        return _Watched(rule, None, ReadyFormula(breach))
+        return _Watched(rule, None, ReadyFormula(breach, place=place))
     trigger = in_steps(rule.trigger, step_s, math.floor)
     # Both have the same columns where the last state goes on for ever.
     settles = max(steps_to_settle(breach), steps_to_settle(trigger))
-    return _Watched(rule, ReadyFormula(trigger, settles), ReadyFormula(breach, settles))
+    return _Watched(
+        rule, ReadyFormula(trigger, settles, place), ReadyFormula(breach, settles, place)
+    )
 
 
 def _exposure(

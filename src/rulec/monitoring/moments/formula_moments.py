@@ -46,7 +46,8 @@ def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
     n_states = truth.n_states
     found: dict[tuple[str, ...], list[tuple[FormulaTruth, int]]] = {}
     for rounded in roundings:
-        for part in truth.of(ReadyFormula(rounded), query.rule.variables):
+        ready = ReadyFormula(rounded, place=trace.place if isinstance(trace, Trace) else None)
+        for part in truth.of(ready, query.rule.variables):
             for row in np.flatnonzero(part.possible.any(axis=1)).tolist():
                 found.setdefault(part.choices[row], []).append((part, row))
     names = [variable.name for variable in query.rule.variables]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.diagnostics import SourceLocation
 from rulec.logic.formula import Formula
 from rulec.logic.free_names import variables_of
 from rulec.logic.opportunities import conjuncts, looks_elsewhere
@@ -57,10 +58,12 @@ class ReadyFormula:
     Rows that go on for ever do so for at least as many states as it ``settles`` in.
     """
 
-    def __init__(self, formula: Formula, settles: int = 0) -> None:
+    def __init__(
+        self, formula: Formula, settles: int = 0, place: SourceLocation | None = None
+    ) -> None:
         self.formula = formula
         self.settles = max(steps_to_settle(formula), settles)
-        LOOKBACK.within(self.settles, None, "the formula")
+        LOOKBACK.within(self.settles, place, "the formula")
         self.world_parts = [
             part
             for part in conjuncts(formula)

@@ -7,6 +7,7 @@ from typing import Literal
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.guards import edges
+from rulec.diagnostics import SourceLocation
 from rulec.report.text.guard_text import GuardWording
 from rulec.report.text.terminal_text import visible
 from rulec.vocabulary import Vocabulary
@@ -43,8 +44,10 @@ class Automaton:
     transitions: tuple[Transition, ...]
 
 
-def automaton_of(rule: CompiledRule, vocabulary: Vocabulary) -> Automaton:
-    """The automaton of a compiled rule."""
+def automaton_of(
+    rule: CompiledRule, vocabulary: Vocabulary, place: SourceLocation | None = None
+) -> Automaton:
+    """The automaton of a compiled rule. Raises RulecError as ``edges``, with the rule's place."""
     wording = GuardWording(rule, vocabulary)
     machine = rule.machine
     fates: dict[int | None, Fate] = {
@@ -61,6 +64,6 @@ def automaton_of(rule: CompiledRule, vocabulary: Vocabulary) -> Automaton:
                 edge.otherwise,
                 edge.accepted,
             )
-            for edge in edges(machine, f"rule `{rule.name}`")
+            for edge in edges(machine, f"rule `{rule.name}`", place)
         ),
     )

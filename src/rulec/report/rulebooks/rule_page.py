@@ -8,6 +8,7 @@ from fractions import Fraction
 from textwrap import wrap
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.diagnostics.diagnostic import at
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Constant, Unary, UnaryOperator
 from rulec.logic.free_names import names_in
@@ -62,7 +63,7 @@ def page_of(rule: Rule, compiled: CompiledRule, vocabulary: Vocabulary) -> RuleP
     wording = GuardWording(compiled, vocabulary)
     return RulePage(
         rule,
-        automaton_of(compiled, vocabulary),
+        automaton_of(compiled, vocabulary, at(rule.span)),
         _shown(traces.accepted, wording),
         _shown(traces.rejected, wording),
         compiled.step_s,

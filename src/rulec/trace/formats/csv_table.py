@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import IO, cast
 
@@ -113,10 +114,12 @@ def _table(columns: Sequence[str], file: str) -> tables.Table:
 def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[tables.Row]:
     """Rows from line ``number`` on, the header included. Raises RulecError R0509."""
     text = io.TextIOWrapper(stream, "utf-8-sig" if number == 1 else "utf-8", newline="")
-    lines = csv.reader(_without_null(text), strict=True)
+    arriving = _Lines(text)
+    lines = csv.reader(arriving, strict=True)
     before = number - 1
     try:
         for cells in lines:
+            arriving.row = 0
             if cells:
                 yield number, cells
             number = before + lines.line_num + 1
@@ -136,15 +139,28 @@ _WORDS = {
     "field larger than field limit": f"a cell has more than {csv.field_size_limit():,} characters",
     "expected after": "behind closing quotes there is neither a comma nor the line's end",
     "NUL": "it holds a null character",
+    "row": f"a row has more than {tables.LONGEST_ROW:,} characters",
 }
 _QUOTES = "what stands in quotes ends with quotes; is one missing, or has the file been cut short?"
 
 
-def _without_null(text: Iterable[str]) -> Iterator[str]:
-    for line in text:
+@dataclass(slots=True)
+class _Lines(Iterator[str]):
+    """Lines of a text, of which a row takes one or several; so far it has ``row`` characters."""
+
+    text: io.TextIOWrapper
+    row: int = 0
+
+    def __next__(self) -> str:
+        line = self.text.readline(tables.LONGEST_ROW + 1)
+        if not line:
+            raise StopIteration
         if "\0" in line:
             raise csv.Error("NUL")
-        yield line
+        self.row += len(line)
+        if self.row > tables.LONGEST_ROW:
+            raise csv.Error("row")
+        return line
 
 
 def _not_utf8(stream: IO[bytes], place: SourceLocation, reason: UnicodeDecodeError) -> RulecError:

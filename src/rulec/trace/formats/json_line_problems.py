@@ -14,7 +14,7 @@ from rulec.diagnostics.json_problems import json_words
 from rulec.trace.formats.stream_lines import not_utf8, placed
 from rulec.trace.trace_messages import NOT_A_TRACE
 
-LONGEST_LINE_BYTES = 256 << 20
+LONGEST_LINE_BYTES = 128 << 20
 """A longer line is refused: it is a file or a stream that lacks its line ends."""
 
 _MOST_SEARCHED = 1 << 24

@@ -13,6 +13,7 @@ from typing import IO, TYPE_CHECKING, Any, cast
 import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.resource_limits import STATES
 from rulec.trace.formats import json_line_problems
 from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_float
 from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json
@@ -59,13 +60,14 @@ def read_chunks(
     With ``together`` those that are written alike become the columns of a ``LineBlock``.
 
     Of a pipe that is what has arrived. For every line that is not blank there is a Trace, or the
-    RulecError (R0501) that says why it is none; for a stream without any trace one RulecError
-    (R0501). The stream is called ``file`` in messages. States that are written alike are the same
-    object, as far as there is room to remember them.
+    RulecError (R0501, R0718) that says why it is none; for a stream without any trace one
+    RulecError (R0501). The stream is called ``file`` in messages. States that are written alike
+    are the same object, as far as there is room to remember them.
     """
     number = result = 0
     read_state = _StateReader()
     torn: _Torn | None = None
+    most = STATES.value()
     for lines in lines_as_they_come(stream, json_line_problems.LONGEST_LINE_BYTES):
         if not number:
             lines[0] = lines[0].removeprefix(b"\xef\xbb\xbf")
@@ -74,7 +76,8 @@ def read_chunks(
                 yield [error]
                 return
         chunk: list[Trace | RulecError | None] = []
-        alike = _alike(lines) if together else []
+        large = {index for index, line in enumerate(lines) if _objects_in(line, most) > most}
+        alike = _alike([b"" if n in large else one for n, one in enumerate(lines)], together)
         known = set(chain.from_iterable(found.lines.tolist() for found in alike))
         places: dict[int, int] = {}
         with _no_collection():
@@ -83,14 +86,19 @@ def read_chunks(
                 place = SourceLocation(file, number)
                 if line.isspace() or not line:
                     continue
-                trace = None if index in known else _trace(line, place, read_state)
+                trace: Trace | RulecError | None = None
+                if index in large:
+                    trace = STATES.exceeded(place)
+                elif index not in known:
+                    trace = _trace(line, place, read_state)
                 if torn is not None:
                     if isinstance(trace, RulecError) and not line.startswith(b"{"):
                         torn.goes_on = True
                         continue
                     chunk.append(torn.error(at_the_end=False))
                     torn = None
-                if isinstance(trace, RulecError) and json_line_problems.is_beginning(line):
+                refused = isinstance(trace, RulecError) and index not in large
+                if refused and json_line_problems.is_beginning(line):
                     torn = _Torn(line, place)
                 else:
                     places[index] = len(chunk)
@@ -106,7 +114,14 @@ def read_chunks(
         yield [_TRACE.bad("there is no trace in this file: it is empty", SourceLocation(file))]
 
 
-def _alike(lines: Sequence[bytes]) -> Sequence[AlikeLines]:
+def _objects_in(line: bytes, most: int) -> int:
+    """JSON objects of a line, if it can have more than ``most``."""
+    return line.count(b"{") if len(line) > 2 * most else 0
+
+
+def _alike(lines: Sequence[bytes], together: bool) -> Sequence[AlikeLines]:
+    if not together:
+        return []
     # numpy, 60 ms: not for a running trace.
     from rulec.trace.formats.alike_lines import alike_lines
 

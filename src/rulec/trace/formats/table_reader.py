@@ -6,10 +6,11 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain, groupby
+from itertools import chain, groupby, islice
 from typing import Any, cast, get_args
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
+from rulec.resource_limits import STATES
 from rulec.trace.trace_messages import NOT_A_TABLE
 from rulec.trace.trace_model import Ending, State, Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
@@ -29,6 +30,9 @@ FROM, TO = ".from", ".to"
 
 NAMES = frozenset((TRACE, STEP, OBJECT, TYPE, OTHER))
 """Those of them that tell things apart."""
+
+LONGEST_ROW = 1 << 23
+"""Characters of a row as text, however many lines it takes."""
 
 Row = tuple[int, Sequence[Any]]
 """Its number, for messages, and its cells; an empty cell is None or the empty text."""
@@ -118,10 +122,15 @@ def traces_in(
     known: dict[object, State] = {}
     at = table.at.get(TRACE, 0)
     is_empty_table = True
+    most = STATES.value()
     try:
         for name, group in groupby(rows, lambda row: row[1][at] if at < len(row[1]) else None):
             is_empty_table = False
-            yield _Building(name, table, known).read(list(group))
+            own = list(islice(group, most + 1))
+            if len(own) > most:
+                yield STATES.exceeded(table.place(own[0][0]))
+            else:
+                yield _Building(name, table, known).read(own)
     except RulecError as error:
         # Who knows what else there was about the last trace.
         yield error

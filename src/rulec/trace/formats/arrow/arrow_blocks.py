@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pyarrow import compute, types
 
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.resource_limits import STATES
 from rulec.trace.formats import table_blocks as blocks
 from rulec.trace.formats.arrow.arrow_arrays import (
     codes_in,
@@ -61,6 +62,7 @@ def cut(
     without any trace gives one RulecError, as from ``traces_in``.
     """
     waiting: list[Piece] = []
+    most = STATES.value()
     for piece in pieces:
         if isinstance(piece, RulecError):
             yield [piece]
@@ -74,6 +76,9 @@ def cut(
         end = _last_start(waiting, piece, table)
         if end is None:
             waiting.append(piece)
+            if sum(map(len, waiting)) > most:
+                yield [STATES.exceeded(table.place(first))]
+                return
             continue
         whole = [*waiting, piece.slice(0, end)]
         yield _block(whole, table, first, file)

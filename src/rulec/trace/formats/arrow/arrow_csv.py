@@ -12,7 +12,7 @@ from pyarrow import csv
 
 from rulec.trace.formats.arrow.arrow_arrays import lengths_in
 from rulec.trace.formats.arrow.arrow_blocks import Piece
-from rulec.trace.formats.table_reader import Row
+from rulec.trace.formats.table_reader import LONGEST_ROW, Row
 
 _BLOCK_BYTES = 1 << 22
 _NEAR_BYTES = 1 << 17
@@ -31,7 +31,8 @@ def pieces(
     """
     offset = stream.tell()
     for lines in _in_lines(stream):
-        piece = _parsed(lines, columns) if _is_plain(lines) else None
+        fits = len(lines) <= LONGEST_ROW and _is_plain(lines)
+        piece = _parsed(lines, columns) if fits else None
         if piece is None:
             stream.seek(offset)
             yield rows_from(stream, number)
@@ -42,6 +43,7 @@ def pieces(
 
 
 def _in_lines(stream: IO[bytes]) -> Iterator[bytes]:
+    """Blocks of whole lines; one that is too long is cut somewhere."""
     rest: list[bytes] = []
     while block := stream.read(_BLOCK_BYTES):
         end = block.rfind(b"\n") + 1
@@ -49,6 +51,8 @@ def _in_lines(stream: IO[bytes]) -> Iterator[bytes]:
             yield b"".join([*rest, block[:end]])
             rest = []
         rest.append(block[end:])
+        if sum(map(len, rest)) > LONGEST_ROW:
+            break
     if any(rest):
         yield b"".join(rest)
 

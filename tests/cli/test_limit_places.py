@@ -1,0 +1,63 @@
+"""Whatever is beyond a limit that can be lifted is shown where it stands."""
+
+import json
+
+import pytest
+
+from rulec.cli.main import main
+from rulec.resource_limits import LIMITS
+
+BOOK = """rulebook small
+type car
+type bus is car
+signal near(a: car, b: car) default false
+signal p, q, r default false
+hard rule gap (a: car, b: car) {
+  cite "Article 1"
+  require always not near(a, b)
+}
+hard rule soon { require always (p implies eventually[<= 1 s] q) }
+hard rule odd { require always (p xor q xor r) }
+"""
+TRACES = "\n".join(
+    json.dumps({"step_s": step, "objects": {"a": "car", "b": "car"}, "states": [{}, {}]})
+    for step in (1, 0.5, 0.25)
+)
+FILES = {"small.rules": BOOK, "t.jsonl": TRACES, "law.md": "# Act\n\n## Article 1\n\nDrive.\n"}
+OF_A_RULE = "small.rules:6"
+ASKED = {
+    "choices": (0, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:1"),
+    "steps": (1, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:3"),
+    "states": (1, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:1"),
+    "cubes": (1, ["show", "./small.rules", "odd"], "small.rules:11"),
+    "pairs": (0, ["analyze", "./small.rules"], OF_A_RULE),
+    "type_depth": (1, ["check", "./small.rules"], "small.rules:3"),
+    "cites": (0, ["audit", "./small.rules", "--law", "law.md"], OF_A_RULE),
+    "lookback": (
+        1,
+        ["find", "once[<= 10 s] p", "t.jsonl", "-r", "./small.rules"],
+        "t.jsonl:1",
+    ),
+    "search": (0, ["analyze", "./small.rules"], "small.rules:"),
+}
+
+
+def test_each_limit_is_asked_for():
+    assert ASKED.keys() == LIMITS.keys()
+
+
+@pytest.mark.parametrize("limit", ASKED)
+def test_the_place_is_told(limit, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    number, words, place = ASKED[limit]
+    main(["--limit", f"{limit}={number}", *words])
+    said = capsys.readouterr()
+    told = said.out + said.err
+    code = "R0807" if limit == "search" else "R0718"
+    (first, *_) = [part for part in told.split("\n\n") if code in part] or [told]
+    at = [line.split("--> ")[1] for line in first.splitlines() if "--> " in line]
+    assert code in first, told
+    assert any(one.startswith(place) for one in at), told
+    assert f"--limit {limit}=" in told
