@@ -116,6 +116,10 @@ if TYPE_CHECKING:
     from rulec.rulebook.rulebook_model import Variable as Variable
     from rulec.scenario import Choice as Choice
     from rulec.scenario import Scenario as Scenario
+    from rulec.scoring.score_margins import RuleMargin as RuleMargin
+    from rulec.scoring.scores import CandidateScore as CandidateScore
+    from rulec.scoring.scores import Scores as Scores
+    from rulec.scoring.traffic_world import TrafficWorld as TrafficWorld
     from rulec.trace import Trace as Trace
     from rulec.trace import TraceGraph as TraceGraph
     from rulec.trace.trace_columns import TraceCells as TraceCells
@@ -139,7 +143,7 @@ _HOME = {
     "compile_rulebook coverage diff doc draw draw_drive envelope envelopes explain "
     "find find_maneuvers format formats judge_recording lineage list load_rulebook load_scenario "
     "load_vocabulary navigation_graph new_rulebook parse_rulebook rates_of_findings "
-    "read_recording read_traces rule_probabilities show test traces tree verify verify_cells "
+    "read_recording read_traces rule_probabilities score show test traces tree verify verify_cells "
     "verify_columns verify_compiled verify_many verify_recording write_compiled write_monitor "
     "write_traces",
     "rulec.automata.bundle.compiled_rulebook": "CompiledRule CompiledRulebook",
@@ -187,6 +191,9 @@ _HOME = {
     "rulec.recordings.recording_format": "RecordingSource",
     "rulec.recordings.road_map": "RoadMap",
     "rulec.recordings.tracks.track_table": "recording_from_columns",
+    "rulec.scoring.score_margins": "RuleMargin",
+    "rulec.scoring.scores": "CandidateScore Scores",
+    "rulec.scoring.traffic_world": "TrafficWorld",
     "rulec.trace": "Trace TraceGraph",
     "rulec.trace.trace_columns": "TraceCells TraceColumns layout_of",
     "rulec.validation.file_proof": "RuleProof",

@@ -75,6 +75,8 @@ def values():
     found.write_text("".join(f"{json.dumps(row)}\n" for row in (drive_row, rule_row)))
     rates = rulec.rates_of_findings(found)
     moments = next(rulec.find("(v: vehicle) b(v)", traces, "esterle2019"))
+    world = rulec.TrafficWorld(recording, judged.egos[0], 5.0)
+    scores = rulec.score(world.past[None, -2:] + (1.0, 0, 0, 0), world, "de", world.past)
     known = [
         *(rulec.Session(), mistake, mistake.place, error, rulec.explain("R0104")),
         *(rulec.Label(mistake.place, "here"), rulec.Fix(mistake.place, "p"), book.vocabulary),
@@ -118,6 +120,7 @@ def values():
         rulec.SettingPair("option", "limit", "1", "2"),
         *(rates, rates.rules[0], rates.rules[0].per_hour, rates.judged_by[0]),
         *(moments, moments.moments[0]),
+        *(world, scores, scores.candidates[0], scores.margins(0)[0]),
     ]
     return {type(one).__name__: one for one in known}
 

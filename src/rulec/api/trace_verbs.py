@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 from rulec.api.session_settings import SessionSettings
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from rulec.api.rulebook_compilation import Rules
     from rulec.diagnostics import RulecError
     from rulec.extraction.moment_search import DriveMoments
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
     from rulec.report.pictures.drawing.picture_formats import Format as PictureFormat
     from rulec.report.pictures.drawing.styles import Theme
     from rulec.report.recordings.format_listing import ListedFormat
+    from rulec.scoring.scores import Scores
+    from rulec.scoring.traffic_world import TrafficWorld
     from rulec.trace import Trace
     from rulec.trace.trace_columns import TraceCells, TraceColumns
 
@@ -146,6 +150,28 @@ class TraceVerbs(SessionSettings):
         return RecordingVerdicts(recording, compiled, wanted or RequestedDrives(), str(file))
 
     judge_recording = verify_recording
+
+    def score(
+        self,
+        candidates: ArrayLike,
+        world: TrafficWorld,
+        rules: Rules,
+        after: ArrayLike | None = None,
+    ) -> Scores:
+        """Judge sampled futures of ego in a world, each as a drive that was recorded.
+
+        ``candidates`` is an array of three axes: candidate, state, and x, y (m), heading (rad) and
+        speed (m/s) of ego's middle, one state for each step after the world's present. ``after``
+        are states that lead up to it, the last one being the present, such as ``world.past``. What
+        these have violated by themselves is not charged; by such rules a candidate is judged anew.
+
+        Raises:
+            RulecError: R0780 for arrays that make no sense, R0507 for rules compiled for another
+                step than the world's.
+        """
+        from rulec.scoring.score import score
+
+        return score(candidates, world, self._compiled(rules), after)
 
     def find(
         self,

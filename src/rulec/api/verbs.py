@@ -77,6 +77,7 @@ rates_of_findings = _USUAL.rates_of_findings
 read_recording = _USUAL.read_recording
 read_traces = _USUAL.read_traces
 rule_probabilities = _USUAL.rule_probabilities
+score = _USUAL.score
 show = _USUAL.show
 test = _USUAL.test
 traces = _USUAL.traces

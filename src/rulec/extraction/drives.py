@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy import intp
@@ -14,7 +15,7 @@ from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_trace
 from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads, junction_lanelets
 from rulec.extraction.tracks.driven_route import RouteStretch, route_stretches
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
-from rulec.extraction.tracks.map_matching import MapMatching
+from rulec.extraction.tracks.map_matching import MapMatching, MatchedStretch
 from rulec.extraction.tracks.road_extents import (
     EgoPieces,
     RoadExtents,
@@ -58,8 +59,41 @@ class NoDrive:
     why: str
 
 
+class LaidOutMap:
+    """What is known of a map: its graph of lanelets, and the roads along them, once laid out."""
+
+    def __init__(self, recording: Recording) -> None:
+        self.graph = LaneletGraph(recording)
+        self.numbers = {name: number for number, name in enumerate(recording.lanelets)}
+        self._driven_roads = DrivenRoads(recording, junction_lanelets(recording))
+        self._roads: dict[tuple[str, ...], tuple[DrivenRoad, int] | str] = {}
+
+    def road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, int] | str:
+        """The road of a route and the piece that this begins in, or why it makes no sense."""
+        if route not in self._roads:
+            try:
+                self._roads[route] = self._driven_roads.along(route)
+            except ValueError as reason:
+                self._roads[route] = f"its road makes no sense, {reason}"
+        return self._roads[route]
+
+
+class Matching(Protocol):
+    """The lanelets that participants, who are rows, drove."""
+
+    @property
+    def lanelets(self) -> NDArray[intp]:
+        """Their numbers in the file's order, by participant and column; -1 for none."""
+
+    def of(self, row: int) -> tuple[MatchedStretch, ...]:
+        """The stretches of a participant."""
+
+
 class Drives:
-    """The drives of a recording, with a shared layout of each road."""
+    """The drives of a recording, with a shared layout of each road.
+
+    ``prepared`` are its map, who drove where on it and its surroundings, if they are known.
+    """
 
     def __init__(
         self,
@@ -67,19 +101,20 @@ class Drives:
         side: Side,
         thresholds: Thresholds = USUAL,
         writer: TraceWriter = ALL_SIGNALS,
+        *,
+        prepared: tuple[LaidOutMap, Matching, Surroundings] | None = None,
     ) -> None:
         self.recording = recording
         self._thresholds = thresholds
         self._writer = writer
         self._side: Side = side
-        self._tracks = tracks_of(recording, thresholds)
-        self._driven_roads = DrivenRoads(recording, junction_lanelets(recording))
-        self._graph = LaneletGraph(recording)
-        self._matching = MapMatching(recording, self._tracks, self._graph)
-        self._numbers = {name: number for number, name in enumerate(recording.lanelets)}
-        self._surroundings = Surroundings(recording, self._tracks)
+        if prepared is None:
+            tracks, map_ = tracks_of(recording, thresholds), LaidOutMap(recording)
+            matching = MapMatching(recording, tracks, map_.graph)
+            prepared = map_, matching, Surroundings(recording, tracks)
+        self._map, self._matching, self._surroundings = prepared
+        self._tracks = self._surroundings.tracks
         self._first = self._tracks.present.argmax(axis=1)
-        self._roads: dict[tuple[str, ...], tuple[DrivenRoad, int] | str] = {}
         self._places: dict[DrivenRoad, RoadPlaces] = {}
         self._parts: dict[DrivenRoad, RoadPlaces] = {}
 
@@ -104,12 +139,20 @@ class Drives:
         if 2 * len(body.states) < len(body.outlines):
             yield NoDrive(ego, "it has no track: its places are sets that it may be in")
             return
-        stretches = [
+        yield from self.along(row, self.stretches(row))
+
+    def stretches(self, row: int) -> list[RouteStretch]:
+        """The stretches of road that a participant drove."""
+        return [
             stretch
             for matched in self._matching.of(row)
-            for stretch in route_stretches(self.recording, matched, self._graph)
+            for stretch in route_stretches(self.recording, matched, self._map.graph)
             if stretch.last - stretch.first + 1 >= FEWEST_STATES
         ]
+
+    def along(self, row: int, stretches: Sequence[RouteStretch]) -> Iterator[Drive | NoDrive]:
+        """The drives of a participant along stretches of road."""
+        ego = self._tracks.participants[row].id
         if not stretches:
             yield NoDrive(ego, "it is never on a lane that leads its way")
         for number, stretch in enumerate(stretches, 1):
@@ -118,7 +161,7 @@ class Drives:
 
     def _drive(self, row: int, name: str, stretch: RouteStretch) -> Drive | NoDrive:
         ego = self._tracks.participants[row].id
-        laid_out = self._road(stretch.route)
+        laid_out = self._map.road(stretch.route)
         if isinstance(laid_out, str):
             return NoDrive(ego, laid_out)
         road, first_piece = laid_out
@@ -150,13 +193,18 @@ class Drives:
     def _places_on(self, road: DrivenRoad) -> RoadPlaces:
         """The places of everybody on a road."""
         if road not in self._places:
-            everybody = np.arange(len(self._tracks.participants))
-            extents = road_extents(self._tracks, road)
-            elsewhere = self._elsewhere(road, everybody, slice(0, self._tracks.present.shape[1]))
-            self._places[road] = self._road_places(road, self._tracks, extents, elsewhere)
+            self._places[road] = self.places_of(road, np.arange(len(self._tracks.participants)))
             if len(self._places) * self._tracks.present.size > MOST_KEPT:
                 del self._places[next(iter(self._places))]
         return self._places[road]
+
+    def places_of(self, road: DrivenRoad, rows: NDArray[intp]) -> RoadPlaces:
+        """The places of some participants on a road, at all times."""
+        columns = slice(0, self._tracks.present.shape[1])
+        is_all = len(rows) == len(self._tracks.participants)
+        tracks = self._tracks if is_all else self._tracks.part(rows, columns)
+        elsewhere = self._elsewhere(road, rows, columns)
+        return self._road_places(road, tracks, road_extents(tracks, road), elsewhere)
 
     def _present(self, columns: slice) -> NDArray[intp]:
         """The rows of who is there in some columns."""
@@ -187,8 +235,7 @@ class Drives:
         rows = self._present(columns)
         tracks = self._tracks.part(rows, columns)
         elsewhere = self._elsewhere(road, rows, columns)
-        extents = road_extents(tracks, road)
-        return self._road_places(road, tracks, extents, elsewhere)
+        return self._road_places(road, tracks, road_extents(tracks, road), elsewhere)
 
     def _places_of_one(
         self, road: DrivenRoad, first_piece: int, row: int, stretch: RouteStretch
@@ -202,7 +249,7 @@ class Drives:
         tracks, lanelets = self._tracks.part(rows, columns), self._matching.lanelets[rows, columns]
         own = [column - stretch.first for column in stretch.columns]
         pieces = [first_piece + piece for piece in stretch.pieces]
-        ego = EgoPieces(int(np.searchsorted(rows, row)), own, pieces, self._numbers)
+        ego = EgoPieces(int(np.searchsorted(rows, row)), own, pieces, self._map.numbers)
         reach_m = self._thresholds.near_m + _LONGEST_M
         extents = road_extents(tracks, road, expected_places(tracks, road, ego, lanelets, reach_m))
         elsewhere = self._elsewhere(road, rows, columns)
@@ -219,20 +266,11 @@ class Drives:
         """Flags of who of some rows drives on lanelets that are not of a road, in some columns."""
         first = int(self._first[rows].min(initial=columns.start))
         lanelets = self._matching.lanelets[rows, first : columns.stop]
-        own = np.zeros(len(self._numbers) + 1, dtype=bool)
+        own = np.zeros(len(self._map.numbers) + 1, dtype=bool)
         own[self._numbers_along(road)] = True
         # Who turns off is still ahead until it has left, unlike who comes from elsewhere
         flags = (lanelets >= 0) & ~np.logical_or.accumulate(own[lanelets], axis=1)
         return flags[:, columns.start - first :]
 
     def _numbers_along(self, road: DrivenRoad) -> list[int]:
-        return [self._numbers[one.id] for row in road.rows for one in row if one is not None]
-
-    def _road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, int] | str:
-        """The road of a route, and the piece that this begins in."""
-        if route not in self._roads:
-            try:
-                self._roads[route] = self._driven_roads.along(route)
-            except ValueError as reason:
-                self._roads[route] = f"its road makes no sense, {reason}"
-        return self._roads[route]
+        return [self._map.numbers[one.id] for row in road.rows for one in row if one is not None]

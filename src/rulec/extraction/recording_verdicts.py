@@ -17,13 +17,15 @@ from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
 from rulec.monitoring.verdict import NotJudged, Verdict, agreed
 from rulec.recordings.recording import Recording
+from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import Rows, short_repr
 
 MOST_STATES = 1 << 13
 """Drives are verified together once they have this many states; more take more memory."""
 
 
-def _rounded(rulebook: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
+def rounded_rulebooks(rulebook: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
+    """A rulebook for a recording's step, with bounds that are no multiples rounded down and up."""
     try:
         return rulebook.rounded_to(step_s)
     except RulecError as error:
@@ -54,17 +56,15 @@ class RecordingVerdicts(Rows):
         self, recording: Recording, rulebook: CompiledRulebook, request: RequestedDrives, file: str
     ) -> None:
         self.request = request
-        self._roundings = _rounded(rulebook, recording.step_s)
+        self._roundings = rounded_rulebooks(rulebook, recording.step_s)
         self.rules = self._roundings[0]
-        formulas = [rule.formula for rule in self.rules.rules]
-        formulas += [axiom.formula for axiom in self.rules.axioms]
         self.drives = selected_drives(
             recording,
             request,
             file,
             traffic=self.rules.traffic,
             vocabulary=self.rules.vocabulary,
-            names=frozenset(name for formula in formulas for name in names_in(formula)),
+            names=names_read(self.rules),
         )
         self.recording = self.drives.recording
         self.mirrored = self.drives.mirrored
@@ -79,15 +79,9 @@ class RecordingVerdicts(Rows):
             waiting.append(drive)
             states += drive.arrays.n_states if isinstance(drive, Drive) else 0
             if states >= MOST_STATES:
-                yield from self._verified(waiting)
+                yield from verified(waiting, self._roundings)
                 waiting, states = [], 0
-        yield from self._verified(waiting)
-
-    def _verified(self, drives: list[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
-        traces = [drive.arrays for drive in drives if isinstance(drive, Drive)]
-        answers = zip(*(verify_arrays(traces, rules) for rules in self._roundings), strict=True)
-        for drive in drives:
-            yield DriveVerdict(drive, _agreed(next(answers))) if isinstance(drive, Drive) else drive
+        yield from verified(waiting, self._roundings)
 
     def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
         """Rule -> names beyond ``words`` that it reads, which have their defaults in all states.
@@ -111,6 +105,31 @@ class RecordingVerdicts(Rows):
 
     def __repr__(self) -> str:
         return f"RecordingVerdicts({self.rules.name}, {len(self.egos):,} vehicles)"
+
+
+def names_read(rulebook: CompiledRulebook) -> frozenset[str]:
+    """The names that rules and facts read."""
+    formulas = [rule.formula for rule in rulebook.rules]
+    formulas += [axiom.formula for axiom in rulebook.axioms]
+    return frozenset(name for formula in formulas for name in names_in(formula))
+
+
+def verified(
+    drives: Sequence[Drive | NoDrive], roundings: Sequence[CompiledRulebook]
+) -> Iterator[DriveVerdict | NoDrive]:
+    """The verdicts of a rulebook, rounded to their step, on drives together."""
+    traces = [drive.arrays for drive in drives if isinstance(drive, Drive)]
+    answers = agreed_answers(traces, roundings)
+    for drive in drives:
+        yield DriveVerdict(drive, next(answers)) if isinstance(drive, Drive) else drive
+
+
+def agreed_answers(
+    traces: Sequence[TraceArrays], roundings: Sequence[CompiledRulebook]
+) -> Iterator[Verdict | NotJudged]:
+    """What a rulebook, rounded to their step, says of each trace."""
+    for answers in zip(*(verify_arrays(traces, rules) for rules in roundings), strict=True):
+        yield _agreed(answers)
 
 
 def _agreed(answers: Sequence[Verdict | NotJudged]) -> Verdict | NotJudged:

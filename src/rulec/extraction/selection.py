@@ -12,7 +12,7 @@ from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.traffic_thresholds import LARGEST, USUAL, Thresholds
-from rulec.recordings.recording import Recording
+from rulec.recordings.recording import Recording, Side
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.rulebook.rulebook_model import Traffic
 from rulec.trace import Value
@@ -56,6 +56,14 @@ class SelectedDrives:
         return self.drives.of(ego)
 
 
+def chosen_side(
+    recording: Recording, request: RequestedDrives, traffic: Traffic
+) -> tuple[Side, bool]:
+    """The side that rules are read for, and whether a recording is mirrored for them."""
+    side = traffic or recording.side or "right"
+    return side, recording.side not in (None, side) and not request.as_recorded
+
+
 def selected_drives(
     recording: Recording,
     request: RequestedDrives,
@@ -69,8 +77,7 @@ def selected_drives(
 
     Raises RulecError R0612 for a vehicle that is not there, or if nobody drives.
     """
-    side = traffic or recording.side or "right"
-    mirrored = recording.side not in (None, side) and not request.as_recorded
+    side, mirrored = chosen_side(recording, request, traffic)
     if mirrored:
         recording = mirrored_recording(recording)
     writer = TraceWriter(vocabulary, names, request.assumed, request.defaults)

@@ -188,6 +188,11 @@ class Drive:
         """The names of the signals that the recording supplies."""
         return frozenset(self.kinds)
 
+    @property
+    def first_step(self) -> int:
+        """The time step of the recording of the first state."""
+        return round(self.start_s / self.arrays.step_s)
+
     def time_s(self, state: int | None) -> float:
         """The time of a state (s of the recording), None being the last state."""
         number = self.arrays.n_states - 1 if state is None else state

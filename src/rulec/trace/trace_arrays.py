@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -59,6 +59,39 @@ class TraceArrays:
         return isinstance(other, TraceArrays) and self.trace() == other.trace()
 
     __hash__ = None  # type: ignore[assignment]
+
+    def since(self, state: int) -> TraceArrays:
+        """The trace from a state on, as if nothing were known of what was before."""
+        if not state:
+            return self
+        there = self.spans[:, 1] >= state
+        lengths = np.diff(self.starts)
+        # Of each value the state that it is in, and whether its object is there later
+        numbers = np.arange(int(self.starts[-1])) - np.repeat(self.starts[:-1], lengths)
+        kept = numbers + np.repeat(self.spans[:, 0], lengths) >= state
+
+        def part(name: str, values: Array) -> Array:
+            return values[kept] if name in self.about else values[state:]
+
+        def parts(values: Mapping[str, Array]) -> dict[str, Array]:
+            return {name: part(name, own) for name, own in values.items()}
+
+        items = zip(self.objects.items(), there.tolist(), strict=True)
+        return replace(
+            self,
+            n_states=self.n_states - state,
+            objects=dict(item for item, stays in items if stays),
+            spans=np.maximum(self.spans[there] - state, 0),
+            world=parts(self.world),
+            about=parts(self.about),
+            unknown=parts(self.unknown),
+            absent=parts(self.absent),
+            bounds={
+                name: (part(name, low), part(name, high))
+                for name, (low, high) in self.bounds.items()
+            },
+            only={name: flags[there] for name, flags in self.only.items()},
+        )
 
     @property
     def is_partial(self) -> bool:

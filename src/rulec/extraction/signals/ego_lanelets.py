@@ -11,7 +11,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals.signal_passes import once_a_recording
+from rulec.extraction.signals.signal_passes import once_a_map
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet
 
@@ -69,7 +69,7 @@ class MapContents:
     marks: bool
 
 
-@once_a_recording
+@once_a_map
 def map_contents(context: DriveContext) -> MapContents:
     """What some lanelet of the recording's map has."""
     lanelets = context.recording.lanelets.values()

@@ -36,7 +36,17 @@ def once_a_recording(
 
     @wraps(function)
     def found(context: DriveContext) -> _Value:
-        return _kept(function, function, context)
+        return _kept(function, function, context, context.surroundings.computed)
+
+    return found
+
+
+def once_a_map(function: Callable[[DriveContext], _Value]) -> Callable[[DriveContext], _Value]:
+    """The same of a function of no more than the recording's map."""
+
+    @wraps(function)
+    def found(context: DriveContext) -> _Value:
+        return _kept(function, function, context, context.surroundings.of_map)
 
     return found
 
@@ -46,13 +56,18 @@ def once_a_road(function: Callable[[DriveContext], _Value]) -> Callable[[DriveCo
 
     @wraps(function)
     def found(context: DriveContext) -> _Value:
-        return _kept((function, context.road), function, context)
+        known = context.surroundings.of_map
+        return _kept((function, context.road), function, context, known)
 
     return found
 
 
-def _kept(key: object, function: Callable[[DriveContext], _Value], context: DriveContext) -> _Value:
-    known = context.surroundings.computed
+def _kept(
+    key: object,
+    function: Callable[[DriveContext], _Value],
+    context: DriveContext,
+    known: dict[object, object],
+) -> _Value:
     if key not in known:
         known[key] = function(context)
     return cast("_Value", known[key])

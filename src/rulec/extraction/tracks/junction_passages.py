@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -81,6 +81,29 @@ class JunctionPassages:
     @cached_property
     def _areas(self) -> shapely.STRtree:
         return shapely.STRtree([junction.area for junction in self.junctions])
+
+    def and_one(self, other: JunctionPassages, row: int, tracks: Tracks) -> JunctionPassages:
+        """These, and behind them those of a row of others; ``tracks`` are those of all of them."""
+        own, last = other.of_row.get(row, ()), len(self.tracks.participants)
+        of_row, through = dict(self.of_row), dict(self.through)
+        moved = tuple([replace(passage, row=last) for passage in own])
+        if moved:
+            of_row[last] = moved
+        for passage in moved:
+            through[passage.junction] = (*through.get(passage.junction, ()), passage)
+        astray = dict(self.astray)
+        for junction, found in other.astray.items():
+            strays = tuple([(last, first, end) for own, first, end in found if own == row])
+            if strays:
+                astray[junction] = (*astray.get(junction, ()), *strays)
+        joined = JunctionPassages(tracks, self.junctions, of_row, through, astray)
+        # What is known of the map, and of each row, need not be derived again
+        joined.__dict__["_areas"] = self._areas
+        joined.__dict__["_first_meetings"] = self._first_meetings
+        for name in ("lengths", "travelled"):
+            values = getattr(self, name), getattr(other, name)[row : row + 1]
+            joined.__dict__[name] = np.concatenate(values)
+        return joined
 
     def crosses_junction(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
         """True if a straight line leads through a junction."""
@@ -165,9 +188,15 @@ def _length(outlines: object, states: object) -> float:
     return float(np.ptp(ahead))
 
 
-def junction_passages(recording: Recording, tracks: Tracks) -> JunctionPassages:
-    """The passages of everybody who moves, and does so on wheels."""
-    junctions = junctions_of(recording)
+def junction_passages(
+    recording: Recording, tracks: Tracks, junctions: tuple[Junction, ...] | None = None
+) -> JunctionPassages:
+    """The passages of everybody who moves, and does so on wheels.
+
+    ``junctions`` are those of the map, if they have been found.
+    """
+    if junctions is None:
+        junctions = junctions_of(recording)
     of_row: dict[int, list[Passage]] = defaultdict(list)
     through: dict[int, list[Passage]] = defaultdict(list)
     astray: dict[int, list[tuple[int, int, int]]] = defaultdict(list)

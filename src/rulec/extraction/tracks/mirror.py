@@ -18,7 +18,7 @@ def mirrored_recording(recording: model.Recording) -> model.Recording:
     return replace(
         recording,
         lanelets={number: _lanelet(item) for number, item in recording.lanelets.items()},
-        participants=tuple(_participant(item) for item in recording.participants),
+        participants=tuple(mirrored_participant(item) for item in recording.participants),
         problems=tuple(
             replace(problem, start=_state(problem.start), goals=_points(problem.goals))
             for problem in recording.problems
@@ -45,7 +45,8 @@ def _lanelet(lanelet: model.Lanelet) -> model.Lanelet:
     )
 
 
-def _participant(participant: model.Participant) -> model.Participant:
+def mirrored_participant(participant: model.Participant) -> model.Participant:
+    """Mirror a participant of a recording, and its lamps."""
     return replace(
         participant,
         states={step: _state(state) for step, state in participant.states.items()},

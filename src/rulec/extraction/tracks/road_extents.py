@@ -128,6 +128,24 @@ class RoadExtents:
                 part.__dict__[name] = part_of(self.__dict__[name], rows, columns)
         return part
 
+    def and_one(self, other: RoadExtents, row: int) -> RoadExtents:
+        """These extents, and behind them a row of others in the same steps."""
+        return RoadExtents(
+            **{
+                field.name: and_row(getattr(self, field.name), getattr(other, field.name), row)
+                for field in fields(self)
+            }
+        )
+
+
+def and_row(values: NDArray[Any], others: NDArray[Any], row: int) -> NDArray[Any]:
+    """All rows, and behind them one of others; a third axis stays the first in memory."""
+    own = slice(row, row + 1)
+    if values.ndim < 3:
+        return np.concatenate((values, others[own]))
+    by_lane = np.moveaxis(values, -1, 0), np.moveaxis(others, -1, 0)[:, own]
+    return np.moveaxis(np.concatenate(by_lane, axis=1), 0, -1)
+
 
 def part_of(values: NDArray[Any], rows: NDArray[intp], columns: slice) -> NDArray[Any]:
     """Some rows and a range of columns; a third axis stays the first in memory."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, lanes_touched
+from rulec.extraction.tracks.road_extents import RoadExtents, and_row, any_lane, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 
@@ -36,6 +36,23 @@ class RoadPlaces:
     thresholds: Thresholds
     elsewhere: Flags
     fastest: Floats
+
+    def and_one(self, other: RoadPlaces, row: int, tracks: Tracks) -> RoadPlaces:
+        """These, and behind them a row of others on the road; ``tracks`` has all of them."""
+        joined = replace(
+            self,
+            tracks=tracks,
+            extents=self.extents.and_one(other.extents, row),
+            elsewhere=and_row(self.elsewhere, other.elsewhere, row),
+            fastest=and_row(self.fastest, other.fastest, row),
+        )
+        # What is known of each need not be derived again
+        for name in ("there", "touched", "on_lanes", "crosses", "counts", "seen"):
+            joined.__dict__[name] = and_row(getattr(self, name), getattr(other, name), row)
+        for name in ("s", "lane"):
+            values = getattr(self.extents, name), getattr(other.extents, name)
+            joined.extents.__dict__[name] = and_row(*values, row)
+        return joined
 
     @cached_property
     def there(self) -> Flags:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +12,7 @@ import shapely
 from rulec.extraction.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.junction_passages import JunctionPassages, junction_passages
 from rulec.extraction.tracks.rings import ring_lanelets
-from rulec.extraction.tracks.tracks import Tracks
+from rulec.extraction.tracks.tracks import ObjectTypes, Tracks
 from rulec.recordings.recording import Lanelet, Recording, Side, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_beside, lanelet_area, lanes_beside
@@ -30,12 +30,13 @@ Directions = tuple["bool | None", "bool | None"]
 class Surroundings:
     """The junctions, passages and carriageways of a recording.
 
-    ``computed`` holds what signals have found of it, and of roads in it.
+    ``computed`` holds what signals have found of it, ``of_map`` what of its map and of roads alone.
     """
 
     recording: Recording
     tracks: Tracks
     computed: dict[object, object] = field(default_factory=dict)
+    of_map: dict[object, object] = field(default_factory=dict)
     _directions: dict[str, Directions] = field(default_factory=dict)
     _rings: dict[Side, frozenset[str]] = field(default_factory=dict)
     _opposite_m: dict[str, float] = field(default_factory=dict)
@@ -43,6 +44,18 @@ class Surroundings:
     def __reduce__(self) -> tuple[type[Surroundings], tuple[Recording, Tracks]]:
         # What has been found is found again: functions that say for what cannot be pickled.
         return Surroundings, (self.recording, self.tracks)
+
+    def and_one(self, other: Surroundings, row: int, types: ObjectTypes) -> Surroundings:
+        """These, and behind all who are there a row of others in the same recording.
+
+        The ``types`` are those of all of them.
+        """
+        tracks = self.tracks.and_one(other.tracks, row, types)
+        joined = replace(self, tracks=tracks, computed={})
+        joined.__dict__["passages"] = self.passages.and_one(other.passages, row, tracks)
+        for name in ("tolerances", "_lanes", "_both_ways"):
+            joined.__dict__[name] = getattr(self, name)
+        return joined
 
     @cached_property
     def tolerances(self) -> Tolerances:

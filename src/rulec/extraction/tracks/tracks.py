@@ -118,6 +118,23 @@ class Tracks:
         """Flags of participants of an object type or its subtypes."""
         return self.types.of(name)[self.rows]
 
+    def and_one(self, other: Tracks, row: int, types: ObjectTypes) -> Tracks:
+        """The tracks of all of a recording, and behind them a row of others in the same steps.
+
+        ``types`` are those of all of them.
+        """
+        own = slice(row, row + 1)
+        return Tracks(
+            participants=(*self.participants, other.participants[row]),
+            types=types,
+            rows=np.arange(len(self.participants) + 1),
+            first=self.first,
+            **{
+                name: np.concatenate((getattr(self, name), getattr(other, name)[own]))
+                for name in _ARRAYS
+            },
+        )
+
 
 _ARRAYS = tuple(x.name for x in fields(Tracks))[4:]
 
@@ -154,13 +171,24 @@ def _outlines_of(
 _STEERED = frozenset({"vehicle", "light_rider"})
 
 
-def tracks_of(recording: Recording, thresholds: Thresholds) -> Tracks:
-    """The tracks of the participants of a recording that occupy something."""
-    bodies = tuple(body for body in recording.participants if body.outlines)
+def tracks_of(
+    recording: Recording,
+    thresholds: Thresholds,
+    participants: Sequence[Participant] | None = None,
+    span: tuple[int, int] | None = None,
+) -> Tracks:
+    """The tracks of the participants of a recording that occupy something.
+
+    Or of others than it has. ``span`` are the first and the last step of the arrays, if they are to
+    have more than are told.
+    """
+    members = recording.participants if participants is None else participants
+    bodies = tuple(body for body in members if body.outlines)
     laid_out = [_poses(body) for body in bodies]
     steps = [own for body, (own, _) in zip(bodies, laid_out, strict=True) if not body.standing]
     first = min((int(own.min()) for own in steps), default=0)
     last = max((int(own.max()) for own in steps), default=0)
+    first, last = span or (first, last)
     shape = len(bodies), last - first + 1
     x, y, heading, stated = (np.full(shape, np.nan) for _ in range(4))
     for row, (body, (own, poses)) in enumerate(zip(bodies, laid_out, strict=True)):

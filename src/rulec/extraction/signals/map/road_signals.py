@@ -14,7 +14,7 @@ from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import (
     Passes,
-    once_a_recording,
+    once_a_map,
     signals_by,
 )
 from rulec.extraction.tracks.surroundings import Directions
@@ -140,14 +140,14 @@ def _town(context: DriveContext) -> Callable[[Lanelet], bool | None]:
     return town
 
 
-@once_a_recording
+@once_a_map
 def _settled(context: DriveContext) -> bool:
     """True if the map has junctions or crossings."""
     junctions = context.surroundings.passages.junctions
     return bool(junctions) or "crosswalk" in map_contents(context).types
 
 
-@once_a_recording
+@once_a_map
 def _has_fast_town(context: DriveContext) -> bool:
     """True if the limit of some lanelet that is called urban is not one of a built-up area."""
     return any(

@@ -19,7 +19,7 @@ from rulec.extraction.signals.measured_numbers import corner_ahead
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import (
     Passes,
-    once_a_recording,
+    once_a_map,
     once_a_road,
     signals_by,
 )
@@ -135,7 +135,7 @@ def _starts(context: DriveContext, crossings: Recording) -> list[float]:
     return [start for start, _ in found]
 
 
-@once_a_recording
+@once_a_map
 def _crossings_with_lights(context: DriveContext) -> Recording:
     """The recording with those pedestrian crossings only that have lights of their own."""
     walkers = {
@@ -146,7 +146,7 @@ def _crossings_with_lights(context: DriveContext) -> Recording:
     return replace(context.recording, lanelets=walkers)
 
 
-@once_a_recording
+@once_a_map
 def _crossings_over_lit_lanes(context: DriveContext) -> Recording:
     """The recording with those pedestrian crossings only that lanes with lights lead over, too."""
     lanelets = context.recording.lanelets

@@ -1,0 +1,191 @@
+"""Scores of futures: each is extracted and judged as a drive that was recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import (
+    MOST_STATES,
+    DriveVerdict,
+    agreed_answers,
+    names_read,
+    rounded_rulebooks,
+    verified,
+)
+from rulec.extraction.to_trace import Drive, TraceWriter
+from rulec.extraction.tracks.mirror import mirrored_participant
+from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
+from rulec.recordings.recording import Participant
+from rulec.scoring.scores import CandidateScore, Scores
+from rulec.scoring.traffic_world import TrafficWorld
+
+_Key = tuple[str, tuple[str, ...]]
+"""A rule, and the objects of its variables."""
+
+
+def score(
+    candidates: ArrayLike,
+    world: TrafficWorld,
+    rules: CompiledRulebook,
+    after: ArrayLike | None = None,
+) -> Scores:
+    """Judge what one might do next, each candidate by itself, after what was before.
+
+    ``candidates`` (candidate x state x 4) has x, y (m), heading (rad) and speed (m/s), a state for
+    each step of the world from the one after its present on; ``after`` (state x 4) leads up to it.
+    Each is what ``verify_recording`` says of the recording in which ego drives so, past and
+    candidate together. Raises RulecError R0780.
+    """
+    paths, past = world.candidates_of(candidates), world.past_of(after)
+    bodies = [world.body_along(path, past) for path in paths]
+    first = world.now + 1
+    if len(past):
+        # Alone, to see what it has violated whatever comes
+        bodies.append(world.body_at(past, first - len(past)))
+    roundings = rounded_rulebooks(rules, world.recording.step_s)
+    found = list(_judged(bodies, world, roundings, (first - len(past), first + paths.shape[1] - 1)))
+    alone = found.pop() if len(past) else ()
+    before = [violation for _, verdict in _verdicts(alone) for violation in verdict.violations]
+    scores = _anew(
+        [_charged(number, own, first, paths.shape[1]) for number, own in enumerate(found)],
+        before,
+        roundings,
+        (first, first + paths.shape[1] // 2),
+    )
+    return Scores(roundings[0], tuple(scores), tuple(before), paths, first)
+
+
+def _judged(
+    bodies: Sequence[Participant],
+    world: TrafficWorld,
+    roundings: Sequence[CompiledRulebook],
+    steps: tuple[int, int],
+) -> Iterator[tuple[DriveVerdict | NoDrive, ...]]:
+    """The verdicts on the drives of each body, many together."""
+    rules = roundings[0]
+    drives, mirrored = world.drives(rules.traffic, *steps)
+    if mirrored:
+        bodies = [mirrored_participant(body) for body in bodies]
+    wanted = world.wanted
+    names = names_read(rules)
+    writer = TraceWriter(rules.vocabulary, names, wanted.assumed, wanted.defaults)
+    waiting: list[tuple[Drive | NoDrive, ...]] = []
+    states = 0
+    for own in drives.of(bodies, writer):
+        waiting.append(own)
+        states += sum(drive.arrays.n_states for drive in own if isinstance(drive, Drive))
+        if states >= MOST_STATES:
+            yield from _verified(waiting, roundings)
+            waiting, states = [], 0
+    yield from _verified(waiting, roundings)
+
+
+def _verified(
+    drives: Sequence[tuple[Drive | NoDrive, ...]], roundings: Sequence[CompiledRulebook]
+) -> Iterator[tuple[DriveVerdict | NoDrive, ...]]:
+    answers = verified([drive for own in drives for drive in own], roundings)
+    for own in drives:
+        yield tuple([next(answers) for _ in own])
+
+
+def _verdicts(
+    drives: Sequence[DriveVerdict | NoDrive],
+) -> Iterator[tuple[Drive, Verdict]]:
+    for one in drives:
+        if isinstance(one, DriveVerdict) and isinstance(one.answer, Verdict):
+            yield one.drive, one.answer
+
+
+def _charged(
+    number: int, drives: tuple[DriveVerdict | NoDrive, ...], first: int, n_states: int
+) -> CandidateScore:
+    """A candidate of so many states from a step on, charged with all that is violated."""
+    violations: list[Violation] = []
+    doubtful: list[OpenVerdict] = []
+    not_judged = {}
+    on_road = np.zeros(n_states, dtype=bool)
+    for drive, verdict in _verdicts(drives):
+        begins = drive.first_step - first
+        on_road[max(begins, 0) : max(begins + drive.arrays.n_states, 0)] = True
+        violations += [_at(violation, begins) for violation in verdict.violations]
+        doubtful += verdict.open
+        not_judged.update({one.rule: one for one in verdict.not_judged})
+    reasons = [one.why for one in drives if isinstance(one, NoDrive)]
+    reasons += [
+        str(one.answer.error)
+        for one in drives
+        if isinstance(one, DriveVerdict) and isinstance(one.answer, NotJudged)
+    ]
+    off_road = int(n_states - on_road.sum())
+    if off_road and not reasons:
+        reasons = ["it leaves the lanes that lead its way"]
+    return CandidateScore(
+        number,
+        violations=tuple(violations),
+        open=tuple(doubtful),
+        not_judged=tuple(not_judged.values()),
+        off_road=off_road,
+        why="; ".join(reasons),
+        drives=drives,
+    )
+
+
+def _at(violation: Violation, begins: int) -> Violation:
+    step = violation.step
+    return violation if step is None else replace(violation, step=step + begins)
+
+
+def _anew(
+    scores: list[CandidateScore],
+    before: Sequence[Violation],
+    roundings: Sequence[CompiledRulebook],
+    steps: tuple[int, int],
+) -> list[CandidateScore]:
+    """The scores with what was violated before judged by what comes alone.
+
+    ``steps`` are the candidates' first one, and the one from which on they are judged so: half of
+    their time is left to mend what goes on.
+    """
+    first, begin = steps
+    known = {_key(violation) for violation in before}
+    if not known:
+        return scores
+    futures = [
+        (number, max(begin - drive.first_step, 0), drive)
+        for number, found in enumerate(scores)
+        for drive, _ in _verdicts(found.drives)
+        if drive.first_step + drive.arrays.n_states > begin
+    ]
+    answers = agreed_answers([drive.arrays.since(at) for _, at, drive in futures], roundings)
+    violations: dict[int, list[Violation]] = {}
+    doubtful: dict[int, list[OpenVerdict]] = {}
+    for (number, at, drive), answer in zip(futures, answers, strict=True):
+        if isinstance(answer, Verdict):
+            begins = drive.first_step + at - first
+            own = [_at(one, begins) for one in answer.violations if _key(one) in known]
+            violations.setdefault(number, []).extend(own)
+            doubtful.setdefault(number, []).extend(x for x in answer.open if _key(x) in known)
+    return [
+        replace(
+            found,
+            violations=(
+                *(one for one in found.violations if _key(one) not in known),
+                *violations.get(number, ()),
+            ),
+            open=(
+                *(one for one in found.open if _key(one) not in known),
+                *doubtful.get(number, ()),
+            ),
+        )
+        for number, found in enumerate(scores)
+    ]
+
+
+def _key(found: Violation | OpenVerdict) -> _Key:
+    return found.rule, tuple(found.binding.values())

@@ -1,0 +1,117 @@
+"""By how much a candidate violates or keeps rules, where numbers decide."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.extraction.recording_verdicts import DriveVerdict
+from rulec.extraction.to_trace import Drive
+from rulec.logic import formula as ltl
+from rulec.logic.formula import atoms_of
+from rulec.monitoring.bindings import Cast
+from rulec.monitoring.explain.explanation import explain
+from rulec.monitoring.explain.margins import Margin, margin_in
+from rulec.monitoring.state_view import StateView
+from rulec.monitoring.verdict import Verdict, Violation
+from rulec.value_display import short_repr
+
+
+@dataclass(frozen=True, slots=True)
+class RuleMargin:
+    """By how much a rule is violated or kept for some objects, in a state of the candidate.
+
+    Of a violation it is what decides it; of anything else the state of the candidate in which a
+    comparison that the rule makes comes nearest to turning over.
+    """
+
+    __repr__ = short_repr
+
+    rule: str
+    violated: bool
+    binding: Mapping[str, str]
+    state: int
+    margin: Margin
+
+
+def margins_of(
+    drives: Sequence[DriveVerdict],
+    charged: Sequence[Violation],
+    rules: CompiledRulebook,
+    first: int,
+) -> Iterator[RuleMargin]:
+    """The margins of a candidate, whose first state is that step of the recording."""
+    keys = {_key(violation) for violation in charged}
+    for one in drives:
+        if not isinstance(one.answer, Verdict):
+            continue
+        begins = one.drive.first_step - first
+        violated = set()
+        for violation in one.answer.violations:
+            violated.add(_key(violation))
+            if _key(violation) in keys:
+                found = explain(
+                    violation, one.drive.trace, rules, one.drive.decided_by, repaired=False
+                )
+                for margin in found.margins():
+                    at = found.decisive + begins
+                    yield RuleMargin(violation.rule, True, violation.binding, at, margin)
+        untold = {found.rule for found in one.answer.not_judged}
+        for rule in rules.rules:
+            if len(rule.variables) <= 1 and rule.name not in untold:
+                yield from _nearest(rule, one.drive, rules, violated, begins)
+
+
+def _key(violation: Violation) -> tuple[str, tuple[str, ...]]:
+    return violation.rule, tuple(violation.binding.values())
+
+
+def _nearest(
+    rule: CompiledRule,
+    drive: Drive,
+    rules: CompiledRulebook,
+    violated: Collection[tuple[str, tuple[str, ...]]],
+    begins: int,
+) -> Iterator[RuleMargin]:
+    """For each choice of objects the state in which a number comes nearest to deciding."""
+    trace = drive.trace
+    cast = Cast(trace.objects, rules.vocabulary, len(trace.states), trace.present)
+    for binding in cast.bindings(rule):
+        if (rule.name, tuple(binding.objects.values())) in violated:
+            continue
+        states = range(max(binding.first, -begins), binding.last + 1)
+        found = [
+            (margin.by, state, margin)
+            for state in states
+            for margin in _margins_in(rule, binding.objects, drive, state, rules)
+        ]
+        if found:
+            _, state, margin = min(found, key=lambda one: one[:2])
+            yield RuleMargin(rule.name, False, binding.objects, state + begins, margin)
+
+
+def _margins_in(
+    rule: CompiledRule,
+    bound: Mapping[str, str],
+    drive: Drive,
+    state: int,
+    rules: CompiledRulebook,
+) -> Iterator[Margin]:
+    view = StateView(drive.trace.states[state], {}, rules.vocabulary)
+    # What only says when the rule asks for anything is no limit that it sets
+    when = set() if rule.trigger is None else set(atoms_of(rule.trigger))
+    for atom in dict.fromkeys(atoms_of(rule.formula)):
+        if atom in when:
+            continue
+        if isinstance(atom, ltl.Comparison):
+            terms = [term for _, term in atom.terms]
+            told = [isinstance(x, ltl.QuantityTerm) and x.name in drive.kinds for x in terms]
+            margin = margin_in(atom, bound, view) if all(told) else None
+        elif isinstance(atom, ltl.Atom) and atom.name in drive.decided_by:
+            (item,) = (bound[variable] for variable in atom.arguments)
+            margin = drive.decided_by[atom.name].margin(item, state)
+        else:
+            margin = None
+        if isinstance(margin, Margin):
+            yield margin

@@ -1,0 +1,225 @@
+"""What futures come to: verdicts, penalties, places, a guard and a reward."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy import bool_, float64, intp
+from numpy.typing import NDArray
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import DriveVerdict
+from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged, Violation
+from rulec.planning.ranking.penalties import PenaltyOrder, PenaltyRank, ranks_of
+from rulec.scoring.score_margins import RuleMargin, margins_of
+from rulec.value_display import Rows, short_repr
+
+
+@dataclass(frozen=True, slots=True)
+class CandidateScore:
+    """What one candidate comes to, by its ``number``, after what was before.
+
+    ``violations`` and ``open`` verdicts are those that it is charged with; the step of a violation
+    is a state of the candidate, from 0, before 0 one of the past, None if its end decides.
+    ``not_judged`` are rules that the world tells too little for. ``off_road`` of its states are in
+    no drive, because ego is on no lane there that leads its way; no rule is judged in these, and
+    ``why`` says more. ``drives`` are what ``verify_recording`` gives of past and candidate.
+    """
+
+    __repr__ = short_repr
+
+    number: int
+    violations: tuple[Violation, ...]
+    open: tuple[OpenVerdict, ...]
+    not_judged: tuple[RuleNotJudged, ...]
+    off_road: int
+    why: str
+    drives: tuple[DriveVerdict | NoDrive, ...]
+
+    @property
+    def satisfied(self) -> bool | None:
+        """Whether no hard rule is violated; None if one is open, or not judged all the way."""
+        if any(violation.strength == "hard" for violation in self.violations):
+            return False
+        is_open = any(result.strength == "hard" for result in self.open)
+        return None if is_open or self.off_road else True
+
+
+@dataclass(frozen=True, eq=False)
+class Scores(Rows):
+    """What candidates come to, in their order, and how they compare.
+
+    ``paths`` are their states: candidate, state, and x, y (m), heading (rad), speed (m/s).
+    ``violated_before`` is what the past has violated by itself: of these rules, for these objects,
+    candidates are judged by the second half of their states, as if nothing had been before.
+    """
+
+    rules: CompiledRulebook = field(repr=False)
+    candidates: tuple[CandidateScore, ...]
+    violated_before: tuple[Violation, ...]
+    paths: NDArray[float64] = field(repr=False)
+    _first: int = field(repr=False)
+
+    def __repr__(self) -> str:
+        return f"Scores({self.rules.name}: {int(self.allowed.sum())} of {len(self)} allowed)"
+
+    def __len__(self) -> int:
+        return len(self.candidates)
+
+    @cached_property
+    def _order(self) -> PenaltyOrder:
+        return ranks_of(self.rules)
+
+    @property
+    def ranks(self) -> tuple[PenaltyRank, ...]:
+        """The levels of the rules, hard ones first: the columns of penalties."""
+        return self._order.ranks
+
+    @cached_property
+    def penalties(self) -> NDArray[float64]:
+        """The weights of what each candidate (row) violates for sure, by rank (column)."""
+        return self._weights(lambda found: found.violations)
+
+    @cached_property
+    def penalties_at_most(self) -> NDArray[float64]:
+        """The same with what is open, as if that were violated."""
+        return self._weights(lambda found: (*found.violations, *found.open))
+
+    @cached_property
+    def off_road(self) -> NDArray[intp]:
+        """How many states of each candidate are on no lane that leads its way."""
+        return np.array([found.off_road for found in self.candidates], dtype=intp)
+
+    @cached_property
+    def allowed(self) -> NDArray[bool_]:
+        """Flags of candidates that stay on the road, and of which no hard rule is violated or open.
+
+        What is open may be violated: who straddles two lanes shall gain nothing by it.
+        """
+        return np.array([found.satisfied is True for found in self.candidates], dtype=bool)
+
+    @cached_property
+    def perhaps_allowed(self) -> NDArray[bool_]:
+        """Flags of candidates that stay on the road, and violate no hard rule for sure."""
+        return np.array([x.satisfied is not False and not x.off_road for x in self.candidates])
+
+    @cached_property
+    def places(self) -> NDArray[intp]:
+        """The place of each candidate: 1 if none violates less, else 1 more than those that do.
+
+        Fewer states off the road come first, then the order of penalties, what is open counting as
+        violated, then that of what is violated for sure.
+        """
+        places = np.zeros(len(self), dtype=intp)
+        kinds = list(zip(*self._comparable, strict=True))
+        known: dict[Any, int] = {}
+        for kind in sorted(set(kinds), key=lambda own: (own[0], own[1], own[2])):
+            less = [known[other] for other in known if self._is_less(other, kind)]
+            known[kind] = max(less, default=0) + 1
+        for number, kind in enumerate(kinds):
+            places[number] = known[kind]
+        return places
+
+    @property
+    def best(self) -> int:
+        """The number of the least violating candidate, the first of those that are alike."""
+        first = np.flatnonzero(self.places == 1)
+        return int(first[0])
+
+    def reward(self, worth: float = 10.0) -> NDArray[float64]:
+        """A number for each candidate, 0 for one that violates nothing, else less.
+
+        Each rank counts ``worth`` times the highest one below it, the lowest 1, and a state off the
+        road ``worth`` times the highest of all; what is open counts as violated.
+        """
+        above = self._order.above
+        depths = [0] * len(above)
+        for rank in reversed(range(len(above))):
+            below = [depths[k] + 1 for k in range(len(above)) if rank in above[k]]
+            depths[rank] = max(below, default=0)
+        factors = np.array([float(worth) ** depth for depth in depths])
+        beyond = float(worth) ** (max(depths, default=0) + 1)
+        rewards: NDArray[float64] = -(self.penalties_at_most @ factors + beyond * self.off_road)
+        return rewards + 0.0
+
+    def nearest_allowed(self, number: int) -> int | None:
+        """The allowed candidate nearest to one: itself if it is, None if there is none.
+
+        By the mean distance (m) of their places.
+        """
+        allowed = np.flatnonzero(self.allowed)
+        if not len(allowed):
+            return None
+        away = np.hypot(*np.moveaxis(self.paths[allowed, :, :2] - self.paths[number, :, :2], -1, 0))
+        return int(allowed[away.mean(axis=1).argmin()])
+
+    def margins(self, number: int) -> tuple[RuleMargin, ...]:
+        """By how much a candidate violates or keeps rules, in their units, where numbers decide."""
+        found = self.candidates[number]
+        drives = [one for one in found.drives if isinstance(one, DriveVerdict)]
+        return tuple(margins_of(drives, found.violations, self.rules, self._first))
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row a candidate."""
+        return [
+            {
+                "candidate": found.number,
+                "place": place,
+                "satisfied": found.satisfied,
+                "violated": [violation.rule for violation in found.violations],
+                "open": [result.rule for result in found.open],
+                "off_road": found.off_road,
+                "why": found.why,
+            }
+            for found, place in zip(self.candidates, self.places.tolist(), strict=True)
+        ]
+
+    def outcomes(self, rule: str) -> list[str]:
+        """What each candidate does to a rule: kept, violated, open or not judged.
+
+        The worst for all choices of objects.
+        """
+        return [_outcome(found, rule) for found in self.candidates]
+
+    def _weights(self, charged: Any) -> NDArray[float64]:
+        columns: Mapping[str, tuple[int, float]] = {
+            rule.name: (self._order.of(rule), float(rule.weight)) for rule in self.rules.rules
+        }
+        penalties = np.zeros((len(self), len(self.ranks)))
+        for row, found in zip(penalties, self.candidates, strict=True):
+            for result in charged(found):
+                column, weight = columns[result.rule]
+                row[column] += weight
+        return penalties
+
+    @property
+    def _comparable(self) -> tuple[Sequence[Any], ...]:
+        """For each candidate its states off the road, its penalty at most, and that for sure."""
+        unit = float(self._order.unit)
+
+        def whole(penalties: NDArray[float64]) -> list[tuple[int, ...]]:
+            return [tuple(row) for row in np.rint(penalties / unit).astype(int).tolist()]
+
+        return self.off_road.tolist(), whole(self.penalties_at_most), whole(self.penalties)
+
+    def _is_less(self, one: Any, other: Any) -> bool:
+        for own, theirs in zip(one[1:], other[1:], strict=True):
+            if one[0] != other[0]:
+                return bool(one[0] < other[0])
+            if own != theirs:
+                return self._order.at_most(own, theirs)
+        return False
+
+
+def _outcome(found: CandidateScore, rule: str) -> str:
+    if any(violation.rule == rule for violation in found.violations):
+        return "violated"
+    if any(result.rule == rule for result in found.open):
+        return "open"
+    not_judged = any(result.rule == rule for result in found.not_judged)
+    return "not judged" if not_judged or not found.drives else "kept"

@@ -1,0 +1,25 @@
+"""Messages about futures to be scored."""
+
+from __future__ import annotations
+
+from rulec.diagnostics.code import Code
+
+_WORLD = """\
+import rulec
+
+road = rulec.build_lanelet("east", [(0, 0), (400, 0)])
+ego = rulec.build_participant("ego", "car", [0, 0.5], [10, 15], [0, 0], step_s=0.5)
+world = rulec.TrafficWorld(rulec.build_recording([road], [ego], step_s=0.5), "ego")
+"""
+
+BAD_CANDIDATES = Code(
+    "R0780",
+    title="futures to be scored make no sense",
+    why="Candidates are an array of three axes: candidate, state, and x, y (m), heading (rad) and "
+    "speed (m/s) of ego's middle, a state for each step of the world from the one after the "
+    "present on. What was before has the same four columns, a row for each state, the last one "
+    "being the present. All are finite numbers.",
+    bad=f'{_WORLD}rulec.score([[20, 0, 0, 10], [25, 0, 0, 10]], world, "de")\n',
+    good=f'{_WORLD}rulec.score([[[20, 0, 0, 10], [25, 0, 0, 10]]], world, "de")\n',
+    kind="python",
+)

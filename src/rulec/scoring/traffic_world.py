@@ -1,0 +1,182 @@
+"""The world in which futures of one vehicle are scored: a map, the others, and ego's body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy import float64
+from numpy.typing import ArrayLike, NDArray
+
+from rulec.diagnostics import SourceLocation, did_you_mean
+from rulec.extraction.candidate_drives import CandidateDrives
+from rulec.extraction.selection import RequestedDrives, chosen_side
+from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.recording import Participant, Recording
+from rulec.recordings.recording_messages import NOT_IN_RECORDING
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.tracks.derived_motion import accelerations_of
+from rulec.rulebook.rulebook_model import Traffic
+from rulec.scoring.scoring_messages import BAD_CANDIDATES
+from rulec.value_display import short_repr
+
+_COLUMNS = ("x", "y", "heading", "speed")
+
+
+@dataclass(frozen=True, eq=False)
+class TrafficWorld:
+    """A recorded or live world, prepared once for any number of futures of ``ego``.
+
+    The ``recording`` has the map and everybody with all that is known or predicted of them; ego is
+    one of its participants, by default the one that the file names. The present is the step at
+    ``now_s`` (s of the recording), by default ego's last one; what ego did later is ignored.
+    ``wanted`` are thresholds and assumptions; its egos are ignored. Raises RulecError R0612 for an
+    ego that is not there.
+    """
+
+    __repr__ = short_repr
+
+    recording: Recording
+    ego: str = ""
+    now_s: float | None = None
+    wanted: RequestedDrives = field(default_factory=RequestedDrives)
+    _prepared: dict[object, CandidateDrives] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        name = self.ego or self.recording.ego
+        known = {body.id: body for body in self.recording.participants if body.states}
+        if name not in known or known[name].standing:
+            raise NOT_IN_RECORDING.error(
+                SourceLocation(self.recording.name),
+                f"there is no vehicle `{name}` that moves"
+                if name
+                else "it does not say who is ego",
+                help=did_you_mean(name, known) or "name a vehicle of the recording",
+            )
+        object.__setattr__(self, "ego", name)
+
+    def __reduce__(self) -> tuple[type[TrafficWorld], tuple[object, ...]]:
+        return TrafficWorld, (self.recording, self.ego, self.now_s, self.wanted)
+
+    @cached_property
+    def now(self) -> int:
+        """The present time step."""
+        if self.now_s is None:
+            return max(self._body.states)
+        return round(self.now_s / self.recording.step_s)
+
+    @cached_property
+    def past(self) -> NDArray[float64]:
+        """Ego's states up to the present without a gap, a row each: x, y, heading, speed."""
+        rows = []
+        step = self.now
+        while (state := self._body.states.get(step)) is not None:
+            rows.append((state.x, state.y, state.heading, state.speed))
+            step -= 1
+        return np.array(rows[::-1], dtype=float).reshape(-1, len(_COLUMNS))
+
+    def recording_of(self, candidate: ArrayLike, after: ArrayLike | None = None) -> Recording:
+        """The recording in which ego drives a candidate, after what was before.
+
+        Ego is the last of its participants. Raises RulecError R0780.
+        """
+        future = _numbers("a candidate", candidate, 2)
+        return replace(
+            self.recording,
+            participants=(*self._others, self.body_along(future, self.past_of(after))),
+            ego=self.ego,
+        )
+
+    def past_of(self, after: ArrayLike | None) -> NDArray[float64]:
+        """What was before as an array, empty for nothing. Raises RulecError R0780."""
+        if after is None:
+            return np.empty((0, len(_COLUMNS)))
+        return _numbers("what was before", after, 2)
+
+    def candidates_of(self, candidates: ArrayLike) -> NDArray[float64]:
+        """Candidates as an array. Raises RulecError R0780."""
+        return _numbers("candidates", candidates, 3)
+
+    def body_along(self, future: NDArray[float64], past: NDArray[float64]) -> Participant:
+        """Ego along a candidate after what was before."""
+        return self.body_at(np.concatenate((past, future)), self.now + 1 - len(past))
+
+    def body_at(self, rows: NDArray[float64], first: int) -> Participant:
+        """Ego in states from a step on. What its lamps show is known up to the present."""
+        gained = accelerations_of(rows[:, 3], self.recording.step_s)
+        steps = np.arange(first, first + len(rows), dtype=np.int64)
+        length, width, shift = self._size
+        track = Track(steps, np.column_stack((rows, gained)), length, width, shift)
+        lamps = self._body.lamps
+        return replace(
+            self._body,
+            states=TrackStates(track),
+            outlines=TrackOutlines(track),
+            lamps={step: lit for step, lit in lamps.items() if first <= step <= self.now},
+        )
+
+    def drives(self, traffic: Traffic, first: int, last: int) -> tuple[CandidateDrives, bool]:
+        """What is prepared for rules of a side of traffic, and candidates of a range of steps.
+
+        With whether all of it is mirrored.
+        """
+        side, mirrored = chosen_side(self.recording, self.wanted, traffic)
+        low, high = self._span or (first, last)
+        span = min(first, low), max(last, high)
+        key = side, mirrored, span
+        if key not in self._prepared:
+            recording = replace(self.recording, participants=(*self._others, self._body))
+            if mirrored:
+                recording = mirrored_recording(recording)
+            self._prepared.clear()
+            self._prepared[key] = CandidateDrives(recording, side, self.wanted.thresholds, span)
+        return self._prepared[key], mirrored
+
+    @cached_property
+    def _body(self) -> Participant:
+        return next(body for body in self.recording.participants if body.id == self.ego)
+
+    @cached_property
+    def _others(self) -> tuple[Participant, ...]:
+        return tuple(body for body in self.recording.participants if body.id != self.ego)
+
+    @cached_property
+    def _span(self) -> tuple[int, int] | None:
+        """The first and the last step of the others that move."""
+        steps = [list(body.outlines) for body in self._others if not body.standing]
+        ends = [(min(own), max(own)) for own in steps if own]
+        if not ends:
+            return None
+        return min(low for low, _ in ends), max(high for _, high in ends)
+
+    @cached_property
+    def _size(self) -> tuple[float, float, float]:
+        """Ego's length and width (m), and how far its centre lies ahead of its middle."""
+        outlines = self._body.outlines
+        if isinstance(outlines, TrackOutlines):
+            return outlines.track.length, outlines.track.width, outlines.track.shift
+        step, state = next(iter(self._body.states.items()))
+        cos, sin = np.cos(state.heading), np.sin(state.heading)
+        x, y = (outlines[step] - (state.x, state.y)).T
+        ahead, aside = x * cos + y * sin, y * cos - x * sin
+        return float(np.ptp(ahead)), float(np.ptp(aside)), -float(ahead.min() + ahead.max()) / 2
+
+
+def _numbers(what: str, values: ArrayLike, n_axes: int) -> NDArray[float64]:
+    try:
+        found = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise BAD_CANDIDATES.error(None, f"{what}: that is no array of numbers") from None
+    shape = "(candidates, states, 4)" if n_axes == 3 else "(states, 4)"
+    if found.ndim != n_axes or found.shape[-1] != len(_COLUMNS) or not found.size:
+        message = f"{what}: an array of shape {found.shape}"
+        raise BAD_CANDIDATES.error(None, message, expected=f"shape {shape}: {', '.join(_COLUMNS)}")
+    bad = ~(np.abs(found) < LARGEST)
+    if bad.any():
+        at = tuple(int(axis[0]) for axis in np.nonzero(bad))
+        place = ", ".join(map(str, at))
+        message = f"{what}: the number at [{place}] is {found[at]:g}"
+        raise BAD_CANDIDATES.error(None, message, expected=f"a number below {LARGEST:.0e}")
+    return found

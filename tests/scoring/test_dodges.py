@@ -1,0 +1,92 @@
+"""What trackers of single rules are evaded by does not pay."""
+
+import numpy as np
+
+from rulec.api.rulebook_compilation import machines
+from rulec.scoring.score import score
+from support.builders.scored_worlds import STEP_S, along, car, lit_junction, street
+
+GERMAN = machines("de")
+AHEAD = STEP_S * np.arange(1, 21)
+
+
+def braking_to(stop, speed=10.0):
+    """Places along the x axis from 0 on, at a constant speed and then braked evenly to a stop."""
+    gained = 2.0
+    begins = (stop - speed**2 / 2 / gained) / speed
+    for_s = np.clip(AHEAD - begins, 0.0, speed / gained)
+    return speed * np.minimum(AHEAD, begins) + speed * for_s - gained * for_s**2 / 2
+
+
+def scored(world, *paths):
+    start = world.past[-1]
+    return score(np.array([along(path, start) for path in paths]), world, GERMAN, world.past)
+
+
+def on_axis(x):
+    return np.column_stack((x, 0 * x))
+
+
+def test_at_a_red_light_waiting_is_best():
+    world = lit_junction()
+    straight = 10.0 * AHEAD
+    found = scored(
+        world,
+        on_axis(braking_to(55.0)),
+        on_axis(straight),  # the bumper is at the line, 60, after 5.8 s
+        on_axis(braking_to(68.0)),  # it waits in the junction
+        np.column_stack((straight, -15 * np.exp(-(((straight - 65) / 18) ** 2)))),  # around it
+    )
+    assert found.outcomes("red_light")[:3] == ["kept", "violated", "violated"]
+    assert found.off_road.tolist()[:3] == [0, 0, 0]
+    assert found.off_road[3] > 0
+    assert found.allowed.tolist() == [True, False, False, False]
+    assert found.best == 0
+    assert found.places.tolist() == [1, 2, 2, 3]
+    assert found.reward().argmax() == 0
+    assert found.reward().argmin() == 3
+    assert [found.nearest_allowed(number) for number in range(4)] == [0, 0, 0, 0]
+
+
+def test_straddling_two_lanes_is_no_way_past_a_slow_vehicle():
+    # 8 m/s of 12 behind, 40 m away: at 12 m/s ego would be level with it after 10 s
+    world = street([car("slow", 8.0, x=40.0)], speed=12.0)
+    straight, eased = 12.0 * AHEAD, 12.0 * AHEAD - 4.0 * np.clip(AHEAD - 2, 0, 4) ** 2 / 8
+    eased -= 4.0 * np.clip(AHEAD - 6, 0, None)
+    straddling = np.column_stack((straight, 1.75 * np.minimum(AHEAD, 2.0) / 2))
+    found = scored(world, on_axis(eased), on_axis(straight), straddling)
+    assert found.outcomes("following_distance") == ["kept", "violated", "open"]
+    assert found.best == 0
+    assert found.allowed.tolist() == [True, False, False]
+    assert found.reward()[0] > max(found.reward()[1:])
+    assert found.nearest_allowed(2) == 0
+
+
+def test_speed_is_what_places_say():
+    world = street()
+    steady, fast = 13.0 * AHEAD, 18.0 * AHEAD
+    pulsing = np.cumsum(STEP_S * np.where(np.arange(20) % 2, 22.0, 2.0))
+    paths = np.array([along(on_axis(x), world.past[-1]) for x in (steady, fast, pulsing)])
+    paths[:, :, 3] = 13.0  # all say so
+    found = score(paths, world, GERMAN, world.past)
+    assert found.outcomes("speed_limit") == ["kept", "violated", "open"]
+    assert found.allowed.tolist() == [True, False, False]
+    assert found.reward().argmax() == 0
+
+
+def test_what_the_past_has_violated_is_judged_anew():
+    # At 20 m/s in a town. One goes on so, one brakes with 4 m/s² to 12 m/s, and one does and then
+    # is at 20 m/s again for the last four of its twenty states
+    world = street(speed=20.0)
+    braked = 20 * AHEAD - 2 * np.minimum(AHEAD, 2.0) ** 2 - 8 * np.clip(AHEAD - 2, 0, None)
+    again = braked + 8 * np.clip(AHEAD - 8, 0, None)
+    found = scored(world, on_axis(20 * AHEAD), on_axis(braked), on_axis(again))
+    assert "speed_limit" in {violation.rule for violation in found.violated_before}
+    assert found.outcomes("speed_limit") == ["violated", "kept", "violated"]
+    steps = {
+        found.number: [one.step for one in found.violations if one.rule == "speed_limit"]
+        for found in found.candidates
+    }
+    # In state 15 it is not known: nobody gains 8 m/s in half a second, so the track slips there
+    assert steps == {0: [10], 1: [], 2: [16]}
+    assert found.best == 1

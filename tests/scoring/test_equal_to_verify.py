@@ -1,0 +1,110 @@
+"""What a candidate comes to is what ``verify`` says of the recording in which ego drives it."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rulec.api.rulebook_compilation import machines
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.selection import RequestedDrives
+from rulec.monitoring.verdict import Verdict
+from rulec.recordings.recording_files import read_recording
+from rulec.scoring.score import score
+from rulec.scoring.traffic_world import TrafficWorld
+from support.builders.recordings import RECORDINGS
+from support.builders.scored_worlds import STEP_S, car, lit_junction, street
+
+GERMAN, BRITISH = machines("de"), machines("gb")
+
+LIT = lit_junction()
+BUSY = street(
+    [car("slow", 6.0, x=30.0), car("fast", 14.0, x=-40.0, y=3.5), car("near", 9.0, x=-25.0)]
+)
+
+
+def verdict_key(answer):
+    if isinstance(answer, NoDrive):
+        return answer
+    found = answer.answer
+    assert isinstance(found, Verdict), found
+    violations = [(one.rule, dict(one.binding), one.step) for one in found.violations]
+    doubtful = [(one.rule, dict(one.binding), one.because) for one in found.open]
+    return answer.drive.start_s, answer.drive.trace, violations, doubtful, found.not_judged
+
+
+def assert_equal_to_verify(candidates, world, rules, after):
+    scores = score(candidates, world, rules, after)
+    assert len(scores) == len(candidates)
+    for found, candidate in zip(scores.candidates, candidates, strict=True):
+        whole = world.recording_of(candidate, after)
+        judged = RecordingVerdicts(whole, rules, RequestedDrives((world.ego,)), whole.name)
+        expected = [verdict_key(answer) for answer in judged.answers()]
+        assert [verdict_key(answer) for answer in found.drives] == expected
+    return scores
+
+
+def driven(start, controls, step_s=STEP_S):
+    """A future by acceleration (m/s²) and turn (rad/s), a pair for each state."""
+    x, y, heading, speed = start
+    rows = []
+    for gained, turned in controls:
+        speed, heading = max(speed + gained * step_s, 0.0), heading + turned * step_s
+        x, y = x + speed * np.cos(heading) * step_s, y + speed * np.sin(heading) * step_s
+        rows.append((x, y, heading, speed))
+    return rows
+
+
+pieces = st.tuples(st.sampled_from([-5.0, -1.0, 0.0, 2.0]), st.sampled_from([-0.1, 0.0, 0.0, 0.1]))
+controls = st.lists(pieces, min_size=4, max_size=4).map(lambda own: [x for x in own for _ in "12"])
+
+
+@settings(max_examples=settings().max_examples // 12)
+@given(
+    st.sampled_from([LIT, BUSY]),
+    st.lists(controls, min_size=2, max_size=3),
+    st.integers(0, 4),
+    st.sampled_from([GERMAN, GERMAN, BRITISH]),
+)
+def test_random_futures(world, several, n_past, rules):
+    candidates = np.array([driven(world.past[-1], own) for own in several])
+    # For the British book all is mirrored
+    after = world.past[4 - n_past :] if n_past else None
+    assert_equal_to_verify(candidates, world, rules, after)
+
+
+def test_order_and_company_change_nothing():
+    futures = np.array([driven(BUSY.past[-1], [(a, 0.0)] * 8) for a in (-3.0, 0.0, 2.0)])
+    together = score(futures, BUSY, GERMAN, BUSY.past)
+    for number, future in enumerate(futures):
+        (alone,) = score(future[None], BUSY, GERMAN, BUSY.past).candidates
+        own = [verdict_key(one) for one in together.candidates[number].drives]
+        assert [verdict_key(one) for one in alone.drives] == own
+    back = score(futures[::-1], BUSY, GERMAN, BUSY.past)
+    assert back.penalties_at_most.tolist() == together.penalties_at_most.tolist()[::-1]
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not RECORDINGS.is_dir(), reason="no recordings")
+def test_recorded_worlds():
+    rng = np.random.default_rng(3)
+    seen = 0
+    for path in sorted(RECORDINGS.glob("*.xml")):
+        recording = read_recording(path)
+        moving = [
+            body
+            for body in recording.participants
+            if "vehicle" in body.object_types and not body.standing and len(body.states) > 12
+        ]
+        for body in moving[:3]:
+            now = sorted(body.states)[len(body.states) // 2]
+            world = TrafficWorld(recording, body.id, now * recording.step_s)
+            rest = [body.states[now + k] for k in range(1, 6) if now + k in body.states]
+            recorded = [(one.x, one.y, one.heading, one.speed) for one in rest]
+            random = [(rng.uniform(-4, 2), rng.uniform(-0.1, 0.1)) for _ in recorded]
+            if recorded:
+                futures = [recorded, driven(world.past[-1], random, recording.step_s)]
+                assert_equal_to_verify(np.array(futures), world, GERMAN, world.past)
+                seen += 1
+    assert seen > 20

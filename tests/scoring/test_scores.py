@@ -1,0 +1,144 @@
+"""Penalties, places, the guard, the reward and margins of candidates, and what is refused."""
+
+import numpy as np
+import pytest
+
+from rulec.api.rulebook_compilation import machines
+from rulec.diagnostics import RulecError
+from rulec.monitoring.verdict import OpenVerdict, Violation
+from rulec.scoring.score import score
+from rulec.scoring.scores import CandidateScore, Scores
+from rulec.scoring.traffic_world import TrafficWorld
+from support.builders.scored_worlds import STEP_S, along, car, street
+
+GERMAN = machines("de")
+
+
+def candidate(number, *violated, maybe=(), off_road=0):
+    return CandidateScore(
+        number,
+        violations=tuple(Violation(rule, "hard", {}, 0) for rule in violated),
+        open=tuple(OpenVerdict(rule, "hard", {}, ("not told",)) for rule in maybe),
+        not_judged=(),
+        off_road=off_road,
+        why="",
+        drives=(),
+    )
+
+
+def scores(*candidates):
+    paths = np.zeros((len(candidates), 3, 4))
+    paths[:, :, 0] = np.arange(len(candidates))[:, None] ** 2
+    return Scores(GERMAN, candidates, (), paths, 1)
+
+
+# Levels of the German book: red_light emergency > speed_limit, following_distance gaps >
+# keep_near_side courtesy
+ORDERED = scores(
+    candidate(0, "speed_limit"),
+    candidate(1, "red_light"),
+    candidate(2),
+    candidate(3, "speed_limit", "following_distance", "keep_near_side"),
+    candidate(4, maybe=["speed_limit"]),
+    candidate(5, off_road=2),
+    candidate(6, "speed_limit"),
+    candidate(7, "red_light", off_road=1),
+)
+
+
+def test_the_order_of_candidates():
+    # What is open counts as violated, and comes before what is
+    assert ORDERED.places.tolist() == [3, 5, 1, 4, 2, 7, 3, 6]
+    assert ORDERED.best == 2
+    assert [row["place"] for row in ORDERED.rows()] == ORDERED.places.tolist()
+
+
+def test_penalties_by_rank():
+    levels = [rank.levels for rank in ORDERED.ranks if rank.strength == "hard"]
+    emergency, gaps = (
+        next(k for k, own in enumerate(levels) if name in own) for name in ("emergency", "gaps")
+    )
+    assert ORDERED.penalties[:, emergency].tolist() == [0, 1, 0, 0, 0, 0, 0, 1]
+    assert ORDERED.penalties[:, gaps].tolist() == [1, 0, 0, 2, 0, 0, 1, 0]
+    assert ORDERED.penalties_at_most[:, gaps].tolist() == [1, 0, 0, 2, 1, 0, 1, 0]
+
+
+def test_the_reward_goes_with_the_order():
+    rewards = ORDERED.reward(worth=100.0)
+    by_place = rewards[np.argsort(ORDERED.places, kind="stable")]
+    assert (np.diff(by_place) <= 0).all()
+    assert rewards[2] == 0
+    assert rewards[1] < rewards[3] < rewards[0] == rewards[4]
+    assert rewards[5] == 2 * (rewards[7] - rewards[1])
+
+
+def test_the_guard():
+    assert np.flatnonzero(ORDERED.allowed).tolist() == [2]
+    assert np.flatnonzero(ORDERED.perhaps_allowed).tolist() == [2, 4]
+    assert {ORDERED.nearest_allowed(number) for number in range(8)} == {2}
+    assert scores(candidate(0, "red_light")).nearest_allowed(0) is None
+    # At 0, 1, 4 and 9 m
+    some = scores(candidate(0), candidate(1, "red_light"), candidate(2, "red_light"), candidate(3))
+    assert [some.nearest_allowed(number) for number in range(4)] == [0, 0, 0, 3]
+
+
+def steady(speed, start, count=8):
+    x = start[0] + speed * STEP_S * np.arange(1, count + 1)
+    return along(np.column_stack((x, 0 * x)), start)
+
+
+def test_margins_are_in_units():
+    # Cars are 4.5 m long. At time 0 ego is at -18 m, and the other one, as fast, stays 30 m ahead
+    world = street([car("ahead", 12.0, x=12.0)], speed=12.0)
+    futures = [steady(12.0, world.past[-1]), steady(18.0, world.past[-1])]
+    found = score(np.array(futures), world, GERMAN, world.past)
+    kept = {one.rule: one for one in found.margins(0)}
+    assert not kept["speed_limit"].violated
+    assert kept["speed_limit"].margin.unit == "km/h"
+    assert kept["speed_limit"].margin.by == pytest.approx(50 - 43.2, abs=0.01)
+    assert kept["following_distance"].margin.value == pytest.approx(30 - 4.5, abs=0.01)
+    over = [one for one in found.margins(1) if one.rule == "speed_limit" and one.violated]
+    assert min(one.margin.by for one in over) > 0
+    assert {one.state for one in over} == {
+        one.step for one in found.candidates[1].violations if one.rule == "speed_limit"
+    }
+
+
+@pytest.mark.parametrize(
+    "candidates",
+    [
+        [[0, 0, 0, 1]],
+        np.zeros((2, 3, 5)),
+        np.zeros((0, 3, 4)),
+        [[[0, 0, 0, np.nan]]],
+        [[[0, 0, 0, 1e300]]],
+        "none",
+        [[[0, 0, 0, 1]], [[0, 0]]],
+    ],
+)
+def test_arrays_that_make_no_sense(candidates):
+    with pytest.raises(RulecError) as caught:
+        score(candidates, street(), GERMAN)
+    assert [found.code for found in caught.value.diagnostics] == ["R0780"]
+
+
+def test_a_past_that_makes_no_sense():
+    world = street()
+    with pytest.raises(RulecError, match="R0780"):
+        score(steady(5.0, world.past[-1])[None], world, GERMAN, [[1, 2, 3]])
+
+
+def test_an_ego_that_is_not_there():
+    recording = street().recording
+    for ego in ("eggo", ""):
+        with pytest.raises(RulecError, match="R0612"):
+            TrafficWorld(recording, ego)
+
+
+def test_who_is_on_no_lane_is_not_judged():
+    world = street()
+    far = along([(5.0 * k, 40.0) for k in range(8)], world.past[-1])
+    (found,) = score(far[None], world, GERMAN).candidates
+    assert (found.off_road, found.satisfied) == (8, None)
+    assert found.why
+    assert not found.violations

@@ -1,0 +1,56 @@
+"""Worlds drawn by hand, and futures in them, for scores."""
+
+import numpy as np
+
+from rulec.recordings.building import build_lanelet, build_participant, build_recording
+from rulec.recordings.recording import Light
+from rulec.scoring.traffic_world import TrafficWorld
+
+STEP_S = 0.5
+
+
+def car(number, speed, x=0.0, y=0.0, count=24, **more):
+    """Straight on along the x axis, from time 0."""
+    t = STEP_S * np.arange(count)
+    return build_participant(number, "car", t, x + speed * t, y + 0 * t, step_s=STEP_S, **more)
+
+
+def along(places, start):
+    """A future through places (x, y), one step apart, from a start: headings and speeds follow."""
+    places = np.array(places, dtype=float)
+    moved = np.diff(np.vstack((start[:2], places)), axis=0)
+    headings = np.where(np.hypot(*moved.T) > 1e-6, np.arctan2(moved[:, 1], moved[:, 0]), 0.0)
+    return np.column_stack((places, headings, np.hypot(*moved.T) / STEP_S))
+
+
+def street(others=(), speed=10.0, past=4, **more):
+    """Two lanes of a town along the x axis, the right one at y = 0; ego at ``speed`` near x = 0."""
+    urban = {"types": ["urban"], "limit_mps": 50 / 3.6, **more}
+    lanes = [
+        build_lanelet("right", [(-100, 0), (500, 0)], left_of="left", **urban),
+        build_lanelet("left", [(-100, 3.5), (500, 3.5)], right_of="right", **urban),
+    ]
+    return _world(lanes, others, speed, past)
+
+
+def lit_junction(speed=10.0, past=4):
+    """A street with a light, always red, at x = 60, and a junction behind it up to x = 80."""
+    red, town = Light(0, (("red", 1000),)), {"types": ["urban"], "limit_mps": 50 / 3.6}
+    line = [(60, -1.75), (60, 1.75)]
+    lanes = [
+        build_lanelet(
+            "in", [(-100, 0), (60, 0)], successors=["across"], lights=[red], stop_line=line, **town
+        ),
+        build_lanelet("across", [(60, 0), (80, 0)], successors=["out"], junction="j", **town),
+        build_lanelet("out", [(80, 0), (400, 0)], **town),
+        build_lanelet("from", [(70, -80), (70, -10)], successors=["over"], **town),
+        build_lanelet("over", [(70, -10), (70, 10)], successors=["to"], junction="j", **town),
+        build_lanelet("to", [(70, 10), (70, 80)], **town),
+    ]
+    return _world(lanes, (), speed, past, complete={"light"})
+
+
+def _world(lanes, others, speed, past, **more):
+    ego = car("ego", speed, x=-speed * STEP_S * (past - 1), count=past)
+    found = build_recording(lanes, [*others, ego], step_s=STEP_S, side="right", **more)
+    return TrafficWorld(found, "ego")
