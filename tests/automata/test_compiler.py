@@ -130,7 +130,8 @@ def test_a_rulebook_without_rules_compiles():
     assert compile_rulebook(book()).rules == ()
 
 
-def test_without_spot_the_way_out_is_named(monkeypatch):
+def test_who_asks_for_spot_where_it_is_not_is_told_the_way_out(monkeypatch):
+    monkeypatch.setenv("RULEC_COMPILER", "spot")
     absent = "import sys; sys.modules['spot'] = None\n" + compiler._WORKER
     monkeypatch.setattr(compiler, "_WORKER", absent)
     with pytest.raises(RulecError) as caught:
@@ -281,9 +282,9 @@ def test_a_failed_check_is_an_error_of_its_own(monkeypatch):
 from rulec.automata.spot_bridge import CheckError, translation
 def fail(*_): raise CheckError
 translation.check = fail
-main(confined)
+main(confined, choice)
 """
-    worker = compiler._WORKER.replace("\nmain(confined)\n", failing)
+    worker = compiler._WORKER.replace("\nmain(confined, choice)\n", failing)
     assert worker != compiler._WORKER
     monkeypatch.setattr(compiler, "_WORKER", worker)
     with pytest.raises(RulecError) as caught:
@@ -293,9 +294,9 @@ main(confined)
 
 def test_what_nobody_thought_of_is_a_bug_with_a_traceback(monkeypatch):
     worker = compiler._WORKER.replace(
-        "\nmain(confined)\n",
+        "\nmain(confined, choice)\n",
         "\nfrom rulec.automata.spot_bridge import translation"
-        "\ntranslation.check = None\nmain(confined)\n",
+        "\ntranslation.check = None\nmain(confined, choice)\n",
     )
     monkeypatch.setattr(compiler, "_WORKER", worker)
     with pytest.raises(RuntimeError, match="while compiling rule A"):
@@ -308,10 +309,10 @@ def test_a_table_that_fails_on_random_words_is_an_error_too(monkeypatch):
 from rulec.logic.past_registers import Register
 after = Register.after
 Register.after = lambda self, state, left, right: after(self, state, left, right) & 0b111
-main(confined)
+main(confined, choice)
 """
     monkeypatch.setattr(
-        compiler, "_WORKER", compiler._WORKER.replace("\nmain(confined)\n", forgetting)
+        compiler, "_WORKER", compiler._WORKER.replace("\nmain(confined, choice)\n", forgetting)
     )
     short, long = (always(implies(Q, Unary(UnaryOperator.ONCE, P, within(0, n)))) for n in (2, 3))
     assert compile_rulebook(book(rule("A", short))).rules

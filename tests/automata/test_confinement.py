@@ -12,7 +12,7 @@ from rulec.automata import compiler
 
 ATTEMPTS = """
 import json, os, pathlib, socket, subprocess, sys
-from rulec.automata.confinement import confine
+from rulec.automata.worker.confinement import confine
 confined = confine()
 folder = pathlib.Path(sys.argv[1])
 attempts = {

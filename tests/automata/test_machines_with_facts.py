@@ -15,8 +15,8 @@ from rulec.automata import compiler, spot_bridge
 from rulec.automata.alphabet import propositions_of
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRulebook
+from rulec.automata.compiler_jobs import Failed, answer_to
 from rulec.automata.mealy_monitor import IMPOSSIBLE
-from rulec.automata.spot_worker import Failed, _answer
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import (
     Atom,
@@ -70,7 +70,9 @@ def book_of(formula, axioms, vocabulary=VOCABULARY, semantics="stutter"):
 
 
 def answer(book):
-    return _answer(compiler._job(book, compiler.lower(book).rules[0], cpu_limit_s=5))
+    return answer_to(
+        compiler._job(book, compiler.lower(book).rules[0], cpu_limit_s=5), spot_bridge.COMPILER
+    )
 
 
 def compiled(book):

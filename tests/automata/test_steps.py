@@ -244,8 +244,8 @@ def test_there_is_a_limit_on_the_steps_that_are_compiled_for(compiled):
 def test_one_process_builds_the_machines_of_many_steps(compiled_anew, monkeypatch):
     started, start = [], compiler._started
 
-    def starting():
-        started.append(start())
+    def starting(choice):
+        started.append(start(choice))
         return started[-1]
 
     monkeypatch.setattr(compiler, "_started", starting)

@@ -16,8 +16,8 @@ from timing import children_ms, in_turns, processor_time
 
 from rulec.automata.alphabet import reads_of
 from rulec.automata.compiler import compile_rulebook
+from rulec.automata.random_words import agrees
 from rulec.automata.spot_bridge import explore, in_hoa, translate
-from rulec.automata.spot_worker import agrees
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import (
     Atom,

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from rulec import files
-from rulec.automata import compiler, spot_worker
+from rulec.automata import compiler, compiler_jobs
+from rulec.automata.worker import compiler_worker
 from rulec.cli.main import main
 from rulec.extraction import traffic_thresholds
 from rulec.rates import finding_rows
@@ -31,8 +32,8 @@ FIXED = {
     "operators inside one another, definitions put in": size_limits.DEEPEST,
     "digits of a number in compiled files and saved monitors": MOST_DIGITS,
     "seconds of processor time for a rule's automaton": compiler.CPU_LIMIT_S,
-    "bytes of memory for it": spot_worker.MEMORY_LIMIT_BYTES,
-    "steps of a bound, which are states of it": spot_worker.MOST_STEPS_AHEAD,
+    "bytes of memory for it": compiler_worker.MEMORY_LIMIT_BYTES,
+    "steps of a bound, which are states of it": compiler_jobs.MOST_STEPS_AHEAD,
     "bytes of a packed file, unpacked": files.LARGEST_UNPACKED,
     "bytes of one line of traces": json_line_problems.LONGEST_LINE_BYTES,
     "characters of a row of CSV": table_reader.LONGEST_ROW,

@@ -7,7 +7,8 @@ from hashlib import sha256
 from pathlib import Path
 
 from rulec.automata import compiler
-from rulec.automata.spot_worker import Done, Failed, Job
+from rulec.automata.compiler_jobs import Done, Failed, Job
+from rulec.automata.worker import compiler_choice
 
 Answers = tuple[list[Done | Failed | None], str]
 
@@ -22,7 +23,8 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
     """
 
     def kept(job: Job) -> Path:
-        return folder / sha256(pickle.dumps(job)).hexdigest()
+        compiler_asked = os.environ.get(compiler_choice.VARIABLE, "").encode()
+        return folder / sha256(compiler_asked + pickle.dumps(job)).hexdigest()
 
     def answers_to(jobs: Sequence[Job], *, more_will_come: bool = False) -> Answers:
         is_usual = compiler._WORKER is _SCRIPT and compiler._worker is _WORKER

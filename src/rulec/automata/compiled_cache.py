@@ -22,6 +22,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.bundle.mapped_rulebook import MappedRulebook, placed, rulebook_from
 from rulec.automata.bundle.mapped_tables import TableWriter, mapped
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
+from rulec.automata.worker import compiler_choice
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.rulebook.batch.check_cache import (
     is_as_it_was,
@@ -73,7 +74,8 @@ def asked(
         return None
     folders = tuple([str(path) for path in search_path])
     path = str(find_rulebook(reference, [Path(path) for path in folders]))
-    seen = sha256(f"{__version__}\0{program_digest()}\0".encode())
+    compiler = os.environ.get(compiler_choice.VARIABLE, "")
+    seen = sha256(f"{__version__}\0{program_digest()}\0{compiler}\0".encode())
     seen.update(read_bytes(Path(path)))
     # Messages have the path as it was given, so the same file by another one is another key.
     parts = (path, at, *folders)

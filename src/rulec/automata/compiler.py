@@ -1,4 +1,4 @@
-"""Compiler from a rulebook to monitors, with Spot in another process.
+"""Compiler from a rulebook to monitors, by Spot or by decision diagrams in another process.
 
 A formula's automaton can be doubly exponential in it. Spot then uses up memory or ends its process;
 so it runs beside this one, with bounds on processor time and memory.
@@ -25,8 +25,10 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRulebook,
     alike,
 )
+from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.compiler_messages import no_machine, no_spot, not_confined
-from rulec.automata.spot_worker import Done, Failed, Job, WorkerGreeting
+from rulec.automata.worker import compiler_choice
+from rulec.automata.worker.compiler_worker import WorkerGreeting
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_steps
@@ -43,11 +45,11 @@ CPU_LIMIT_S = 5
 _REQUIRE_CONFINED = "RULEC_REQUIRE_CONFINED"
 _WORKER = """
 import sys
-sys.path[:] = sys.argv[1:]
-from rulec.automata.confinement import confine
+choice, *sys.path[:] = sys.argv[1:]
+from rulec.automata.worker.confinement import confine
 confined = confine()  # before NumPy has threads
-from rulec.automata.spot_worker import main
-main(confined)
+from rulec.automata.worker.compiler_worker import main
+main(confined, choice)
 """
 
 
@@ -116,8 +118,8 @@ def build_all(
     ``cpu_limit_s``: processor time that a rule's automaton may take, in whole seconds. A worker of
     which ``more_will_come`` waits for the next call, for to start it takes a quarter second. Raises
     RulecError with the formulas' problems; R0401 for each rule whose automaton is too large, R0402
-    for each whose automaton failed its check, R0403 if Spot is not installed, R0409 for axioms that
-    contradict each other.
+    for each whose automaton failed its check, R0403 for each that takes Spot, if that is not there,
+    R0409 for axioms that contradict each other.
     """
     compiled: list[CompiledRule] = []
     problems = list(formulas.problems)
@@ -152,13 +154,13 @@ def build_all(
 def answers_to(
     jobs: Sequence[Job], *, more_will_come: bool = False
 ) -> tuple[list[Done | Failed | None], str]:
-    """The worker's answers, None to a job that was its end; and Spot's version.
+    """The worker's answers, None to a job that was its end; and Spot's version, empty without it.
 
-    Raises RulecError R0403 if Spot is not installed.
+    Raises RulecError R0403 if Spot is asked for and not installed.
     """
     answers: list[Done | Failed | None] = []
-    spot = ""
-    while len(answers) < len(jobs) or not spot:
+    spot: str | None = None
+    while len(answers) < len(jobs) or spot is None:
         # A worker lives until it is done or a job has killed it; the next one takes the rest.
         with _worker(more_will_come=more_will_come) as (process, spot):
             for job in jobs[len(answers) :]:
@@ -176,11 +178,12 @@ _waiting: dict[tuple[object, ...], _Started] = {}
 
 @contextmanager
 def _worker(*, more_will_come: bool = False) -> Iterator[_Started]:
-    key = os.getpid(), _WORKER, os.environ.get(_REQUIRE_CONFINED), *sys.path
-    process, spot = _waiting.pop(key) if key in _waiting else _started()
+    choice = compiler_choice.choice()
+    key = os.getpid(), _WORKER, os.environ.get(_REQUIRE_CONFINED), choice, *sys.path
+    process, spot = _waiting.pop(key) if key in _waiting else _started(choice)
     if process.poll() is not None:  # ended while it waited
         _end(process)
-        process, spot = _started()
+        process, spot = _started(choice)
     is_fit = False
     try:
         yield process, spot
@@ -203,9 +206,9 @@ def _end(process: subprocess.Popen[bytes]) -> None:
     process.communicate()
 
 
-def _started() -> _Started:
+def _started(choice: str) -> _Started:
     process = subprocess.Popen(
-        [sys.executable, "-I", "-c", _WORKER, *filter(None, sys.path)],
+        [sys.executable, "-I", "-c", _WORKER, choice, *filter(None, sys.path)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         # What a dying C++ library has to say is said better by the diagnostic.

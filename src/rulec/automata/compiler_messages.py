@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rulec.automata.axiom_instances import AxiomInstance
-from rulec.automata.confinement import Confinement
-from rulec.automata.spot_worker import Failed
+from rulec.automata.compiler_jobs import Failed
+from rulec.automata.worker.confinement import Confinement
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
 from rulec.logic.bounds import operations_of
@@ -40,10 +40,14 @@ FAILED_CHECK = Code(
 
 SPOT_MISSING = Code(
     "R0403",
-    title="Spot is not installed",
-    why="Spot turns formulas into automata. There is a package for Linux on x86-64 (`pip install "
-    "spottl`), and one for other systems (`conda install -c conda-forge spot`). A rulebook "
-    "that was compiled elsewhere runs without Spot.",
+    title="Spot is not there, and it is needed",
+    why="Where Spot is not installed, rulec translates formulas itself: those that a beginning of "
+    "a trace decides, what recurs without end, all that joins these by `and`, `or` and `not`, and "
+    "everything where traces end. What is left takes Spot: obligations without end inside one "
+    "another, and a past of which the future decides, such as `once always p`. With "
+    "`RULEC_COMPILER=spot` everything does. There is a package for Linux on x86-64 (`pip install "
+    "spottl`), and one for other systems (`conda install -c conda-forge spot`). A rulebook that "
+    "was compiled elsewhere runs without Spot.",
     kind="circumstance",
 )
 
@@ -71,8 +75,14 @@ CONTRADICTORY_AXIOMS = Code(
 )
 
 
+_GET_SPOT = (
+    "`pip install spottl` on Linux x86-64 with glibc 2.34 or later, "
+    "`conda install -c conda-forge spot` elsewhere; a compiled rulebook runs without Spot"
+)
+
+
 def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
-    """R0401, R0402 or R0409; None if Spot's process ended. RuntimeError for bugs."""
+    """R0401 to R0403, or R0409; None if Spot's process ended. RuntimeError for bugs."""
     why = f"it takes more than {cpu_limit_s} s or 2 GiB to build"
     match failed:
         case Failed("bug", traceback):
@@ -85,6 +95,13 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
             )
         case Failed("facts", contradiction=instances):
             return _contradiction(rule, instances)
+        case Failed("reach"):
+            return SPOT_MISSING.at(
+                rule.span,
+                f"rule `{rule.name}` takes Spot: it asks for something without end inside "
+                "something else without end",
+                help=_GET_SPOT,
+            )
         case Failed("letters"):
             why = "it reads too many signals, enumerations and numbers at once"
         case Failed("steps"):
@@ -124,8 +141,7 @@ def no_spot(problem: str) -> Diagnostic:
     return SPOT_MISSING.at(
         None,
         f"Spot, which turns rules into automata, cannot be loaded: {problem}",
-        help="`pip install spottl` on Linux x86-64 with glibc 2.34 or later, "
-        "`conda install -c conda-forge spot` elsewhere; a compiled rulebook runs without Spot",
+        help=f"{_GET_SPOT}; unset RULEC_COMPILER to do without",
     )
 
 

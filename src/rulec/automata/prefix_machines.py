@@ -15,9 +15,9 @@ from rulec.automata.alphabet import propositions_of
 from rulec.automata.axiom_instances import axiom_groups, axiom_instances
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import CPU_LIMIT_S, answers_to
+from rulec.automata.compiler_jobs import MOST_LETTERS, Done, Failed, Job
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, Read
 from rulec.automata.outcome_machine import OutcomeMachine, of_prefixes
-from rulec.automata.spot_worker import MOST_LETTERS, Done, Failed, Job
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import PAST, in_steps, operations_of
 from rulec.logic.semantics import Semantics

@@ -48,12 +48,14 @@ def rule(name, formula, *variables, strength="hard"):
 def compile_here(rulebook, step_s=None):
     """As the compiler does, without a process of its own: for tests with many small rulebooks."""
     from rulec.automata import spot_bridge
-    from rulec.automata.spot_worker import _answer
+    from rulec.automata.compiler_jobs import answer_to
 
     compiled = []
     for formula in compiler.lower(rulebook, step_s).rules:
         job = compiler._job(rulebook, formula, cpu_limit_s=5)
-        compiled.append(compiler._compiled(formula.rule, formula.step_s, _answer(job)))
+        compiled.append(
+            compiler._compiled(formula.rule, formula.step_s, answer_to(job, spot_bridge.COMPILER))
+        )
     return CompiledRulebook(
         rulebook.name,
         rulebook.vocabulary,

@@ -1,14 +1,24 @@
 """Everything that is asked of Spot; the only package that imports it.
 
 Spot may use unbounded time or memory, or end its process, on a formula whose automaton explodes.
-So this package is only ever loaded in a process of its own, see ``spot_worker``.
+So this package is only ever loaded in a process of its own, see ``compiler_worker``.
 
 The modules are described in the README beside this.
 """
 
-from rulec.automata.spot_bridge.equivalence_check import CheckError
+from rulec.automata.compiler_jobs import CheckError
 from rulec.automata.spot_bridge.spot_automata import VERSION, explore, in_hoa
+from rulec.automata.spot_bridge.spot_compiler import COMPILER
 from rulec.automata.spot_bridge.spot_formulas import projected
 from rulec.automata.spot_bridge.translation import Translation, translate
 
-__all__ = ["VERSION", "CheckError", "Translation", "explore", "in_hoa", "projected", "translate"]
+__all__ = [
+    "COMPILER",
+    "VERSION",
+    "CheckError",
+    "Translation",
+    "explore",
+    "in_hoa",
+    "projected",
+    "translate",
+]

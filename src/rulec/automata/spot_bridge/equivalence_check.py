@@ -10,13 +10,10 @@ from typing import Any
 
 import spot
 
+from rulec.automata.compiler_jobs import CheckError
 from rulec.automata.spot_bridge.spot_formulas import F, SpotFormulas
 from rulec.logic.formula import Formula
 from rulec.logic.past_registers import Memory, definition
-
-
-class CheckError(Exception):
-    """An automaton does not have its formula's language."""
 
 
 def check(

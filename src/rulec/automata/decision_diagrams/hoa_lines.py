@@ -1,0 +1,95 @@
+"""Automata of rules in the Hanoi Omega-Automata format, version 1 (Babiak et al., CAV 2015)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rulec.automata.decision_diagrams.rule_automaton import RuleAutomaton
+
+
+def in_hoa(found: RuleAutomaton, name: str, remarks: Sequence[str]) -> str:
+    """The automaton's text; ``remarks`` become comments.
+
+    A finite word is one after which a further proposition is false.
+    """
+    automaton = found.automaton
+    propositions = sorted([*found.names.values(), *([] if found.alive is None else [found.alive])])
+    rows = list(_rows(found, {text: str(place) for place, text in enumerate(propositions)}))
+    acceptance = _acceptance(
+        automaton.n_marks, [bool(automaton.accepts(n)) for n in range(1 << automaton.n_marks)]
+    )
+    is_buchi = acceptance == "Inf(0)"
+    head = [
+        "HOA: v1",
+        *[f"/* {_without_comment_signs(remark)} */" for remark in remarks],
+        f"name: {_quoted(name)}",
+        f"States: {len(rows)}",
+        "Start: 0",
+        " ".join(["AP:", str(len(propositions)), *map(_quoted, propositions)]),
+        *(["acc-name: Buchi"] if is_buchi else []),
+        f"Acceptance: {automaton.n_marks} {acceptance}",
+        "properties: trans-labels explicit-labels trans-acc deterministic complete",
+        "--BODY--",
+    ]
+    body = [line for state, row in enumerate(rows) for line in (f"State: {state}", *row)]
+    return "\n".join([*head, *body, "--END--"]) + "\n"
+
+
+def _rows(found: RuleAutomaton, numbers: dict[str, str]) -> Iterator[list[str]]:
+    """The lines of each state's edges."""
+    automaton, alive = found.automaton, found.alive
+    size = len(automaton.edges)
+    lost, ended = size, size + 1
+    for state, row in enumerate(automaton.edges):
+        lines = []
+        for (target, marks), letters in row.items():
+            cubes = [
+                cube if alive is None else {**cube, alive: True}
+                for cube in found.diagrams.cubes(letters)
+            ]
+            lines.append(_line(cubes, numbers, target, marks))
+        if alive is not None and automaton.ends_well is not None:
+            over = ended if automaton.ends_well[state] else lost
+            lines.append(_line([{alive: False}], numbers, over, 0))
+        yield lines
+    if alive is not None:
+        yield [_line([{}], numbers, lost, 0)]
+        yield [
+            _line([{alive: False}], numbers, ended, 1),
+            _line([{alive: True}], numbers, lost, 1),
+        ]
+
+
+def _line(
+    cubes: Sequence[dict[str, bool]], numbers: dict[str, str], target: int, marks: int
+) -> str:
+    texts = [
+        "&".join([f"{'' if value else '!'}{numbers[name]}" for name, value in cube.items()]) or "t"
+        for cube in cubes
+    ]
+    own = [str(mark) for mark in range(marks.bit_length()) if marks >> mark & 1]
+    marked = f" {{{' '.join(own)}}}" if own else ""
+    return f"[{' | '.join(texts)}] {target}{marked}"
+
+
+def _acceptance(n_marks: int, accepted: Sequence[bool]) -> str:
+    """The condition under which the recurring marks, as bits, are ``accepted``."""
+    if all(accepted):
+        return "t"
+    if n_marks == 1:
+        return "Inf(0)" if accepted[1] else "Fin(0)" if accepted[0] else "f"
+    cases = [
+        "&".join([f"{'Inf' if marks >> n & 1 else 'Fin'}({n})" for n in range(n_marks)])
+        for marks, is_accepted in enumerate(accepted)
+        if is_accepted
+    ]
+    return " | ".join(f"({case})" for case in cases) or "f"
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
+
+
+def _without_comment_signs(text: str) -> str:
+    return " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())

@@ -1,0 +1,226 @@
+"""Deterministic automata whose edges carry functions of letters, and how they are put together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias, TypeVar
+
+from rulec.automata.compiler_jobs import BeyondReachError
+from rulec.automata.decision_diagrams.diagrams import FALSE, TRUE, Diagrams
+from rulec.logic.past_registers import Register
+
+Edges: TypeAlias = Mapping[tuple[int, int], int]
+"""The letters, as a function, by where they lead, and by the marks of that edge, as bits."""
+
+MOST_MARKS = 8
+"""Their combinations are gone through one by one."""
+
+State = TypeVar("State")
+
+Connective: TypeAlias = Callable[[bool, bool], bool]
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolicAutomaton:
+    """A complete deterministic automaton that begins in state 0.
+
+    On infinite words ``accepts`` tells from the marks that recur whether a run is accepting. It is
+    weak if there is one mark, and no circle has edges with it and without. On finite words, which
+    have no marks, ``ends_well`` tells of each state whether a word may end there; else it is None.
+    """
+
+    edges: tuple[Edges, ...]
+    ends_well: tuple[bool, ...] | None = None
+    n_marks: int = 1
+    accepts: Callable[[int], bool] = bool
+    is_weak: bool = True
+
+
+def explored(
+    first: State, step: Callable[[State], Iterable[tuple[State, int, int]]]
+) -> tuple[list[State], list[dict[tuple[int, int], int]]]:
+    """All states that are reached, and the edges of each.
+
+    ``step`` gives of a state where it leads, with which marks, and on which letters; no two of a
+    state overlap.
+    """
+    states = [first]
+    numbers = {first: 0}
+    rows = []
+    for state in states:
+        row: dict[tuple[int, int], int] = {}
+        for target, marks, letters in step(state):
+            if target not in numbers:
+                numbers[target] = len(states)
+                states.append(target)
+            row[numbers[target], marks] = letters
+        rows.append(row)
+    return states, rows
+
+
+def negated(automaton: SymbolicAutomaton) -> SymbolicAutomaton:
+    """The automaton of all other words."""
+    if automaton.ends_well is not None:
+        return replace(automaton, ends_well=tuple([not well for well in automaton.ends_well]))
+    if automaton.is_weak:
+        rows = [
+            {(target, 1 - marks): letters for (target, marks), letters in row.items()}
+            for row in automaton.edges
+        ]
+        return replace(automaton, edges=tuple(rows))
+    accepts = automaton.accepts
+    return replace(automaton, accepts=lambda marks: not accepts(marks))
+
+
+def joined(
+    left: SymbolicAutomaton,
+    right: SymbolicAutomaton,
+    connective: Connective,
+    diagrams: Diagrams,
+) -> SymbolicAutomaton:
+    """The automaton of words about which the verdicts of two, joined so, are true.
+
+    Raises BeyondReachError for more than ``MOST_MARKS``.
+    """
+    if left.n_marks + right.n_marks > MOST_MARKS:
+        raise BeyondReachError
+    are_weak = left.is_weak and right.is_weak
+    ends = left.ends_well is not None
+
+    def step(state: tuple[int, int]) -> Iterable[tuple[tuple[int, int], int, int]]:
+        found: dict[tuple[tuple[int, int], int], int] = {}
+        for (first, own), letters in left.edges[state[0]].items():
+            for (second, others), more in right.edges[state[1]].items():
+                met = diagrams.both(letters, more)
+                if met != FALSE:
+                    marks = own | others << left.n_marks
+                    if are_weak:
+                        marks = 0 if ends else int(connective(bool(own), bool(others)))
+                    key = (first, second), marks
+                    found[key] = diagrams.either(found.get(key, FALSE), met)
+        return [(target, marks, letters) for (target, marks), letters in found.items()]
+
+    states, rows = explored((0, 0), step)
+    if left.ends_well is not None and right.ends_well is not None:
+        ends_well = tuple([connective(left.ends_well[a], right.ends_well[b]) for a, b in states])
+        return merged(SymbolicAutomaton(tuple(rows), ends_well), diagrams)
+    if are_weak:
+        return merged(SymbolicAutomaton(tuple(rows)), diagrams)
+    own_marks, n_marks = (1 << left.n_marks) - 1, left.n_marks
+    first_accepts, second_accepts = left.accepts, right.accepts
+    return merged(
+        SymbolicAutomaton(
+            tuple(rows),
+            n_marks=n_marks + right.n_marks,
+            accepts=lambda marks: connective(
+                first_accepts(marks & own_marks), second_accepts(marks >> n_marks)
+            ),
+            is_weak=False,
+        ),
+        diagrams,
+    )
+
+
+def merged(automaton: SymbolicAutomaton, diagrams: Diagrams) -> SymbolicAutomaton:
+    """The automaton with states merged that no word tells apart by its marks or its end."""
+    size = len(automaton.edges)
+    blocks = [0] * size if automaton.ends_well is None else list(map(int, automaton.ends_well))
+    n_blocks = len(set(blocks))
+    while True:
+        numbers: dict[object, int] = {}
+        refined = []
+        for state, row in enumerate(automaton.edges):
+            key = blocks[state], frozenset(_regrouped(row, blocks, diagrams).items())
+            refined.append(numbers.setdefault(key, len(numbers)))
+        if len(numbers) == n_blocks:
+            break
+        blocks, n_blocks = refined, len(numbers)
+    if n_blocks == size:
+        return automaton
+    # Those of the last round are numbered by first appearance, so the first state's is 0.
+    kept = [refined.index(block) for block in range(n_blocks)]
+    ends = automaton.ends_well
+    return replace(
+        automaton,
+        edges=tuple([_regrouped(automaton.edges[state], refined, diagrams) for state in kept]),
+        ends_well=None if ends is None else tuple([ends[state] for state in kept]),
+    )
+
+
+def _regrouped(row: Edges, blocks: Sequence[int], diagrams: Diagrams) -> dict[tuple[int, int], int]:
+    found: dict[tuple[int, int], int] = {}
+    for (target, marks), letters in row.items():
+        key = blocks[target], marks
+        found[key] = diagrams.either(found[key], letters) if key in found else letters
+    return found
+
+
+def with_registers(
+    automaton: SymbolicAutomaton, registers: Sequence[Register], diagrams: Diagrams
+) -> SymbolicAutomaton:
+    """The automaton beside registers of the past, whose atoms are no variables any more.
+
+    A state is one of the automaton and one of each register. These and a letter decide what the
+    registers say, by that the automaton's edge, and the registers' next states.
+    """
+    operands = [
+        (register, diagrams.of_state(register.left), diagrams.of_state(register.right))
+        for register in registers
+    ]
+    names = [diagrams.parts(diagrams.of_letter(register.atom))[0] for register in registers]
+    known: dict[tuple[int, ...], list[tuple[int, dict[str, bool], tuple[int, ...]]]] = {}
+
+    def moves(values: tuple[int, ...]) -> list[tuple[int, dict[str, bool], tuple[int, ...]]]:
+        """Steps of the registers: letters, what the registers say, and their next states."""
+        if values not in known:
+            found: list[tuple[int, dict[str, bool], tuple[int, ...]]] = [(TRUE, {}, ())]
+            for value, name, (register, left, right) in zip(values, names, operands, strict=True):
+                found = [
+                    (met, {**said, name: bool(after & 1)}, (*others, after))
+                    for letters, said, others in found
+                    for after, more in _steps(
+                        register,
+                        value,
+                        (diagrams.given(left, said), diagrams.given(right, said)),
+                        diagrams,
+                    ).items()
+                    if (met := diagrams.both(letters, more)) != FALSE
+                ]
+            known[values] = found
+        return known[values]
+
+    def step(
+        state: tuple[int, tuple[int, ...]],
+    ) -> Iterable[tuple[tuple[int, tuple[int, ...]], int, int]]:
+        found: dict[tuple[tuple[int, tuple[int, ...]], int], int] = {}
+        for letters, said, after in moves(state[1]):
+            for (target, marks), own in automaton.edges[state[0]].items():
+                met = diagrams.both(diagrams.given(own, said), letters)
+                if met != FALSE:
+                    key = (target, after), marks
+                    found[key] = diagrams.either(found.get(key, FALSE), met)
+        return [(target, marks, letters) for (target, marks), letters in found.items()]
+
+    states, rows = explored((0, tuple([register.at_first for register in registers])), step)
+    ends = automaton.ends_well
+    product = replace(
+        automaton,
+        edges=tuple(rows),
+        ends_well=None if ends is None else tuple([ends[state] for state, _ in states]),
+    )
+    return merged(product, diagrams)
+
+
+def _steps(
+    register: Register, value: int, operands: tuple[int, int], diagrams: Diagrams
+) -> dict[int, int]:
+    """The register's next states, each with the letters that lead there."""
+    found: dict[int, int] = {}
+    for is_left in (True, False):
+        for is_right in (True, False):
+            after = register.after(value, is_left, is_right)
+            left, right = operands
+            letters = diagrams.both(left if is_left else -left, right if is_right else -right)
+            found[after] = diagrams.either(found.get(after, FALSE), letters)
+    return found

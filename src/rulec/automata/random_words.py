@@ -1,0 +1,90 @@
+"""Monitors compared with the semantics on pseudo-random words."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Mapping
+from itertools import repeat
+
+from rulec.automata.alphabet import letters_with, propositions_of
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
+from rulec.logic.bounds import BOOLEAN, operations_of, range_of
+from rulec.logic.formula import Atom, Binary, Formula, Unary, with_operands
+from rulec.logic.semantics import Letter, Semantics, holds, truth_values
+
+MOST_WORDS, FEWEST_WORDS = 300, 40
+_EFFORT = 200_000
+"""About so many values are evaluated altogether, if that is possible with the fewest words."""
+
+
+def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> bool:
+    """Compare a monitor with the semantics on pseudo-random possible words.
+
+    Some letters stay about as long as one of the formula's bounds, which is where a bound matters.
+    """
+    chance = random.Random(0)
+    possible = [n for n, symbol in enumerate(machine.letters) if symbol != IMPOSSIBLE]
+    sets = letters_with(machine.reads, propositions_of(formula))
+    bounds = _bounds(formula)
+    size = 1 + sum(1 for _ in operations_of(formula))
+    affordable = _EFFORT // (size * (8 + max(bounds, default=0)))
+    n_words = max(FEWEST_WORDS, min(MOST_WORDS, affordable))
+    words = [list(_word(chance, possible, bounds)) for _ in range(n_words)]
+    letters = {
+        number: frozenset([each for each, true_in in sets.items() if true_in >> number & 1])
+        for number in {number for word in words for number in word}
+    }
+    outline, phases = _outlined(formula, letters)
+    return all(
+        verdict(machine, word) == holds(outline, [phases[number] for number in word], semantics)
+        for word in words
+    )
+
+
+def _outlined(
+    formula: Formula, letters: Mapping[int, Letter]
+) -> tuple[Formula, Mapping[int, Letter]]:
+    """The formula with an atom for each part that looks at the present alone, and its letters.
+
+    Such a part is evaluated once for all letters, not in every word.
+    """
+    found: dict[Formula, Atom] = {}
+    true_in: dict[int, set[Atom]] = {number: set() for number in letters}
+
+    def outlined(part: Formula) -> Formula:
+        is_timed = any(operation.operator not in BOOLEAN for operation in operations_of(part))
+        if is_timed and isinstance(part, Unary | Binary):
+            return with_operands(part, outlined)
+        atom = found.setdefault(part, Atom(f"part {len(found)}"))
+        values = truth_values(part, list(letters.values()))
+        for true, value in zip(true_in.values(), values, strict=True):
+            true.update([atom] if value else [])
+        return atom
+
+    return outlined(formula), true_in
+
+
+def _bounds(formula: Formula) -> list[int]:
+    """Bounds of a formula in steps, and the numbers next to them."""
+    ranges = {range_of(operation) for operation in operations_of(formula)}
+    numbers = {number for limits in ranges for number in limits if number is not None}
+    return sorted({near for number in numbers for near in range(number - 1, number + 3)} - {-1, 0})
+
+
+def _word(chance: random.Random, letters: list[int], bounds: list[int]) -> Iterator[int]:
+    # Between a few letters more happens twice than between all of them.
+    some = [letters[chance.randrange(len(letters))] for _ in range(chance.randint(1, 4))]
+    for _ in range(chance.randint(1, 8)):
+        number = chance.choice(some)
+        times = chance.choice(bounds) if bounds and chance.random() < 0.5 else 1
+        yield from repeat(number, times)
+
+
+def verdict(machine: MealyMonitor, numbers: list[int]) -> bool:
+    """The machine's verdict on a word of letters, given by their numbers."""
+    state, accepted = 0, False
+    for number in numbers:
+        symbol = machine.letters[number]
+        accepted = machine.outputs[state][symbol]
+        state = machine.successors[state][symbol]
+    return accepted

@@ -1,0 +1,31 @@
+"""Spot as a compiler, as the worker asks it."""
+
+from __future__ import annotations
+
+from rulec.automata.alphabet import AND, joined, propositions_of
+from rulec.automata.axiom_instances import possible_letters
+from rulec.automata.compiler_jobs import Compiler, Job, Translated
+from rulec.automata.spot_bridge.spot_automata import VERSION, explore, in_hoa
+from rulec.automata.spot_bridge.spot_formulas import projected
+from rulec.automata.spot_bridge.translation import translate
+from rulec.logic.formula import Constant, Formula
+
+
+def _translated(job: Job) -> Translated:
+    propositions = propositions_of(job.formula)
+    facts = [projected(group.known, propositions) for group in job.groups]
+    axioms = [fact for fact in facts if fact != Constant(True)]
+    translation = translate(job.formula, job.reads, job.semantics, axioms)
+    return Translated(
+        explore(translation, job.reads),
+        possible_letters(job.reads, joined(AND, axioms)) if axioms else None,
+        in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive)),
+        translation.is_checked,
+    )
+
+
+def _contradicts(known: Formula) -> bool:
+    return projected(known, ()) == Constant(False)
+
+
+COMPILER = Compiler(VERSION, _translated, _contradicts)

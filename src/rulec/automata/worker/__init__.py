@@ -1,0 +1,1 @@
+"""The process in which compilers run, and which of them."""

@@ -1,0 +1,27 @@
+"""Which compiler makes automata: Spot where it is installed, unless somebody says otherwise.
+
+It is an environment variable's, so that processes that are started meanwhile compile alike.
+"""
+
+from __future__ import annotations
+
+import os
+
+from rulec.automata.worker.choice_messages import NO_COMPILER
+from rulec.diagnostics import did_you_mean
+
+VARIABLE = "RULEC_COMPILER"
+SPOT, DIAGRAMS = "spot", "diagrams"
+
+
+def choice() -> str:
+    """The compiler that is asked for; empty for the usual one. Raises RulecError R0416."""
+    asked = os.environ.get(VARIABLE, "")
+    if asked not in ("", SPOT, DIAGRAMS):
+        raise NO_COMPILER.error(
+            None,
+            f"{VARIABLE} is `{asked}`, and there is no such compiler",
+            help=did_you_mean(asked, [SPOT, DIAGRAMS])
+            or f"it is `{SPOT}` or `{DIAGRAMS}`; unset, it is Spot where that is installed",
+        )
+    return asked

@@ -1,0 +1,160 @@
+"""The compiler without Spot: the same monitors, number for number, and the same languages."""
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import assume, given, settings
+
+from rulec.automata import compiler
+from rulec.automata.alphabet import propositions_of, reads_of
+from rulec.automata.axiom_instances import AxiomInstance, axiom_groups
+from rulec.automata.compiler_jobs import Done, Failed, Job, answer_to
+from rulec.automata.decision_diagrams.diagram_compiler import COMPILER
+from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
+from rulec.diagnostics import RulecError
+from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
+from rulec.logic.semantics import holds
+from rulec.rulebook.loader import read_rulebook
+from rulec.rulebook.rulebook_model import Axiom
+from support.builders.rulebooks import P, Q, always, book, eventually, implies, rule
+from support.generators.random_formulas import ATOMS
+from support.generators.timed_formulas import (
+    TIMED_VOCABULARY,
+    letter_number,
+    letters_of,
+    timed_formulas,
+    timed_words,
+)
+
+NOT, OR = UnaryOperator.NOT, BinaryOperator.OR
+RULEBOOKS = Path(__file__).parents[2] / "rulebooks"
+
+
+def job(formula, semantics="stutter"):
+    reads = reads_of(formula, TIMED_VOCABULARY)
+    return Job("rule", formula, reads, ("a rule",), semantics, (), cpu_s=5)
+
+
+def in_reach(formula, semantics):
+    answer = answer_to(job(formula, semantics), COMPILER)
+    assume(answer != Failed("reach"))
+    assert isinstance(answer, Done)
+    return answer
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+@given(timed_formulas, timed_words)
+def test_its_verdict_is_that_of_the_definitions(semantics, formula, word):
+    machine = in_reach(formula, semantics).machine
+    state, verdict = 0, None
+    for values in word:
+        symbol = machine.letters[letter_number(machine.reads, values)]
+        state, verdict = machine.successors[state][symbol], machine.outputs[state][symbol]
+    assert verdict == holds(formula, letters_of(formula, word), semantics)
+
+
+def the_same_as_spots(formula, semantics):
+    spot_bridge = pytest.importorskip("rulec.automata.spot_bridge")
+    own = in_reach(formula, semantics)
+    other = answer_to(job(formula, semantics), spot_bridge.COMPILER)
+    assert own.machine == other.machine
+    return own, other
+
+
+@pytest.mark.long
+@settings(max_examples=50_000)
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+@given(timed_formulas)
+def test_so_are_a_hundred_thousand(semantics, formula):
+    the_same_as_spots(formula, semantics)
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+@given(timed_formulas)
+def test_its_automaton_has_the_language_of_spots(semantics, formula):
+    spot = pytest.importorskip("spot")
+    own, other = (spot.automaton(each.hoa) for each in the_same_as_spots(formula, semantics))
+    assert spot.are_equivalent(own, other)
+    assert spot.is_deterministic(own)
+    assert spot.is_complete(own)
+
+
+@pytest.mark.parametrize(
+    ("name", "step_s"),
+    [
+        ("esterle2019", "1"),
+        *(
+            pytest.param(file.stem, step, marks=pytest.mark.long)
+            for file in sorted(RULEBOOKS.rglob("*.rules"))
+            if not file.is_relative_to(RULEBOOKS / "vocabulary")
+            for step in ("1", "0.1")
+        ),
+    ],
+)
+def test_shipped_rules_have_the_monitors_of_spot(name, step_s):
+    pytest.importorskip("spot")
+    rulebook = read_rulebook(name).rulebook
+    lowered = compiler.lower(rulebook, Fraction(step_s))
+    jobs = [compiler._job(rulebook, each, cpu_limit_s=5) for each in lowered.rules]
+    answers, _ = compiler.answers_to(jobs)
+    for each, other in zip(jobs, answers, strict=True):
+        assert answer_to(each, COMPILER).machine == other.machine, each.name
+
+
+def test_letters_that_facts_exclude_have_no_class():
+    """A fact about what the rule does not read excludes letters all the same."""
+    red, green, near = ATOMS[3], ATOMS[4], ATOMS[0]
+    facts = [Axiom((), implies(P, green)), Axiom((), implies(near, red))]
+    formula = always(implies(P, near))
+    groups = axiom_groups(
+        propositions_of(formula),
+        [AxiomInstance(fact, (), fact.formula) for fact in facts],
+        TIMED_VOCABULARY,
+    )
+    machine = answer_to(replace(job(formula), groups=groups), COMPILER).machine
+    excluded = [number for number, symbol in enumerate(machine.letters) if symbol == IMPOSSIBLE]
+    assert machine.reads == (Read("p", ()), Read("place", ("x",), ("near",), others=True))
+    assert excluded == [1]  # p and near
+
+
+@pytest.fixture
+def without_spot(monkeypatch):
+    monkeypatch.setattr(
+        compiler, "_WORKER", "import sys; sys.modules['spot'] = None\n" + compiler._WORKER
+    )
+
+
+def compiled(*formulas):
+    rules = [rule(f"r{number}", formula) for number, formula in enumerate(formulas)]
+    return compiler.compile_rulebook(book(*rules))
+
+
+@pytest.mark.usefixtures("without_spot", "compiled_anew")
+def test_without_spot_it_compiles_what_is_in_its_reach():
+    nested = always(Binary(OR, always(eventually(P)), Unary(NOT, Q)))
+    with pytest.raises(RulecError) as caught:
+        compiled(always(implies(P, eventually(Q))), nested)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "R0403"
+    assert "`r1`" in diagnostic.message
+    assert "conda" in diagnostic.help
+
+
+@pytest.mark.usefixtures("compiled_anew")
+def test_who_asks_for_diagrams_gets_no_other(monkeypatch):
+    monkeypatch.setenv("RULEC_COMPILER", "diagrams")
+    result = compiled(always(implies(P, eventually(Q))))
+    assert result.spot == ""
+    assert len(result.rules[0].machine.successors) == 2  # whether somebody waits
+
+
+@pytest.mark.usefixtures("compiled_anew")
+def test_a_compiler_that_there_is_not_is_refused(monkeypatch):
+    monkeypatch.setenv("RULEC_COMPILER", "spott")
+    with pytest.raises(RulecError) as caught:
+        compiled(P)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "R0416"
+    assert "spot" in diagnostic.help
