@@ -232,19 +232,28 @@ def test_a_lane_too_short_for_a_queue_does_not_decide():
     assert not first(*line(10, 2))["dense_all_lanes"]
 
 
-@pytest.mark.parametrize(("lanes", "unknown"), [(2, False), (3, True)])
-def test_a_queue_on_one_lane_of_three_does_not_tell_of_the_others(lanes, unknown):
+@pytest.mark.parametrize(("behind", "unknown"), [(-20.0, False), (-40.0, True)])
+def test_the_last_one_behind_queues_may_be_in_them_or_not(behind, unknown):
+    """At 10 m/s a gap of 30 m is the longest that some call one of a queue."""
+    both = [*line(10, 2), *line(10, 3, y=4.0, number=30), steady(9, behind, 0)]
+    signals = flow_signals(context_of(recording(lanes(2), [steady(7, 0, 0), *both])))
+    assert signals.world["dense_all_lanes"][0]
+    assert signals.unknown["dense_all_lanes"][0] == unknown
+
+
+@pytest.mark.parametrize(("count", "unknown"), [(2, False), (3, True)])
+def test_a_queue_on_one_lane_of_three_does_not_tell_of_the_others(count, unknown):
     """Lanes of 40 m beside the one that goes on have no room for a queue."""
     beside = [straight(4, 100, 140, y=-4, left_of=3), straight(6, 100, 140, y=4, right_of=3)]
     road = [
         straight(1, -100, 100, successors=("3",)),
         straight(3, 100, 140, predecessors=("1",), right_of=4, successors=("5",)),
         straight(5, 140, 300, predecessors=("3",)),
-        *beside[: lanes - 1],
+        *beside[: count - 1],
     ]
-    if lanes == 3:
+    if count == 3:
         road[1] = replace(road[1], left_of="6")
-    found = recording(road, [steady(7, 100, 0), *line(10, 3, start=110.0)])
+    found = recording(road, [steady(7, 100, 0), *line(10, 3, start=110.0), steady(9, 90, 0)])
     signals = flow_signals(context_of(found, ("1", "3")))
     assert signals.world["dense_all_lanes"][2]
     assert signals.unknown["dense_all_lanes"][2] == unknown

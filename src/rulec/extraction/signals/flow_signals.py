@@ -121,7 +121,9 @@ def _dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     decides = context.existing_lanes & (lanes_that_decide(context) | queues)
     all_queue = np.logical_and((queues | ~decides).all(axis=-1), decides.any(axis=-1))
     # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more
-    gap = _gap_ahead(context)
+    gap, gap_behind = (
+        _gap_in_lane(context, side) for side in (relations.BEHIND, relations.IN_FRONT_OF)
+    )
     whole = "light" in context.recording.complete
     cut_off = all_queue[LOOSE] & np.isinf(gap) & (not whole)
     speed = context.ego_extents.along[0]
@@ -133,18 +135,19 @@ def _dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     nobody_knows = ~decides[MEASURED].any(axis=-1) & (not whole)
     # What a few lanes are is not told of the others
     few = 2 * decides[MEASURED].sum(axis=-1) < context.existing_lanes.sum(axis=-1)
-    surely &= ~few
+    # And who is last behind a queue may be in it or not
+    surely &= ~few & (gap_behind <= longest[LOOSE])
     return dense, surely, (perhaps | dense) & ~surely | cut_off | nobody_knows
 
 
-def _gap_ahead(context: DriveContext) -> Floats:
-    """The gap (m) to the next one ahead of ego in its lane, infinity without any, by state.
+def _gap_in_lane(context: DriveContext, station: int) -> Floats:
+    """The gap (m) to the next one in ego's lane to whom ego has this station, by state.
 
-    As far as traffic reaches.
+    As far as traffic reaches, infinity without any.
     """
     own_lane = context.extents.lane == context.ego_lane
-    ahead = close_by(context) & (relations.station(context) == relations.BEHIND) & own_lane
-    gap: Floats = np.where(ahead, relations.gap(context), np.inf).min(axis=0, initial=np.inf)
+    there = close_by(context) & (relations.station(context) == station) & own_lane
+    gap: Floats = np.where(there, relations.gap(context), np.inf).min(axis=0, initial=np.inf)
     return gap
 
 

@@ -127,8 +127,8 @@ def _measured(name: str, values: Floats, bounds: Bounds) -> SignalColumns:
 def _safe_gap(context: DriveContext) -> SignalColumns:
     """Whether ego keeps its distance from who is, or may be, ahead in its lane.
 
-    Unknown of one that stood ``reaction_s`` ago already, if ego can stop behind it, and brakes or
-    is so slow that it can stop at once: it has seen it stand.
+    Unknown of one that stood ``reaction_s`` ago already, if ego can stop behind it: it has seen it
+    stand, and need not react first.
     """
     _, _, may_follow = relations.ahead_in_lane(context)
     place, cells, limits = context.tolerances.place_m, may_follow.nonzero(), context.thresholds
@@ -142,9 +142,7 @@ def _safe_gap(context: DriveContext) -> SignalColumns:
     moot = may_pass_by | (follows & _parts_soon(context, cells[0])[cells])
     speed = np.maximum(context.ego_extents.along[0], 0.0)
     react_m = speed[cells[1]] * limits.reaction_s
-    sees = context.ego.acceleration[0] < -limits.accelerating_mps2
-    sees |= speed * KMH <= limits.stops_at_once_kmh
-    stops = sees[cells[1]] & _stood_before(context)[cells] & (short - react_m <= 0)
+    stops = _stood_before(context)[cells] & (short - react_m <= 0)
     moot |= follows & stops
     safe, unknown = np.ones(may_follow.shape, dtype=bool), np.zeros(may_follow.shape, dtype=bool)
     safe[cells] = ~follows | (short <= 0)
