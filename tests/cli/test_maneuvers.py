@@ -23,7 +23,7 @@ def test_text(capsys):
     assert lines[:5] == [
         "scenario    s2: 4 s in steps of 1 s, partition paper, adjacency touch",
         "graph       35 nodes, 124 edges",
-        "maneuvers   139",
+        "maneuvers   139 paths through cells",
         "satisfying  83 by esterle2019 (R1, R2, R3)",
         "by default  CONGESTED: the scenario does not say",
     ]

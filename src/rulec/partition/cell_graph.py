@@ -9,10 +9,10 @@ from math import lcm
 from typing import TYPE_CHECKING
 
 from rulec.partition.cells.cell_links import AdjacencyName
-from rulec.partition.cells.cell_model import Cell, Layer
+from rulec.partition.cells.cell_model import Cell, Layer, Reach
 from rulec.partition.cells.occupancy import Predicted
 from rulec.partition.cells.regions import LATERAL_OF, STATION_OF, ExtentName, PartitionName
-from rulec.scenario import Obstacle, Scenario
+from rulec.scenario import MotionBounds, Obstacle, Scenario
 from rulec.scenario.paper_words import PAPER_SURFACE
 from rulec.trace import State, TraceGraph
 from rulec.value_display import short_repr
@@ -20,6 +20,9 @@ from rulec.vocabulary.partial_values import PartialValue
 
 if TYPE_CHECKING:
     import networkx
+
+_FINER = 1000
+"""Parts of the unit of costs where driving costs something, too."""
 
 Edges = tuple[tuple[int, ...], ...]
 Margins = tuple[tuple[int | None, ...], ...]
@@ -32,7 +35,8 @@ class NavigationGraph:
     ``successors[p][i]`` are the cells of layer p + 1 that follow cell i of layer p, in ascending
     order; ``margins[p][i]`` their time margins in layers, None for staying. ``objects`` are those
     that are on the road at some time, ``alternatives`` as less likely predictions have them, and
-    ``present`` the first and last layer of each.
+    ``present`` the first and last layer of each. With ``bounds`` of ego's motion its cells and
+    edges are those that can be driven, and ``reach[p][i]`` bounds ego's place and speed in cell i.
     """
 
     __repr__ = short_repr
@@ -50,16 +54,30 @@ class NavigationGraph:
     margins: tuple[Margins, ...]
     start: int
     goals: tuple[int, ...]
+    bounds: MotionBounds | None = None
+    reach: tuple[tuple[Reach | None, ...], ...] = ()
 
     @property
     def last_layer(self) -> int:
         """The last layer that a path from the start reaches."""
-        reached = {self.start}
-        for number, edges in enumerate(self.successors):
-            reached = {after for cell in reached for after in edges[cell]}
-            if not reached:
-                return number
-        return len(self.layers) - 1
+        return len(self._reached) - 1
+
+    @property
+    def leads_to_a_goal(self) -> bool:
+        """Whether there is a path at all."""
+        reached = self._reached
+        return len(reached) == len(self.layers) and not reached[-1].isdisjoint(self.goals)
+
+    @property
+    def _reached(self) -> list[set[int]]:
+        """The cells, layer by layer, to which paths from the start lead, as far as they do."""
+        reached = [{self.start}]
+        for edges in self.successors:
+            onward = {after for cell in reached[-1] for after in edges[cell]}
+            if not onward:
+                break
+            reached.append(onward)
+        return reached
 
     @property
     def step_s(self) -> float:
@@ -90,20 +108,40 @@ class NavigationGraph:
         added. An object that is not on the road in a layer is missing from its states.
 
         A change costs 1 / margin, in 1/s. To be added exactly it is counted in ``cost_unit``, of
-        which every such cost is a whole multiple.
+        which every such cost is a whole multiple. With bounds of ego's motion each cell adds what
+        it costs at least to drive there, rounded down.
         """
         whole = lcm(*range(1, len(self.layers) + 1))
+        # With bounds, costs are finer than those of changes.
+        whole = whole if self.bounds is None else whole * _FINER
+        unit = Fraction(1) / (whole * self.step)
         return TraceGraph(
             step_s=self.step_s,
             objects={name: obstacle.type for name, obstacle in self.objects.items()},
             present=self.at_times({name: name for name in self.objects}),
             states=tuple(map(self._states, self.layers)),
             successors=self.successors,
-            weights=tuple(_weights(margins, whole) for margins in self.margins),
+            weights=self._weights(whole, unit),
             margins=self.margins,
-            cost_unit=Fraction(1) / (whole * self.step),
+            cost_unit=unit,
             start=self.start,
             goals=self.goals,
+        )
+
+    def _weights(self, whole: int, unit: Fraction) -> tuple[tuple[tuple[int, ...], ...], ...]:
+        """What edges cost: changes of cell by their margin, cells by what it takes to be there."""
+        rows = tuple(_weights(margins, whole) for margins in self.margins)
+        if self.bounds is None:
+            return rows
+        from rulec.partition.motion.least_costs import least_costs  # with bounds alone
+
+        least = least_costs(self, unit)
+        return tuple(
+            tuple(
+                tuple(weight + least[p + 1][j] for weight, j in zip(row, onward, strict=True))
+                for row, onward in zip(weights, followers, strict=True)
+            )
+            for p, (weights, followers) in enumerate(zip(rows, self.successors, strict=True))
         )
 
     def _states(self, layer: Layer) -> tuple[State, ...]:

@@ -13,6 +13,8 @@ is ours.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
 from itertools import pairwise, product
 from typing import TypedDict, get_args
 
@@ -26,8 +28,12 @@ from rulec.partition.cells.regions import ExtentName, PartitionName
 from rulec.partition.cells.roadway import snapped
 from rulec.partition.partition_messages import UNKNOWN_PARTITION
 from rulec.partition.start_cell import start_cell, step_that_leaves_room
-from rulec.scenario import Scenario
+from rulec.scenario import MotionBounds, Scenario
+from rulec.scenario.motion_bounds import read_bounds
 from rulec.scenario.time_grid import Timing, timing
+
+FINEST_S = Fraction(1, 20)
+"""Where no path is left the step of a recorded scene is halved, down to this (s)."""
 
 
 class GraphOptions(TypedDict, total=False):
@@ -38,6 +44,7 @@ class GraphOptions(TypedDict, total=False):
     extent: ExtentName
     step_s: float | None
     horizon_s: float | None
+    bounds: MotionBounds | str | None
 
 
 def navigation_graph(
@@ -48,6 +55,7 @@ def navigation_graph(
     extent: ExtentName = "lane",
     step_s: float | None = None,
     horizon_s: float | None = None,
+    bounds: MotionBounds | str | None = None,
 ) -> NavigationGraph:
     """Partition a scenario's free space over time and link the cells.
 
@@ -55,11 +63,16 @@ def navigation_graph(
     (station and lateral); ``adjacency``, when two cells are next to each other, ``touch``, ``edge``
     or ``forward``; ``extent``, how wide obstacles are, ``lane`` (all lanes that they touch) or
     ``body``. Planning interval and horizon (s) are the scenario's unless given; in a recorded scene
-    the interval is then the longest one up to that which leaves ego a place to start.
+    the interval is then the longest one up to that which leaves ego a place to start, or half of
+    that, and so on, where no path would be left. Within
+    ``bounds`` of ego's motion, the scenario's unless given, only what ego can drive is kept; a text
+    is read as ``read_bounds`` does, and ``none`` keeps everything.
 
     Raises RulecError R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
-    R0608 for an unknown partition, adjacency or extent.
+    R0608 for an unknown partition, adjacency or extent, R0770 for bounds that make no sense.
     """
+    own = scenario.ego.bounds
+    bounds = read_bounds(bounds, own) if isinstance(bounds, str) else bounds or own
     partition = partition or "paper"
     for what, name, names_type in (
         ("partition", partition, PartitionName),
@@ -77,10 +90,37 @@ def navigation_graph(
         scenario.horizon_s if horizon_s is None else horizon_s,
         scenario.step_s if step_s is None else step_s,
     )
-    if step_s is None and scenario.account is not None:
-        free = step_that_leaves_room(scenario, times, partition, extent)
-        if free is not None:
-            times = Timing(free.step, int((times.layers - 1) * times.step / free.step) + 1)
+    plan = _Plan(scenario, partition, adjacency, extent, bounds)
+    if step_s is not None or scenario.account is None:
+        return _cut(plan, times)
+    free = step_that_leaves_room(scenario, times, partition, extent)
+    if free is not None:
+        times = _in_steps_of(free.step, times)
+    first = graph = _cut(plan, times)
+    while not graph.leads_to_a_goal and times.step / 2 >= FINEST_S:
+        times = _in_steps_of(times.step / 2, times)
+        graph = _cut(plan, times)
+    return graph if graph.leads_to_a_goal else first
+
+
+@dataclass(frozen=True, slots=True)
+class _Plan:
+    """What a graph is made of, and how, but for its layers."""
+
+    scenario: Scenario
+    partition: PartitionName
+    adjacency: cell_links.AdjacencyName
+    extent: ExtentName
+    bounds: MotionBounds | None
+
+
+def _in_steps_of(step: Fraction, times: Timing) -> Timing:
+    """The same horizon in other steps."""
+    return Timing(step, int((times.layers - 1) * times.step / step) + 1)
+
+
+def _cut(plan: _Plan, times: Timing) -> NavigationGraph:
+    scenario, partition, extent = plan.scenario, plan.partition, plan.extent
     places = scene(scenario, times, partition, extent)
     planes = [
         plane(places.roadway, regions, partition, names)
@@ -93,7 +133,9 @@ def navigation_graph(
         instant = plane(places.roadway, regions, partition, obstacles)
         onward.append(cell_links.continuations(before, instant, after))
     layers = tuple(
-        Layer(times.start(p), names, flat.cells, cell_links.neighbours(flat, adjacency), others)
+        Layer(
+            times.start(p), names, flat.cells, cell_links.neighbours(flat, plan.adjacency), others
+        )
         for p, (flat, names, others) in enumerate(
             zip(planes, places.names, places.others, strict=True)
         )
@@ -101,10 +143,10 @@ def navigation_graph(
     successors, margins = edges(layers, onward)
     predictions = places.predicted_of.items()
     goal = None if scenario.goal is None else snapped(scenario.goal, places.s, places.d)
-    return NavigationGraph(
+    graph = NavigationGraph(
         scenario=scenario,
         partition=partition,
-        adjacency=adjacency,
+        adjacency=plan.adjacency,
         extent=extent,
         step=times.step,
         objects={
@@ -120,6 +162,11 @@ def navigation_graph(
             i for i, cell in enumerate(layers[-1].cells) if goal is None or cell.meets(goal)
         ),
     )
+    if plan.bounds is None:
+        return graph
+    from rulec.partition.motion.reachable_graph import reachable  # NumPy, only where it is needed
+
+    return reachable(graph, plan.bounds)
 
 
 _Runs = dict[tuple[int, int], int]

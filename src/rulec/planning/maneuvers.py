@@ -6,7 +6,7 @@ import sys
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain, islice, starmap
+from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
@@ -17,7 +17,13 @@ from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_n
 from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged, Verdict, Violation
 from rulec.planning.product.graph_instances import HARD, SOFT, violations
-from rulec.planning.product.graph_product import Joint, Product, count_paths, explore
+from rulec.planning.product.graph_product import (
+    Joint,
+    Memory,
+    Product,
+    count_paths,
+    explore,
+)
 from rulec.planning.product.node_transformers import NodeTransformers, node_transformers
 from rulec.planning.product.possible_instances import not_judged
 from rulec.planning.ranking.cell_tracks import CellTracks, cell_tracks
@@ -25,6 +31,7 @@ from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_classes, variants
 from rulec.planning.ranking.least_violating import RankedManeuver, front, ranked, with_penalty
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
+from rulec.planning.ranking.proven import MOST_TRIED, proven, with_trajectory
 from rulec.planning.ranking.pruning import Blaming, RulePruning, violating, violating_alone
 from rulec.planning.rule_instances import SceneReading, bind_rules, in_rule_words, past_for
 from rulec.trace import TraceGraph
@@ -33,6 +40,7 @@ from rulec.value_display import Rows, short_count
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
+    from rulec.partition.motion.witness_trajectory import WitnessSearch
     from rulec.planning.trace_history import Before
 
 Item = TypeVar("Item")
@@ -130,9 +138,25 @@ class Maneuvers(Rows):
     def cheapest(self, n: int, *, perhaps: bool = False) -> list[Maneuver]:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer.
 
-        With ``perhaps`` those that are open are among them.
+        With ``perhaps`` those that are open are among them. Where ego's motion has bounds they are
+        those of which a trajectory was found that proves that ego can drive them.
         """
-        return _first(n, cheapest(self.possible if perhaps else self.product))
+        return self._drivable(self.possible if perhaps else self.product, n)
+
+    def _drivable(self, product: Product[Memory], n: int) -> list[Maneuver]:
+        """The ``n`` cheapest of a product; with bounds of ego's motion those that are proved."""
+        if self._search is None:
+            return _first(n, cheapest(product))
+        return proven(cheapest(product), n, self.graph, self._search)
+
+    @cached_property
+    def _search(self) -> WitnessSearch | None:
+        if self.graph.bounds is None:
+            return None
+        # NumPy and the solver, 50 ms: only where there is something to prove.
+        from rulec.partition.motion.witness_trajectory import WitnessSearch
+
+        return WitnessSearch(self.graph, self.graph.bounds)
 
     def verdict(self, maneuver: Maneuver) -> Verdict:
         """What a maneuver violates and what is open. Raises RulecError as ``best`` does."""
@@ -152,10 +176,8 @@ class Maneuvers(Rows):
         known the worst counts. Raises RulecError
         as ``evaluate`` does, for soft rules too.
         """
-        return [
-            next(self._of_penalty(1, penalty))
-            for penalty in _first(n, front(self._every, self._ranks))
-        ]
+        best = _first(n, front(self._every, self._ranks))
+        return [one for penalty in best for one in self._of_penalty(1, penalty, 1)]
 
     def ranked(self, n: int) -> list[RankedManeuver]:
         """The ``n`` best maneuvers, least violating first, or all.
@@ -164,7 +186,9 @@ class Maneuvers(Rows):
         cost. Raises RulecError as ``best`` does.
         """
         penalties = ranked(self._every, self._ranks)
-        return _first(n, chain.from_iterable(starmap(self._of_penalty, penalties)))
+        return _first(
+            n, chain.from_iterable(self._of_penalty(*penalty, n) for penalty in penalties)
+        )
 
     def prunings(self) -> list[RulePruning]:
         """Effect of every rule on the number of maneuvers. Raises RulecError as ``best`` does."""
@@ -192,8 +216,20 @@ class Maneuvers(Rows):
         return replace(surely, open=perhaps.satisfying - surely.satisfying)
 
     def variants(self, n: int) -> list[Variant]:
-        """Cheapest satisfying maneuver of each of the ``n`` cheapest classes."""
-        return _first(n, variants(self.product, self._places))
+        """Cheapest satisfying maneuver of each of the ``n`` cheapest classes.
+
+        Where ego's motion has bounds, of those of which it is proved that ego can drive it.
+        """
+        every = variants(self.product, self._places)
+        search = self._search
+        if search is None:
+            return _first(n, every)
+        driven = (
+            replace(variant, cheapest=maneuver)
+            for variant in islice(every, MOST_TRIED * n)
+            if (maneuver := with_trajectory(variant.cheapest, self.graph, search)) is not None
+        )
+        return _first(n, driven)
 
     def counting_steps(self) -> list[CompiledRule]:
         """Hard rules that are not stutter-invariant: they may divide a class."""
@@ -221,10 +257,11 @@ class Maneuvers(Rows):
             return self._every
         return node_transformers(self.paths, every, perhaps=True)
 
-    def _of_penalty(self, place: int, penalty: Penalty) -> Iterator[RankedManeuver]:
+    def _of_penalty(self, place: int, penalty: Penalty, n: int) -> Iterator[RankedManeuver]:
+        """The ``n`` cheapest with a penalty."""
         product = with_penalty(self._every, self._ranks, penalty)
         ranks = self._ranks
-        for maneuver in cheapest(product):
+        for maneuver in self._drivable(product, n):
             verdict = self.verdict(maneuver)
             least = ranks.of_violations(verdict.violations, self.rules)
             yield RankedManeuver(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rulec.scenario.geometry import Box
+    from rulec.scenario.motion_bounds import MotionBounds
     from rulec.scenario.scenario_files import available_scenarios, load_scenario
     from rulec.scenario.scenario_model import (
         Account,
@@ -35,6 +36,7 @@ __all__ = [
     "Ego",
     "Footprints",
     "MissingLane",
+    "MotionBounds",
     "Obstacle",
     "Road",
     "Scenario",
@@ -46,6 +48,7 @@ __all__ = [
 
 _HOME = {
     "Box": "geometry",
+    "MotionBounds": "motion_bounds",
     "available_scenarios": "scenario_files",
     "load_scenario": "scenario_files",
 }

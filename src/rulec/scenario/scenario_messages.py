@@ -56,6 +56,16 @@ INCONSISTENT_SCENARIO = Code(
     kind="scenario",
 )
 
+UNFITTING_BOUNDS = Code(
+    "R0770",
+    title="bounds of ego's motion make no sense",
+    why="Bounds are `none`, a type of vehicle, or numbers by name in m/s, m/s² and m: `speed`, "
+    "`acceleration`, `braking`, `lateral_speed`, `lateral_acceleration`, `length` and `width`.",
+    bad=f'{_GOOD}speed = 8.0\nbounds = "spaceship"\n',
+    good=f'{_GOOD}speed = 8.0\nbounds = "truck,braking=6"\n',
+    kind="scenario",
+)
+
 UNFITTING_HORIZON = Code(
     "R0606",
     title="horizon and step do not fit together",

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from rulec.scenario.geometry import Box, centred
+from rulec.scenario.motion_bounds import MotionBounds
 from rulec.value_display import short_repr
 from rulec.vocabulary.partial_values import PartialValue
 
@@ -152,12 +153,20 @@ class Obstacle:
 
 @dataclass(frozen=True, slots=True)
 class Ego:
-    """Ego's centre at time 0, with its size, which only tells if it stands in something."""
+    """Ego's centre at time 0, with its size, speed (m/s) and the bounds of its motion.
+
+    The size only tells if it stands in something; where a body is needed and it is 0, that of the
+    bounds counts. Without a ``speed`` that is unknown; without ``bounds`` ego may be anywhere at
+    any moment.
+    """
 
     s: float
     d: float
     length: float = 0.0
     width: float = 0.0
+    speed: float | None = None
+    lateral_speed: float = 0.0
+    bounds: MotionBounds | None = None
 
     @property
     def body(self) -> Box:

@@ -25,7 +25,7 @@ def recorded():
     ("step_s", "counts"), [(1.0, (20, 40, 76, 61)), (0.5, (36, 80, 4240, 1840))]
 )
 def test_it_gives_the_papers_counts(recorded, step_s, counts):
-    found = find_maneuvers(recorded, "esterle2019", step_s=step_s, horizon_s=4.0)
+    found = find_maneuvers(recorded, "esterle2019", step_s=step_s, horizon_s=4.0, bounds="none")
     assert (found.graph.nodes, found.graph.edges, found.traces, found.satisfying) == counts
 
 

@@ -152,6 +152,13 @@ graph_options = combined(
             "Which cells are neighbours: those that meet in a point, along a border, "
             "or along a border and not only behind.",
         ),
+        click.option(
+            "--bounds",
+            metavar="BOUNDS",
+            help="Keep only what ego can drive: the bounds of a type of vehicle, as in `truck`, "
+            "numbers, as in `braking=6,acceleration=3`, or both; `none` for all paths through "
+            "cells.  [default: the scenario's; of recorded scenes those of ego's type]",
+        ),
         # What can be chosen about a recorded scene; the keywords are those of `Choice`.
         click.option(
             "--ego",

@@ -99,6 +99,16 @@ class Plane:
 
 
 @dataclass(frozen=True, slots=True)
+class Reach:
+    """Bounds of ego's place (m) and speed (m/s) in a cell when its layer begins."""
+
+    s: tuple[float, float]
+    d: tuple[float, float]
+    speed: tuple[float, float]
+    lateral_speed: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
 class Layer:
     """Cells of ``[start_s, start_s + step]``.
 

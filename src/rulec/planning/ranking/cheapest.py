@@ -7,10 +7,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from rulec.planning.product.graph_product import Memory, Product, ProductNode
 from rulec.trace import TraceGraph
 from rulec.value_display import short_repr
+
+if TYPE_CHECKING:
+    from rulec.partition.motion.witness_trajectory import WitnessTrajectory
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +22,8 @@ class Maneuver:
     """Path through a graph, with its cost and time margin.
 
     ``nodes`` are indices, one a layer; ``cost`` is in 1/s. ``margin_s`` is the smallest margin of
-    its changes of cell; None if it never changes.
+    its changes of cell; None if it never changes. Where ego's motion has bounds a ``trajectory``
+    proves that they allow it; the cost is what that costs and what its ``changes`` of cell do.
     """
 
     __repr__ = short_repr
@@ -26,6 +31,8 @@ class Maneuver:
     nodes: tuple[int, ...]
     cost: float
     margin_s: float | None
+    changes: float | None = None
+    trajectory: WitnessTrajectory | None = None
 
 
 def cheapest(product: Product[Memory]) -> Iterator[Maneuver]:

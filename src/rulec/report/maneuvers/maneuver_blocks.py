@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import asdict
 from fractions import Fraction
 from itertools import groupby
 from operator import itemgetter
+from typing import TYPE_CHECKING
 
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
@@ -19,10 +21,16 @@ from rulec.report.text.terminal_text import shown_count, table_lines, visible
 from rulec.report.verdicts.verdict_report import open_in_words
 from rulec.rulebook.rulebook_model import cited_law
 
+if TYPE_CHECKING:
+    from rulec.partition.motion.witness_trajectory import WitnessTrajectory
+
 # So many are shown in text; JSON has them all.
 MOST_BINDINGS = 3
 MOST_NAMED = 6
 MOST_VIOLATIONS = 20
+
+_LEAST_SHOWN = 0.005
+"""Parts of a cost that are less are not shown."""
 
 
 def maneuver_block(
@@ -46,8 +54,31 @@ def maneuver_block(
             graph.layers, maneuver.nodes, envelope(graph, maneuver.nodes), strict=True
         )
     ]
-    head = f"{number}. cost {maneuver.cost:.4g} 1/s, {margin}{remark}"
-    return ["", head, *details, *table_lines(rows, indent="   ")]
+    head = f"{number}. cost {maneuver.cost:.4g}{_cost_parts(maneuver)}{margin}{remark}"
+    driven = [] if maneuver.trajectory is None else [_driven(maneuver.trajectory)]
+    return ["", head, *driven, *details, *table_lines(rows, indent="   ")]
+
+
+def _cost_parts(maneuver: Maneuver) -> str:
+    """The unit, or what a trajectory's costs are made of, the largest first."""
+    if maneuver.trajectory is None:
+        return " 1/s, "
+    parts = {"changes": maneuver.changes or 0.0, **asdict(maneuver.trajectory.cost)}
+    shown = sorted((-value, name) for name, value in parts.items() if value >= _LEAST_SHOWN)
+    sums = " + ".join(f"{name} {-value:.2g}" for value, name in shown)
+    return f" = {sums}; " if sums else "; "
+
+
+def _driven(trajectory: WitnessTrajectory) -> str:
+    """How the trajectory that proves it accelerates and brakes, and where it gets."""
+    _, s, speed, d, _ = trajectory.states[-1]
+    least = min(speed for _, _, speed, _, _ in trajectory.states)
+    slowest = "" if least >= min(trajectory.states[0][2], speed) - 0.1 else f", least {least:.1f}"
+    return (
+        f"   drivable: accelerates by at most {trajectory.greatest_acceleration:.1f} m/s², brakes "
+        f"by {trajectory.greatest_braking:.1f}; {trajectory.states[0][2]:.1f} … {speed:.1f} m/s"
+        f"{slowest}; ends at s {s:.0f} m, d {d:.1f} m"
+    )
 
 
 def listed_block(

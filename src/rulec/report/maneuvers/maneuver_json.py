@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict
 from fractions import Fraction
 from functools import partial
 from typing import Any, TypeVar
@@ -19,6 +20,7 @@ from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.maneuvers import maneuver_report
 from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
+from rulec.report.maneuvers.trajectory_json import TrajectoryData, trajectory_data
 from rulec.report.verdicts.verdict_json import (
     NotJudgedRule,
     OpenData,
@@ -141,6 +143,7 @@ class ManeuverData(JsonPart, frozen=True, kw_only=True):
     margin_s: float | None
     cells: Sequence[CellData]
     envelope: Sequence[EnvelopeData]
+    trajectory: TrajectoryData | UnsetType = UNSET
     chances: ChancesData | UnsetType = UNSET
 
 
@@ -195,7 +198,8 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     """The counts of maneuvers in a scenario, and further answers asked for.
 
     On ``open`` more than those ``satisfying`` it depends on what is ``unknown``; ``exact`` is false
-    if there was too much to look at, and some may be known after all.
+    if there was too much to look at, and some may be known after all. With ``bounds`` of ego's
+    motion (m, s) they are paths through reachable cells, else through all.
     """
 
     scenario: str
@@ -207,6 +211,7 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     horizon_s: float
     nodes: int
     edges: int
+    bounds: Mapping[str, float] | None
     traces: int
     satisfying: int
     open: int
@@ -238,6 +243,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             scenario=scenario.name,
             rulebook=maneuvers.rules.name,
             horizon_s=maneuver_report.horizon_s(graph),
+            bounds=None if graph.bounds is None else asdict(graph.bounds),
             traces=maneuvers.traces,
             satisfying=maneuvers.satisfying,
             open=maneuvers.open,
@@ -320,7 +326,10 @@ def _maneuver(graph: NavigationGraph, maneuver: Maneuver, **details: Any) -> Man
         for layer, index in zip(graph.layers, maneuver.nodes, strict=True)
     ]
     bounds = [filled(EnvelopeData, bounds) for bounds in envelope(graph, maneuver.nodes)]
-    return filled(ManeuverData, maneuver, cells=cells, envelope=bounds, **details)
+    driven = trajectory_data(maneuver)
+    return filled(
+        ManeuverData, maneuver, cells=cells, envelope=bounds, trajectory=driven, **details
+    )
 
 
 def _violations(maneuvers: Maneuvers, violations: Iterable[Violation]) -> list[ManeuverViolation]:

@@ -84,7 +84,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         f"scenario    {graph.scenario.name}: {horizon}, {how}",
         *_scene(maneuvers),
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
-        f"maneuvers   {shown_count(maneuvers.traces)}",
+        f"maneuvers   {_paths(maneuvers)}",
         *_shut_in(maneuvers),
         f"satisfying  {satisfying}",
         *_doubts(maneuvers),
@@ -112,6 +112,13 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             remark = f"; class of {'1 member' if variant.members == 1 else members}"
             lines += maneuver_blocks.maneuver_block(graph, number, variant.cheapest, remark)
     return "\n".join(lines)
+
+
+def _paths(maneuvers: Maneuvers) -> str:
+    """The number of maneuvers, and paths through what they are."""
+    paths = "path" if maneuvers.traces == 1 else "paths"
+    cells = "cells" if maneuvers.graph.bounds is None else "reachable cells"
+    return f"{shown_count(maneuvers.traces)} {paths} through {cells}"
 
 
 def _doubts(maneuvers: Maneuvers) -> Iterator[str]:

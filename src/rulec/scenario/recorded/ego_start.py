@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import cos, hypot, sin
+from math import cos, hypot, isfinite, sin
+from typing import TypedDict
 
 import numpy as np
 
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.recordings import recording as recorded
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
+from rulec.scenario.motion_bounds import MotionBounds, bounds_of
 from rulec.scenario.recorded.route import lanelet_of
 from rulec.scenario.scenario_model import Choice
 
@@ -103,6 +105,28 @@ def ego_size(recording: recorded.Recording, start: EgoStart, choice: Choice) -> 
                 float(np.ptp(participant.outlines[start.step] @ way)) for way in (ahead, left)
             )
     return length, width if choice.ego_width_m is None else choice.ego_width_m
+
+
+class EgoMotionFields(TypedDict):
+    """What an ``Ego`` has of its motion."""
+
+    speed: float | None
+    lateral_speed: float
+    bounds: MotionBounds
+
+
+def ego_motion(recording: recorded.Recording, start: EgoStart, heading: float) -> EgoMotionFields:
+    """Ego's speed along and across a road that leads to ``heading`` (rad), and its bounds.
+
+    Those of a car, unless ego takes the part of somebody of another type.
+    """
+    types = (body.object_types for body in recording.participants if body.id == start.participant)
+    bounds = bounds_of(next(types, ()))
+    speed, turned = start.state.speed, start.state.heading - heading
+    if not isfinite(speed):
+        return {"speed": None, "lateral_speed": 0.0, "bounds": bounds}
+    ahead, sideways = max(speed * cos(turned), 0.0), speed * sin(turned)
+    return {"speed": ahead, "lateral_speed": sideways, "bounds": bounds}
 
 
 def reference_lanelet(

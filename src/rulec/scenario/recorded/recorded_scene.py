@@ -17,7 +17,8 @@ import numpy as np
 from rulec.recordings.recording import Lanelet, Recording, TrackState
 from rulec.scenario.geometry import Box
 from rulec.scenario.motion import swept
-from rulec.scenario.recorded.ego_start import choice_error, ego_size, ego_start, reference_lanelet
+from rulec.scenario.recorded import ego_start as starts
+from rulec.scenario.recorded.ego_start import choice_error, ego_start, reference_lanelet
 from rulec.scenario.recorded.lane_coordinates import borders_along, crossings_along, lanes_along
 from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
 from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
@@ -104,7 +105,12 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     return Scenario(
         recording.name,
         road,
-        Ego(0.0, d, *ego_size(recording, start, choice)),
+        Ego(
+            0.0,
+            d,
+            *starts.ego_size(recording, start, choice),
+            **starts.ego_motion(recording, start, line.heading_at(ego_s)),
+        ),
         on_road,
         {name: value for name, (value, _) in derived.items()},
         step_s=STEP_S,

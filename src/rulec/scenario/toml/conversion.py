@@ -10,6 +10,7 @@ from typing import TypeVar
 from rulec.diagnostics import RulecError
 from rulec.scenario.geometry import Box
 from rulec.scenario.motion import swept
+from rulec.scenario.motion_bounds import read_bounds
 from rulec.scenario.scenario_model import Ego, MissingLane, Road, Scenario, SignalValue, Stretch
 from rulec.scenario.time_grid import timing
 from rulec.scenario.toml.obstacle_tables import LocatedObstacle, read_obstacles, read_signals
@@ -153,10 +154,26 @@ def _ascend(lanes: Sequence[float], table: TomlTable) -> bool:
 def _ego(raw: object, file: TomlFile) -> Ego | None:
     if not isinstance(raw, Mapping):
         return None
-    values = TomlTable(file, "ego", "ego").read(RawEgo, raw)
+    table = TomlTable(file, "ego", "ego")
+    values = table.read(RawEgo, raw)
     if values is None:
         return None
-    return Ego(values.s, values.d, values.length or 0.0, values.width or 0.0)
+    bounds = None
+    if values.bounds is not None:
+        try:
+            bounds = read_bounds(values.bounds, None)
+        except RulecError as error:
+            place = table.place("bounds")
+            file.errors.extend(replace(mistake, place=place) for mistake in error.diagnostics)
+    return Ego(
+        values.s,
+        values.d,
+        values.length or 0.0,
+        values.width or 0.0,
+        speed=values.speed,
+        lateral_speed=values.lateral_speed,
+        bounds=bounds,
+    )
 
 
 def _check_on_road(ego: Ego, road: Road, file: TomlFile) -> None:

@@ -46,6 +46,7 @@ SizeField = Annotated[float, Meta(ge=0.01, le=1000, description="metres, from 0.
 AlongSpeed = Annotated[
     _Speed, Meta(description="m/s along the road, negative for oncoming traffic, at most 1000")
 ]
+EgoSpeed = Annotated[float, Meta(ge=0, le=1000, description="m/s along the road, from 0 to 1000")]
 Acceleration = Annotated[_Speed, Meta(description="m/s² along the road, at most 1000")]
 SidewaysSpeed = Annotated[_Speed, Meta(description="m/s to the left, at most 1000")]
 Degrees = Annotated[
@@ -135,6 +136,9 @@ class RawEgo(Struct):
     d: OffsetField
     length: SizeField | None = None
     width: SizeField | None = None
+    speed: EgoSpeed | None = None
+    lateral_speed: SidewaysSpeed = 0.0
+    bounds: TextField | None = None
 
 
 class RawGoal(Struct):

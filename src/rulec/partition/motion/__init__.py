@@ -1,0 +1,1 @@
+"""What ego can drive: reachable cells, and trajectories through them."""

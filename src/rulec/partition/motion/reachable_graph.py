@@ -1,0 +1,297 @@
+"""The part of a navigation graph that ego can drive.
+
+For every cell and layer a set of positions and speeds with which ego may be there when the layer
+begins: forward from ego's start, backward from the goals, and forward once more within what both
+leave. An edge goes where no motion leads from the one set to the other; a cell where no edge is
+left. Motion along and across the road is looked at apart, joined by how far ego turns, and a cell
+counts as the rectangle around it: more may be kept than can be driven, and nothing less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import compress
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.partition.cell_graph import NavigationGraph
+from rulec.partition.cells.cell_model import Cell, Layer, Reach
+from rulec.partition.motion import reachable_sets as sets
+from rulec.partition.motion.reachable_sets import ROUNDING, AxisMotion, Sets
+from rulec.scenario import MotionBounds
+from rulec.scenario.scenario_model import Ego
+
+MOST_MOMENTS = 40
+"""Sets have directions for so many moments at most, spread over the layers."""
+
+_Pair = tuple[Sets, Sets]
+"""Sets along and across the road."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Edges:
+    """Edges from one layer to the next by the cells at their ends."""
+
+    origins: NDArray[np.intp]
+    targets: NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EgoMotion:
+    """Motion along and across the road; ``slope`` is the greatest ratio of the second to it."""
+
+    along: AxisMotion
+    across: AxisMotion
+    slope: float
+
+
+def ego_motion(ego: Ego, bounds: MotionBounds, step: float, layers: int) -> EgoMotion:
+    """Ego's motion in layers of ``step`` (s). What it starts with is within the bounds."""
+    speed, sideways = ego.speed or 0.0, abs(ego.lateral_speed)
+    numbers = np.unique(np.linspace(0, layers - 1, min(layers, MOST_MOMENTS)).round())
+    moments = numbers * step
+    most, most_sideways = max(bounds.speed, speed), max(bounds.lateral_speed, sideways)
+    lateral = bounds.lateral_acceleration
+    return EgoMotion(
+        AxisMotion((0.0, most), (-bounds.braking, bounds.acceleration), moments, step),
+        AxisMotion((-most_sideways, most_sideways), (-lateral, lateral), moments, step),
+        max(1.0, sideways / speed) if speed else 1.0 + (sideways > 0) * most_sideways,
+    )
+
+
+def reachable(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
+    """The graph without what ego cannot reach, or cannot leave towards a goal, within bounds."""
+    ego, step = graph.scenario.ego, float(graph.step)
+    motion = ego_motion(ego, bounds, step, len(graph.layers))
+    edges = [
+        _Edges(
+            np.repeat(np.arange(len(rows)), list(map(len, rows))),
+            np.array([target for row in rows for target in row], dtype=np.intp),
+        )
+        for rows in graph.successors
+    ]
+    times = [step * p for p in range(len(graph.layers))]
+    areas = [_areas(layer.cells) for layer in graph.layers]
+    speeds = (0.0, motion.along.speeds[1]) if ego.speed is None else (ego.speed, ego.speed)
+    own = (
+        motion.along.at(ego.s, speeds, 0.0),
+        motion.across.at(ego.d, (ego.lateral_speed, ego.lateral_speed), 0.0),
+    )
+    first = _alone(own, graph.start, len(graph.layers[0].cells))
+    course = _Course(edges, areas, times, motion)
+    forward = _forward(course, first, None)
+    within = _backward(course, forward, graph.goals)
+    final = _forward(course, first, within)
+    keep = _kept(graph, edges, final)
+    return _without(graph, bounds, keep, final)
+
+
+_Nodes = tuple[_Pair, NDArray[np.bool_]]
+"""Sets of all cells of a layer, and which of them hold something."""
+
+
+def _areas(cells: Sequence[Cell]) -> NDArray[np.float64]:
+    """Rows of s_min, s_max, d_min, d_max of rectangles around cells, a hair wider."""
+    rows = [(box.s_min, box.s_max, box.d_min, box.d_max) for box in (c.bounds for c in cells)]
+    around = np.array(rows).reshape(-1, 4)
+    return np.asarray(around + np.array([-1, 1, -1, 1]) * ROUNDING)
+
+
+def _alone(own: _Pair, start: int, count: int) -> _Nodes:
+    group = np.array([start])
+    pair = (sets.together(own[0], group, count), sets.together(own[1], group, count))
+    return pair, np.arange(count) == start
+
+
+def _rows(pair: _Pair, chosen: NDArray[np.intp] | NDArray[np.bool_]) -> _Pair:
+    (s_low, s_high), (d_low, d_high) = pair
+    return (s_low[chosen], s_high[chosen]), (d_low[chosen], d_high[chosen])
+
+
+def _clipped(pair: _Pair, area: NDArray[np.float64], motion: EgoMotion, now: float) -> _Pair:
+    """Sets within areas, a row each."""
+    along, across = pair
+    along[0][:, 0] = np.maximum(along[0][:, 0], area[:, 0])
+    along[1][:, 0] = np.minimum(along[1][:, 0], area[:, 1])
+    across[0][:, 0] = np.maximum(across[0][:, 0], area[:, 2])
+    across[1][:, 0] = np.minimum(across[1][:, 0], area[:, 3])
+    along = motion.along.tightened(along, now)
+    fastest = motion.slope * np.maximum(along[1][:, 1], 0.0) + ROUNDING
+    across[0][:, 1] = np.maximum(across[0][:, 1], -fastest)
+    across[1][:, 1] = np.minimum(across[1][:, 1], fastest)
+    return along, motion.across.tightened(across, now)
+
+
+def _stepped(pair: _Pair, motion: EgoMotion, now: float) -> _Pair:
+    """The sets one step later."""
+    along = motion.along.after(pair[0], now)
+    across = motion.across.after(pair[1], now)
+    way = motion.slope * np.maximum(along[1][:, 0] - pair[0][0][:, 0], 0.0)
+    across[0][:, 0] = np.maximum(across[0][:, 0], pair[1][0][:, 0] - way)
+    across[1][:, 0] = np.minimum(across[1][:, 0], pair[1][1][:, 0] + way)
+    return along, across
+
+
+def _something(pair: _Pair) -> NDArray[np.bool_]:
+    return sets.anything_in(pair[0]) & sets.anything_in(pair[1])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Way:
+    """Layers of sets, and which edges some motion takes."""
+
+    nodes: list[_Nodes]
+    driven: list[NDArray[np.bool_]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Course:
+    """What ways lead through: edges, rectangles around cells, times of layers; and ego's motion."""
+
+    edges: Sequence[_Edges]
+    areas: Sequence[NDArray[np.float64]]
+    times: Sequence[float]
+    motion: EgoMotion
+
+
+def _forward(course: _Course, first: _Nodes, within: Sequence[_Nodes] | None) -> _Way:
+    edges, areas, times, motion = course.edges, course.areas, course.times, course.motion
+    nodes, driven = [first], []
+    for p, row in enumerate(edges):
+        pair, there = nodes[-1]
+        used = there[row.origins]
+        if within is not None:
+            used &= within[p + 1][1][row.targets]
+        chosen = np.flatnonzero(used)
+        origins, targets = row.origins[chosen], row.targets[chosen]
+        # One step for each cell, not for each of its edges.
+        cells, of_cell = np.unique(origins, return_inverse=True)
+        stepped = _rows(_stepped(_rows(pair, cells), motion, times[p]), of_cell)
+        reached = _clipped(stepped, areas[p + 1][targets], motion, times[p + 1])
+        if within is not None:
+            limit = _rows(within[p + 1][0], targets)
+            reached = sets.common(reached[0], limit[0]), sets.common(reached[1], limit[1])
+        some = _something(reached)
+        taken = np.zeros(len(row.origins), dtype=bool)
+        taken[chosen[some]] = True
+        driven.append(taken)
+        reached, targets = _rows(reached, some), targets[some]
+        count = len(areas[p + 1])
+        united = (
+            sets.together(reached[0], targets, count),
+            sets.together(reached[1], targets, count),
+        )
+        nodes.append((united, np.bincount(targets, minlength=count) > 0))
+    return _Way(nodes, driven)
+
+
+def _backward(course: _Course, forward: _Way, goals: Sequence[int]) -> list[_Nodes]:
+    """Of the sets those from which a goal can be reached."""
+    edges, times, motion = course.edges, course.times, course.motion
+    pair, there = forward.nodes[-1]
+    goal = np.zeros(len(there), dtype=bool)
+    goal[list(goals)] = True
+    result = [(pair, there & goal)]
+    for p in reversed(range(len(edges))):
+        row, (ahead, alive) = edges[p], result[-1]
+        chosen = np.flatnonzero(forward.driven[p] & alive[row.targets])
+        origins, targets = row.origins[chosen], row.targets[chosen]
+        cells, of_cell = np.unique(targets, return_inverse=True)
+        later = _rows(ahead, cells)
+        earlier = motion.along.before(later[0], times[p]), motion.across.before(later[1], times[p])
+        own = _rows(forward.nodes[p][0], origins)
+        both = _rows(earlier, of_cell)
+        both = sets.common(both[0], own[0]), sets.common(both[1], own[1])
+        some = _something(both)
+        both, origins = _rows(both, some), origins[some]
+        count = len(forward.nodes[p][1])
+        united = (sets.together(both[0], origins, count), sets.together(both[1], origins, count))
+        result.append((united, np.bincount(origins, minlength=count) > 0))
+    return result[::-1]
+
+
+def _kept(graph: NavigationGraph, edges: Sequence[_Edges], final: _Way) -> list[NDArray[np.bool_]]:
+    """Edges, layer by layer, on a way of driven edges from the start to a goal."""
+    alive = np.zeros(len(graph.layers[-1].cells), dtype=bool)
+    alive[list(graph.goals)] = True
+    alive &= final.nodes[-1][1]
+    kept = []
+    for row, driven, (_, there) in zip(
+        edges[::-1], final.driven[::-1], final.nodes[-2::-1], strict=True
+    ):
+        edge = driven & alive[row.targets]
+        kept.append(edge)
+        alive = there & (np.bincount(row.origins[edge], minlength=len(there)) > 0)
+    return kept[::-1]
+
+
+def _without(
+    graph: NavigationGraph,
+    bounds: MotionBounds,
+    kept: Sequence[NDArray[np.bool_]],
+    final: _Way,
+) -> NavigationGraph:
+    """The graph with these edges alone, and with the cells at their ends."""
+    edge_rows = [_by_origin(rows, keep) for rows, keep in zip(graph.successors, kept, strict=True)]
+    ends: list[set[int]] = [{graph.start}]
+    for rows, used in zip(graph.successors, edge_rows, strict=True):
+        ends.append({j for row, use in zip(rows, used, strict=True) for j in compress(row, use)})
+    if not all(ends):
+        # No way on: the cells stay as far as some motion gets.
+        ends = [
+            here | set(np.flatnonzero(there).tolist())
+            for here, (_, there) in zip(ends, final.nodes, strict=True)
+        ]
+    numbers = [{old: new for new, old in enumerate(sorted(here))} for here in ends]
+    layers = tuple(
+        _only(layer, number) for layer, number in zip(graph.layers, numbers, strict=True)
+    )
+    successors, margins = [], []
+    for p, used in enumerate(edge_rows):
+        onward = numbers[p + 1]
+        successors.append(
+            tuple(
+                tuple(onward[j] for j in compress(graph.successors[p][i], used[i]))
+                for i in numbers[p]
+            )
+        )
+        margins.append(tuple(tuple(compress(graph.margins[p][i], used[i])) for i in numbers[p]))
+    return replace(
+        graph,
+        bounds=bounds,
+        reach=tuple(
+            tuple(_reach(pair, i) if there[i] else None for i in number)
+            for number, (pair, there) in zip(numbers, final.nodes, strict=True)
+        ),
+        layers=layers,
+        successors=tuple(successors),
+        margins=tuple(margins),
+        start=numbers[0][graph.start],
+        goals=tuple(numbers[-1][goal] for goal in graph.goals if goal in numbers[-1]),
+    )
+
+
+def _by_origin(rows: Sequence[Sequence[int]], kept: NDArray[np.bool_]) -> list[list[bool]]:
+    used = iter(kept.tolist())
+    return [[next(used) for _ in row] for row in rows]
+
+
+def _only(layer: Layer, number: dict[int, int]) -> Layer:
+    return replace(
+        layer,
+        cells=tuple(layer.cells[i] for i in number),
+        neighbours=tuple(
+            tuple(number[j] for j in layer.neighbours[i] if j in number) for i in number
+        ),
+    )
+
+
+def _reach(pair: _Pair, i: int) -> Reach:
+    (s_low, s_high), (d_low, d_high) = pair
+    along, across = (
+        [(float(low[i, k]), float(high[i, k])) for k in (0, 1)]
+        for low, high in ((s_low, s_high), (d_low, d_high))
+    )
+    return Reach(along[0], across[0], along[1], across[1])

@@ -1,0 +1,138 @@
+"""Trajectories of listed maneuvers: within bounds, in their cells, and overlapping nobody."""
+
+from itertools import pairwise
+from math import ceil
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from rulec import RulecError, compile_rulebook, find_maneuvers, load_scenario
+from rulec.scenario import Box, ConstantAcceleration, Ego, MotionBounds, Obstacle, Road, Scenario
+from rulec.scenario.motion import swept
+from support.builders.recordings import RECORDINGS
+from support.generators.driven_motions import cells_of
+from support.generators.random_scenarios import scenarios
+
+PAPER = compile_rulebook("esterle2019")
+ROAD = Road((-50.0, 500.0), (-2.0, 2.0, 6.0))
+MOVING = Ego(0.0, 0.0, 4.0, 1.8, speed=10.0, bounds=MotionBounds())
+
+
+def at(states, time):
+    """Place at a time, by the accelerations of the piece that it is in."""
+    for (t0, s0, v0, d0, w0), (t1, _, v1, _, w1) in pairwise(states):
+        if time <= t1 + 1e-9:
+            x, piece = time - t0, t1 - t0
+            return (
+                s0 + v0 * x + (v1 - v0) / piece * x * x / 2,
+                d0 + w0 * x + (w1 - w0) / piece * x * x / 2,
+            )
+    raise AssertionError(time)
+
+
+def check_driven(graph, maneuver):
+    scenario, bounds = graph.scenario, graph.bounds
+    states = maneuver.trajectory.states
+    ego = scenario.ego
+    assert states[0][1:] == pytest.approx((ego.s, states[0][2], ego.d, ego.lateral_speed), abs=1e-5)
+    for (t0, _, v0, _, w0), (t1, _, v1, _, w1) in pairwise(states):
+        assert -bounds.braking - 1e-3 <= (v1 - v0) / (t1 - t0) <= bounds.acceleration + 1e-3
+        assert abs(w1 - w0) / (t1 - t0) <= bounds.lateral_acceleration + 1e-3
+        assert -1e-5 <= v1 <= max(bounds.speed, v0) + 1e-5
+    for layer, node in zip(graph.layers, maneuver.nodes, strict=True):
+        s, d = at(states, layer.start_s)
+        cell = layer.cells[node]
+        assert any(
+            b.s_min - 1e-4 <= s <= b.s_max + 1e-4 and b.d_min - 1e-4 <= d <= b.d_max + 1e-4
+            for b in cell.boxes
+        )
+    until = states[-1][0]
+    for k in range(ceil(until / 0.05 + 1e-9)):
+        s, d = at(states, k * 0.05)
+        # What is recorded of ego's body, less the rounding of the states.
+        half, side = max(ego.length / 2 - 1e-3, 0), max(ego.width / 2 - 1e-3, 0)
+        body = Box(s - half, s + half, d - side, d + side)
+        for obstacle in scenario.obstacles:
+            there = swept(obstacle, k * 0.05, k * 0.05)
+            assert there is None or not there.overlaps(body), (k * 0.05, obstacle.id)
+
+
+@given(scenarios(most=2), st.floats(0, 15))
+def test_random_scenarios(scenario, speed):
+    ego = Ego(scenario.ego.s, scenario.ego.d, speed=speed, bounds=MotionBounds())
+    start = Scenario("r", scenario.road, ego, scenario.obstacles, horizon_s=2.0, step_s=0.5)
+    try:
+        found = find_maneuvers(start, PAPER)
+    except RulecError:
+        assume(False)
+    for maneuver in found.cheapest(1):
+        check_driven(found.graph, maneuver)
+
+
+FILES = sorted(RECORDINGS.glob("*.xml"))
+
+
+@pytest.mark.skipif(not FILES, reason="CommonRoad's scenarios are not here")
+@pytest.mark.parametrize(
+    "file",
+    [*FILES[:2], *(pytest.param(file, marks=pytest.mark.long) for file in FILES[2:])] or [""],
+    ids=lambda file: getattr(file, "stem", ""),
+)
+def test_recorded_scenes(file):
+    found = find_maneuvers(load_scenario(file), PAPER)
+    for maneuver in found.cheapest(3):
+        check_driven(found.graph, maneuver)
+        assert maneuver.trajectory.greatest_braking <= found.graph.bounds.braking + 1e-6
+
+
+def car(name, s, speed, d=0.0):
+    return Obstacle(name, "vehicle", 4.0, 1.8, ConstantAcceleration(s, d, speed))
+
+
+def test_who_goes_on_at_its_speed_costs_nothing():
+    found = find_maneuvers(Scenario("e", ROAD, MOVING, step_s=0.5), PAPER)
+    (first,) = found.cheapest(1)
+    assert first.cost == pytest.approx(0.0, abs=1e-6)
+    assert first.trajectory.states[-1][:3] == pytest.approx((4.0, 40.0, 10.0), abs=1e-4)
+
+
+def test_it_brakes_behind_one_that_stands():
+    # 20 m from ego's nose to its rear on a single lane: 10 m/s are gone with 2.5 m/s².
+    road = Road((-50.0, 500.0), (-2.0, 2.0))
+    scene = Scenario("b", road, MOVING, (car("c", 24.0, 0.0),), step_s=0.5)
+    found = find_maneuvers(scene, PAPER)
+    (first,) = found.cheapest(1)
+    assert 2.4 <= first.trajectory.greatest_braking <= 4.0
+    assert first.trajectory.states[-1][1] <= 24.0 - 4.0
+    check_driven(found.graph, first)
+
+
+def test_nothing_is_listed_that_nobody_can_drive():
+    # 1 m to the rear of one that stands, at 10 m/s: the point-like cells have a way, no car has.
+    road = Road((-50.0, 500.0), (-2.0, 2.0))
+    scene = Scenario("n", road, MOVING, (car("c", 5.5, 0.0),), step_s=0.5)
+    found = find_maneuvers(scene, PAPER, bounds="none")
+    assert found.cheapest(1)
+    assert find_maneuvers(scene, PAPER).cheapest(1) == []
+
+
+def test_costs_come_nearer_than_the_least_that_was_known():
+    scene = Scenario("l", ROAD, MOVING, (car("c", 30.0, 4.0),), step_s=0.5)
+    found = find_maneuvers(scene, PAPER)
+    listed = found.cheapest(5)
+    assert [one.cost for one in listed] == sorted(one.cost for one in listed)
+    unit, weights = found.paths.cost_unit, found.paths.weights
+    for one in listed:
+        least = 0
+        for p, (i, j) in enumerate(pairwise(one.nodes)):
+            least += weights[p][i][found.paths.successors[p][i].index(j)]
+        assert float(least * unit) <= one.cost + 1e-9
+        assert one.cost == pytest.approx(one.changes + one.trajectory.cost.total)
+
+
+def test_the_same_cells_hold_it():
+    found = find_maneuvers(Scenario("e", ROAD, MOVING, step_s=0.5), PAPER)
+    (first,) = found.cheapest(1)
+    s, d = at(first.trajectory.states, 2.0)
+    assert first.nodes[4] in cells_of(found.graph.layers[4], s, d)
