@@ -145,7 +145,7 @@ def test_the_most_specific_type_that_a_rulebook_knows(answer, tmp_path, types, k
         f"rulebook book\n{types}\nposition(o: {kind}) is one of b, f, l, r\n"
         f"hard rule A (o: {kind}) {{ require always b(o) }}\n"
     )
-    status, out, err = answer("-r", str(book), "--json")
+    status, out, err = answer("-r", str(book), "--json", "--bounds", "none")
     assert (status, err) == (0, "")
     assert json.loads(out)["satisfying"] == 1
 
@@ -156,7 +156,7 @@ def test_what_a_rulebook_cannot_speak_of_is_in_the_way_all_the_same(answer, tmp_
         "rulebook book\ntype cat\nposition(o: cat) is one of b, f, l, r\n"
         "hard rule A (o: cat) { require always b(o) }\n"
     )
-    status, out, err = answer("-r", str(book), "--json")
+    status, out, err = answer("-r", str(book), "--json", "--bounds", "none")
     assert (status, err) == (0, "")
     assert json.loads(out)["nodes"] == 18
 
@@ -168,7 +168,7 @@ def test_signals_that_mean_something_else_are_left_out(answer, tmp_path):
         "quantity congested in m default 3\nhard rule A { require always "
         "(wide and congested > 2 m) }\n"
     )
-    status, out, err = answer("-r", str(book), "--json")
+    status, out, err = answer("-r", str(book), "--json", "--bounds", "none")
     assert (status, err) == (0, "")
     found = json.loads(out)
     assert (found["scene"]["derived"], found["by_default"]) == ({}, ["lanes", "congested"])
