@@ -36,7 +36,8 @@ class NavigationGraph:
     order; ``margins[p][i]`` their time margins in layers, None for staying. ``objects`` are those
     that are on the road at some time, ``alternatives`` as less likely predictions have them, and
     ``present`` the first and last layer of each. With ``bounds`` of ego's motion its cells and
-    edges are those that can be driven, and ``reach[p][i]`` bounds ego's place and speed in cell i.
+    edges are those that can be driven, ``reach[p][i]`` bounds ego's place and speed in cell i, and
+    ``driving[p][i]`` is what being there adds to a path's cost at least.
     """
 
     __repr__ = short_repr
@@ -56,6 +57,7 @@ class NavigationGraph:
     goals: tuple[int, ...]
     bounds: MotionBounds | None = None
     reach: tuple[tuple[Reach | None, ...], ...] = ()
+    driving: tuple[tuple[float, ...], ...] = ()
 
     @property
     def last_layer(self) -> int:
@@ -133,9 +135,7 @@ class NavigationGraph:
         rows = tuple(_weights(margins, whole) for margins in self.margins)
         if self.bounds is None:
             return rows
-        from rulec.partition.motion.least_costs import least_costs  # with bounds alone
-
-        least = least_costs(self, unit)
+        least = [[int(Fraction(cost) / unit) for cost in row] for row in self.driving]
         return tuple(
             tuple(
                 tuple(weight + least[p + 1][j] for weight, j in zip(row, onward, strict=True))

@@ -13,7 +13,7 @@ is ours.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise, product
 from typing import TypedDict, get_args
@@ -34,6 +34,13 @@ from rulec.scenario.time_grid import Timing, timing
 
 FINEST_S = Fraction(1, 20)
 """Where no path is left the step of a recorded scene is halved, down to this (s)."""
+
+
+COMFORTABLE = 4.0
+"""And where no path is left that takes no more acceleration and braking than this (m/s²),"""
+
+COMFORTABLE_S = Fraction(1, 8)
+"""down to this (s)."""
 
 
 class GraphOptions(TypedDict, total=False):
@@ -96,11 +103,29 @@ def navigation_graph(
     free = step_that_leaves_room(scenario, times, partition, extent)
     if free is not None:
         times = _in_steps_of(free.step, times)
-    first = graph = _cut(plan, times)
-    while not graph.leads_to_a_goal and times.step / 2 >= FINEST_S:
-        times = _in_steps_of(times.step / 2, times)
+    first = alive = None
+    while times.step >= FINEST_S:
         graph = _cut(plan, times)
-    return graph if graph.leads_to_a_goal else first
+        first = first or graph
+        if graph.leads_to_a_goal:
+            alive = alive or graph
+            if times.step < COMFORTABLE_S or _comfortable(plan, times):
+                return graph if times.step >= COMFORTABLE_S else alive
+        times = _in_steps_of(times.step / 2, times)
+    return alive or first or _cut(plan, times)
+
+
+def _comfortable(plan: _Plan, times: Timing) -> bool:
+    """Whether, if ego's motion has bounds, some way takes no more than ``COMFORTABLE``."""
+    own = plan.bounds
+    if own is None:
+        return True
+    limits = replace(
+        own,
+        acceleration=min(own.acceleration, COMFORTABLE),
+        braking=min(own.braking, COMFORTABLE),
+    )
+    return _cut(replace(plan, bounds=limits), times).leads_to_a_goal
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
+from collections.abc import Sequence
 
-from rulec.partition.cell_graph import NavigationGraph
 from rulec.partition.cells.cell_model import Reach
 from rulec.scenario.scenario_model import Ego
 
@@ -15,23 +14,20 @@ PER_SPEED = 0.1
 """What a mean distance of 1 m/s from ego's speed costs."""
 
 
-def least_costs(graph: NavigationGraph, unit: Fraction) -> list[list[int]]:
-    """For each cell of each layer a share of the least cost of trajectories there, in units.
+def least_costs(
+    ego: Ego, reach: Sequence[Sequence[Reach | None]], step: float
+) -> tuple[tuple[float, ...], ...]:
+    """For each cell of each layer a share of the least cost of trajectories there.
 
     Who is away from where ego gets at its speed after t seconds, by x m, has accelerated by
     2 x / t² at some time and was faster or slower by x / t in the mean. A path costs at least what
     each of its cells tells, and so their mean, of which each has its share.
     """
-    last = len(graph.layers) - 1
-    horizon = last * graph.step_s
-    share = 1 / (last * float(unit)) if last else 0.0
-    return [
-        [
-            int(share * _least(graph.scenario.ego, reach, layer.start_s, horizon))
-            for reach in reaches
-        ]
-        for layer, reaches in zip(graph.layers, graph.reach, strict=True)
-    ]
+    last = max(len(reach) - 1, 1)
+    return tuple(
+        tuple(_least(ego, own, p * step, last * step) / last for own in row)
+        for p, row in enumerate(reach)
+    )
 
 
 def _least(ego: Ego, reach: Reach | None, time: float, horizon: float) -> float:

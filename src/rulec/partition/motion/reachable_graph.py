@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from rulec.partition.cell_graph import NavigationGraph
 from rulec.partition.cells.cell_model import Cell, Layer, Reach
 from rulec.partition.motion import reachable_sets as sets
+from rulec.partition.motion.least_costs import least_costs
 from rulec.partition.motion.reachable_sets import ROUNDING, AxisMotion, Sets
 from rulec.scenario import MotionBounds
 from rulec.scenario.scenario_model import Ego
@@ -258,13 +259,15 @@ def _without(
             )
         )
         margins.append(tuple(tuple(compress(graph.margins[p][i], used[i])) for i in numbers[p]))
+    reach = tuple(
+        tuple(_reach(pair, i) if there[i] else None for i in number)
+        for number, (pair, there) in zip(numbers, final.nodes, strict=True)
+    )
     return replace(
         graph,
         bounds=bounds,
-        reach=tuple(
-            tuple(_reach(pair, i) if there[i] else None for i in number)
-            for number, (pair, there) in zip(numbers, final.nodes, strict=True)
-        ),
+        reach=reach,
+        driving=least_costs(graph.scenario.ego, reach, graph.step_s),
         layers=layers,
         successors=tuple(successors),
         margins=tuple(margins),
