@@ -70,16 +70,18 @@ apt install python$version-venv)"
 }
 
 # Sets own_spot to the version of the Spot that python itself brings, where no wheel fits or none is
-# wanted.
+# wanted, and leave_wheel where none is to be installed: rulec then compiles with that Spot, or
+# without any.
 check_platform() {
-    own_spot=
+    own_spot= leave_wheel=
     if [ "$place" = wheel ] && [ -z "${RULEC_OWN_SPOT:-}" ]; then return; fi
+    case $place in Windows*) stop "rulec runs on Linux and macOS, and this is $place." ;; esac
+    leave_wheel=yes
     own_spot=$("$python" -E -c 'import spot; print(spot.version())' 2>/dev/null </dev/null) && return
     [ "$place" != wheel ] ||
         stop "RULEC_OWN_SPOT asks for a Spot of your own, but $python has none. Set RULEC_PYTHON to" \
             "the Python into which it was installed."
-    stop "Spot, which rulec compiles with, comes ready-made only for Linux on x86-64 with" \
-            "glibc 2.34 or newer, and this is $place. Install Spot from conda-forge (conda create" \
-            "-n rulec -c conda-forge python=3.12 spot) and set RULEC_PYTHON to that environment's" \
-            "python."
+    own_spot=
+    say "Spot comes ready-made only for Linux on x86-64 with glibc 2.34 or newer, and this is $place." \
+        "rulec compiles without it; for a Spot of your own see docs/installation.md."
 }

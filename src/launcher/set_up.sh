@@ -80,8 +80,7 @@ install_project() {
         return
     fi
     kept=$stamps/requirements.txt
-    # The wheel that a Spot from elsewhere stands for is left out.
-    awk -v own="$own_spot" '/^[^ #]/ { left_out = own != "" && /^spottl==/ } !left_out' \
+    awk -v leave="$leave_wheel" '/^[^ #]/ { left_out = leave != "" && /^spottl==/ } !left_out' \
         "$home/src/launcher/locks/python$version${extra:+-test}.txt" >"$kept" || return
     install_with --require-hashes -r "$kept" && install_with --no-deps --no-build-isolation -e . &&
         rm -f "$kept"

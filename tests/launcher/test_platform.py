@@ -1,4 +1,4 @@
-"""Where Spot's wheel does not fit, and how a Spot from conda-forge makes up for it."""
+"""Where Spot's wheel does not fit: rulec does without, or with a Spot from conda-forge."""
 
 import pytest
 
@@ -8,19 +8,26 @@ FOREIGN = {
     "Linux x86_64 with glibc 2.33": {"libc": "glibc 2.33"},
     "Linux x86_64 without glibc": {"libc": None},
     "Linux x86_64 (32-bit Python) with glibc 2.36": {"maxsize": 2**31 - 1},
-    "Windows AMD64": {"system": "Windows", "machine": "AMD64", "libc": None},
 }
 
 
 @pytest.mark.parametrize("place", FOREIGN)
-def test_platform_without_wheel_is_refused_with_the_way_out(checkout, place):
+def test_platform_without_wheel_does_without_spot(checkout, place):
     checkout.add_tool("python3", **FOREIGN[place])
     result = checkout.call()
+    assert result.returncode == 0
+    assert f"this is {place}. rulec compiles without it" in result.stderr
+    assert "--system-site-packages" not in checkout.calls("venv")[0]["arguments"]
+    needed = checkout.calls("pip")[0]["requirements"]
+    assert "spottl" not in needed
+    assert "\ndd==" in needed
+
+
+def test_windows_is_refused(checkout):
+    checkout.add_tool("python3", system="Windows", machine="AMD64", libc=None)
+    result = checkout.call()
     assert result.returncode == 2
-    assert result.stderr.count("\n") == 1
-    assert f"this is {place}." in result.stderr
-    assert "conda-forge" in result.stderr
-    assert "RULEC_PYTHON" in result.stderr
+    assert result.stderr == "rulec: rulec runs on Linux and macOS, and this is Windows AMD64.\n"
     assert checkout.calls() == []
     assert not checkout.environment.exists()
 
