@@ -75,7 +75,7 @@ def values():
     found.write_text("".join(f"{json.dumps(row)}\n" for row in (drive_row, rule_row)))
     rates = rulec.rates_of_findings(found)
     moments = next(rulec.find("(v: vehicle) b(v)", traces, "esterle2019"))
-    world = rulec.TrafficWorld(recording, judged.egos[0], 5.0)
+    world = rulec.TrafficWorld(recording, judged.egos[0])
     scores = rulec.score(world.past[None, -2:] + (1.0, 0, 0, 0), world, "de", world.past)
     known = [
         *(rulec.Session(), mistake, mistake.place, error, rulec.explain("R0104")),

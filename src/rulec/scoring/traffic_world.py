@@ -42,7 +42,9 @@ class TrafficWorld:
     ego: str = ""
     now_s: float | None = None
     wanted: RequestedDrives = field(default_factory=RequestedDrives)
-    _prepared: dict[object, CandidateDrives] = field(default_factory=dict, init=False, repr=False)
+    _prepared: dict[object, CandidateDrives] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def __post_init__(self) -> None:
         name = self.ego or self.recording.ego
