@@ -83,3 +83,33 @@ def test_a_saved_monitor_may_be_its_first_line(given, folder):
         "R0510"
         in given('{"state": {"p": false}}\n', "monitor", "./other.rules", "--restore", "-")[2]
     )
+
+
+LAW = "# Act\n\n### Article 1 Keeping right\n\n(1) Keep right.\n"
+
+
+@pytest.mark.parametrize(
+    ("data", "arguments", "says"),
+    [
+        (LAW, ["audit", "./other.rules", "--law", "-"], ""),
+        ("# no articles", ["audit", "./other.rules", "--law", "-"], "standard input 2.rules"),
+        ("{}", ["verify-compiled", "-"], "standard input.json"),
+        ("{}", ["maneuvers", "s1", "-r", "./other.rules", "--after", "-"], "standard input.json"),
+    ],
+)
+def test_other_files_may_come_by_it_too(data, arguments, says, given):
+    status, _, err = given(data, *arguments)
+    assert (status, says in err) == (2 if says else 0, True), err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "why"),
+    [
+        (["rates", "-"], "by their file's name"),
+        (["fleet", "-", "-r", "./other.rules", "-o", "out"], "each process reads"),
+        (["find", "p", "t.jsonl", "-u", "-"], "found by its name"),
+    ],
+)
+def test_where_it_cannot_be_the_reason_is_said(arguments, why, given):
+    status, _, err = given("", *arguments)
+    assert (status, "`-` is standard input" in err, why in err) == (2, True, True), err

@@ -124,6 +124,8 @@ ANSWERED = {
     ),
     "a file that is called -": (
         "cli/test_output_options.py::test_the_minus_is_standard_input_and_output_whatever_files_are_called",
+        "cli/test_standard_input.py::test_other_files_may_come_by_it_too",
+        "cli/test_standard_input.py::test_where_it_cannot_be_the_reason_is_said",
     ),
     "a kill between two files of a set": (
         "files/test_files.py::test_a_set_that_was_killed_is_finished_or_undone_by_the_next",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, cast
@@ -58,8 +58,8 @@ def file_named(argument: str) -> str:
     return str(click.get_current_context().with_resource(_copied("standard input")))
 
 
-def read_as_rulebook(context: click.Context, _: click.Parameter, value: Any) -> Any:
-    """A callback of click: rulebooks, of which ``-`` is a copy of standard input.
+def read_as_file(context: click.Context, _: click.Parameter, value: Any) -> Any:
+    """A callback of click: names of files, of which ``-`` is a copy of standard input.
 
     Files that it refers to are looked for in the working folder.
 
@@ -73,6 +73,17 @@ def read_as_rulebook(context: click.Context, _: click.Parameter, value: Any) -> 
     name = context.with_resource(_in_place_of_a_file())
     named = tuple([name if own == STANDARD_INPUT else own for own in several])
     return named if isinstance(value, tuple) else named[0]
+
+
+def not_standard_input(why: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
+    """A callback of click that refuses ``-`` where standard input cannot be, saying why."""
+
+    def refused(_: click.Context, __: click.Parameter, value: Any) -> Any:
+        if STANDARD_INPUT in (value if isinstance(value, tuple) else (value,)):
+            raise click.BadParameter(f"`-` is standard input: {why}")
+        return value
+
+    return refused
 
 
 def refuse_twice(context: click.Context) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import islice
 from pathlib import Path
@@ -26,7 +26,16 @@ from rulec.trace.formats.trace_files import read_traces
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import choices
 
-Before: TypeAlias = Trace | Monitor | Mapping[str, Any]
+
+@dataclass(frozen=True, slots=True)
+class SavedPast:
+    """A monitor's snapshot, and the file that it was read from."""
+
+    saved: Mapping[str, Any]
+    place: SourceLocation
+
+
+Before: TypeAlias = Trace | Monitor | Mapping[str, Any] | SavedPast
 """A trace, a monitor that has taken one, or that monitor's snapshot."""
 
 
@@ -93,8 +102,7 @@ def _begun_before(
 def read_past(path: Path) -> Before:
     """Read the one trace of a file, or a monitor's snapshot. Raises RulecError."""
     if path.suffix == ".json":
-        saved: Mapping[str, Any] = read_saved(path)
-        return saved
+        return SavedPast(read_saved(path), SourceLocation(str(path)))
     return only_trace(read_traces(path), SourceLocation(str(path)))
 
 
@@ -126,6 +134,8 @@ def _monitor(
                 before.place,
             )
         return replay_trace(before, replace(rulebook, rules=rules)), before.place
+    if isinstance(before, SavedPast):
+        return Monitor.restore(rulebook, before.saved, before.place), before.place
     if not isinstance(before, Monitor):
         return Monitor.restore(rulebook, before), None
     known = {rule.name: rule.machine for rule in before.rulebook.rules}

@@ -14,7 +14,7 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.scenario_options import recording_options, recording_source
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.output import errors_told, open_session, put_answer, width_of
-from rulec.cli.standard_input import read_as_rulebook
+from rulec.cli.standard_input import read_as_file
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 @click.option(
     "--compare",
     metavar="OLD",
-    callback=read_as_rulebook,
+    callback=read_as_file,
     shell_complete=complete_rulebooks,
     help="Say what has changed since an older audit (.json), or against another rulebook.",
 )
@@ -49,12 +49,14 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--law",
-    type=click.Path(exists=True, dir_okay=False),
+    type=click.Path(dir_okay=False),
+    callback=read_as_file,
     help="Look for what the rules of one RULEBOOK cite in the text of its law (Markdown or plain).",
 )
 @click.option(
     "--law-now",
-    type=click.Path(exists=True, dir_okay=False),
+    type=click.Path(dir_okay=False),
+    callback=read_as_file,
     help="With --law: name the rules that rest on what has changed since in this text.",
 )
 @recording_options

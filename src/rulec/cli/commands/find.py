@@ -22,7 +22,7 @@ from rulec.cli.options.output_options import (
     refuse_overwriting,
 )
 from rulec.cli.output import answer_lines, output_stream, print_written
-from rulec.cli.standard_input import standard_input
+from rulec.cli.standard_input import not_standard_input, standard_input
 from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.report.findings.diagnostics_text import Complaints
@@ -45,6 +45,7 @@ FORMATS = {**endings_of("text", "json"), **TABLES}
     "vocabulary",
     default="",
     metavar="NAME",
+    callback=not_standard_input("a vocabulary is found by its name; give a rulebook, as `-r -`"),
     help="The vocabulary whose words the formula is in.  [default: road, or the rulebook's]",
 )
 @shared.rulebook_option(

@@ -12,6 +12,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.output import read_machines
+from rulec.cli.standard_input import not_standard_input
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_result, progress
 
@@ -20,7 +21,13 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("inputs", nargs=-1, required=True, metavar="INPUT...")
+@click.argument(
+    "inputs",
+    nargs=-1,
+    required=True,
+    metavar="INPUT...",
+    callback=not_standard_input("each process reads its part of a file by itself"),
+)
 @shared.rulebook_option()
 @click.option(
     "-o",

@@ -9,6 +9,7 @@ import click
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.output import output_stream, print_written, put_answer
+from rulec.cli.standard_input import not_standard_input
 
 if TYPE_CHECKING:
     from rulec.rates.drive_counts import GroupKey
@@ -25,7 +26,13 @@ def _confidence(_: click.Context, __: click.Parameter, value: float) -> float:
 
 
 @click.command()
-@click.argument("files", nargs=-1, required=True, metavar="FINDINGS...")
+@click.argument(
+    "files",
+    nargs=-1,
+    required=True,
+    metavar="FINDINGS...",
+    callback=not_standard_input("findings say by their file's name what form they have"),
+)
 @click.option(
     "--by",
     multiple=True,

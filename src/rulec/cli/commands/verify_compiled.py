@@ -10,13 +10,14 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.output import errors_told, put_answer
+from rulec.cli.standard_input import read_as_file
 
 if TYPE_CHECKING:
     from rulec.validation.file_proof import RuleProof
 
 
 @click.command()
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.argument("files", nargs=-1, required=True, metavar="FILE...", callback=read_as_file)
 @output_options(endings_of("text", "json"), "what is proved")
 def command(files: tuple[str, ...], to: Output) -> int:
     """Prove that every table of compiled rulebooks does what its formula says.

@@ -14,7 +14,7 @@ from click.core import ParameterSource
 from rulec.batch.jobs import Jobs, chosen_jobs
 from rulec.cli.options.output_options import endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.standard_input import read_as_rulebook
+from rulec.cli.standard_input import read_as_file
 from rulec.report.findings.finding_formats import FORMATS
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
@@ -63,9 +63,7 @@ def file_option(name: str, help_text: str) -> Callable[[Decorated], Decorated]:
 
 
 def _beside(context: click.Context, parameter: click.Parameter, value: str | None) -> Path | None:
-    if value == "-":
-        raise click.BadParameter("`-` is standard input; write it to a file first")
-    return None if value is None else Path(value)
+    return None if value is None else Path(read_as_file(context, parameter, value))
 
 
 def _seconds(
@@ -111,7 +109,7 @@ def only_sources(rulebooks: Iterable[str], lack: str) -> None:
 
 
 rulebook_argument = click.argument(
-    "rulebook", callback=read_as_rulebook, shell_complete=complete_rulebooks
+    "rulebook", callback=read_as_file, shell_complete=complete_rulebooks
 )
 
 
@@ -124,7 +122,7 @@ def rulebooks_argument(
         nargs=-1,
         required=required,
         metavar=metavar,
-        callback=read_as_rulebook,
+        callback=read_as_file,
         shell_complete=complete_rulebooks,
     )
 
@@ -139,7 +137,7 @@ def rulebook_option(
         required=required,
         metavar="R",
         help=help_text,
-        callback=read_as_rulebook,
+        callback=read_as_file,
         shell_complete=complete_rulebooks,
     )
 
