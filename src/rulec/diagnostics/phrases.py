@@ -10,21 +10,24 @@ _MOST_SEARCHED = 500
 """Among more names the search takes too long; only those with the same letters are found then."""
 
 
-def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """The known name closest to ``name``, ignoring case, or None."""
+def nearest_name(name: str, known: Iterable[str], alike: float = 0.6) -> str | None:
+    """The known name closest to ``name``, ignoring case, or None.
+
+    ``alike`` is the least share of letters that they have in common, in the same order.
+    """
     by_folded: dict[str, str] = {}
     for candidate in known:
         by_folded.setdefault(candidate.casefold(), candidate)
     same = by_folded.get(name.casefold())
     if same is not None or len(by_folded) > _MOST_SEARCHED:
         return same
-    close = get_close_matches(name.casefold(), list(by_folded), n=1, cutoff=0.6)
+    close = get_close_matches(name.casefold(), list(by_folded), n=1, cutoff=alike)
     return by_folded[close[0]] if close else None
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
+def did_you_mean(name: str, known: Iterable[str], alike: float = 0.6) -> str:
     """Question that names the nearest known name; empty if none is close."""
-    near = nearest_name(name, known)
+    near = nearest_name(name, known, alike)
     return "" if near is None else f"did you mean `{near}`?"
 
 

@@ -77,6 +77,11 @@ def topics_in(language: str) -> Mapping[str, str]:
     return topics
 
 
+def synonyms_of_the_field() -> Mapping[str, Sequence[str]]:
+    """The words of the vocabularies that ship, and how others say the same, in any language."""
+    return _file("synonyms.toml")
+
+
 @cache
 def _file(name: str) -> Mapping[str, Any]:
     path = rulebooks_folder() / "vocabulary" / "phrases" / name

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named, nearest_name
 from rulec.diagnostics.code import Code
 from rulec.rulebook.names.symbol_table import SymbolTable
+from rulec.rulebook.names.word_meanings import DescribedWord, offer
+from rulec.rulebook.vocabulary_phrases import phrases_in
 from rulec.syntax import tree
 from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS
 from rulec.vocabulary import Enumeration, Quantity, Signal
@@ -108,6 +111,9 @@ NUMBER_OR_FORMULA = Code(
     "hard rule r { require always not speed > 0 }\n",
 )
 
+_ALIKE = 0.75
+"""How alike a name is to what it is a slip of; what is less alike more often means another word."""
+
 _ATOM = "expected a signal or a value"
 _GLUED = re.compile(rf"([{PREFIX_LETTERS}]+)(\w+)")
 _GLUED_BINARY = re.compile(rf"(\w+?)([{INFIX_LETTERS}])(\w+)")
@@ -161,12 +167,34 @@ def _unknown(
     else:
         way_out = (
             ("" if use.arguments else _short_form(name, symbols, list(variables)))
-            or did_you_mean(name, [*atoms, *quantities, *others])
+            or did_you_mean(name, [*atoms, *quantities, *others], _ALIKE)
+            or _by_meaning(name, [*atoms, *quantities], symbols)
             or f"declare it, such as `signal {_as_used(use, variables)}`, "
             "or `use` a vocabulary that has it"
         )
     return UNKNOWN_NAME.at(
         use.name.span, f"nothing is called `{name}`", expected=_ATOM, help=way_out
+    )
+
+
+def _by_meaning(name: str, known: Sequence[str], symbols: SymbolTable) -> str:
+    """Words of the vocabularies that ship which mean what a name says."""
+    vocabularies = {file.name for file in symbols.of_vocabularies}
+    in_english, *others = (
+        {
+            word: text
+            for file in vocabularies
+            for word, text in phrases_in(Path(file).stem, language).items()
+        }
+        for language in ("en", "de", "fr")
+    )
+    return offer(
+        name,
+        tuple(
+            DescribedWord(word, in_english[word], tuple(other.get(word, "") for other in others))
+            for word in known
+            if word in in_english
+        ),
     )
 
 

@@ -7,6 +7,7 @@ from typing import Final
 
 from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named
 from rulec.diagnostics.code import Code
+from rulec.rulebook.names.word_meanings import DescribedWord, offer
 from rulec.syntax import tree
 from rulec.vocabulary.units import known_unit_names, unit_refusal
 
@@ -131,7 +132,9 @@ def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
         name.span,
         f"there is no type `{name.text}`",
         expected="expected a type",
-        help=did_you_mean(name.text, known) or way_out,
+        help=did_you_mean(name.text, known)
+        or offer(name.text, tuple(map(DescribedWord, known)))
+        or way_out,
     )
 
 

@@ -1,0 +1,73 @@
+"""Names that nothing has, and the words of a vocabulary that mean what they say."""
+
+import re
+
+import pytest
+
+from rulec.rulebook.loader import diagnose
+from rulec.rulebook.names.word_meanings import DescribedWord, offer
+
+WORDS = (
+    DescribedWord("crossing_zone", "ego [is|is not] on or at a pedestrian crossing"),
+    DescribedWord("junction_zone", "ego [is|is not] in or at a junction"),
+    DescribedWord("motorway", "the road [is|is not] a motorway", ("eine Autobahn",)),
+    DescribedWord("raining", "rain [falls|does not fall]"),
+    DescribedWord("limit", "the signposted speed limit"),
+    DescribedWord("speed", "ego's speed"),
+    DescribedWord("near_indicator", "ego [indicates|does not indicate] to the near side"),
+    DescribedWord("far_indicator", "ego [indicates|does not indicate] to the far side"),
+    DescribedWord("give_way_sign", "a give-way sign [is|is not] for ego"),
+    DescribedWord("overtaking", "ego [overtakes|does not overtake]"),
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("crosswalk_ahead", ["crossing_zone"]),
+        ("onZebrastreifen", ["crossing_zone"]),
+        ("at_intersection", ["junction_zone"]),
+        ("freeway", ["motorway"]),
+        ("is_snowing", ["raining"]),
+        ("speeding", ["limit"]),
+        ("velocity", ["speed"]),
+        ("yield_sign", ["give_way_sign"]),
+        ("passes", ["overtaking"]),
+        ("blinker", ["near_indicator", "far_indicator"]),
+        ("driver_drunk", []),
+        ("sign_of_zodiac", []),
+        ("speed_camera_flash_lamp", []),
+        ("in_the", []),
+        ("", []),
+    ],
+)
+def test_words_by_what_they_mean(name, words):
+    assert re.findall(r"`(\w+)`", offer(name, WORDS)) == words
+
+
+def test_a_word_is_offered_with_its_phrase():
+    assert offer("crosswalk", WORDS) == (
+        "did you mean `crossing_zone` (ego is on or at a pedestrian crossing)?"
+    )
+    assert offer("crosswalk", ()) == ""
+
+
+@pytest.mark.parametrize(
+    ("formula", "way_out"),
+    [
+        ("autobahn", "did you mean `motorway` (the road is a motorway)?"),
+        ("motorwai", "did you mean `motorway`?"),
+        ("is_speeding", "words that may mean it: `limit` (the signposted speed limit), `minimum_"),
+        ("driver_drunk", "declare it, such as `signal driver_drunk`"),
+    ],
+)
+def test_check_offers_them(formula, way_out):
+    text = f"rulebook a\nuse road\nhard rule r {{ require never {formula} }}\n"
+    (mistake,) = diagnose("a.rules", text.encode()).findings
+    assert mistake.help.startswith(way_out)
+
+
+def test_check_offers_types():
+    text = "rulebook a\nuse road\nhard rule r (l: lorry) { require never beside(l) }\n"
+    (mistake,) = diagnose("a.rules", text.encode()).findings
+    assert mistake.help == "did you mean `truck`?"
