@@ -40,6 +40,12 @@ def test_each_rule_says_where_it_comes_from(name: str) -> None:
 
 
 @of_every_book
+def test_nothing_is_verified_of_which_a_part_was_not_read(name: str) -> None:
+    for rule in read(name).rulebook.rules:
+        assert rule.certainty != "verified" or "memory" not in rule.source, rule.name
+
+
+@of_every_book
 def test_a_book_says_whose_law_it_is_and_on_which_day(name: str) -> None:
     rulebook = read(name).rulebook
     assert all((rulebook.title, rulebook.law, rulebook.as_of, rulebook.traffic))
