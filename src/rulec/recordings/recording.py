@@ -224,6 +224,10 @@ class Weather:
     night: bool | None = None
 
 
+HEADINGS = "headings"
+"""What a recording is complete in if ego's headings are known apart from the way that it moves."""
+
+
 class StatedError(NamedTuple):
     """The radius of the areas (m), and half the intervals of speeds (m/s), that a file says."""
 

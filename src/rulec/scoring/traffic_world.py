@@ -14,7 +14,7 @@ from rulec.extraction.candidate_drives import CandidateDrives
 from rulec.extraction.selection import RequestedDrives, chosen_side
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.encodings.xml_element import LARGEST
-from rulec.recordings.recording import Participant, Recording
+from rulec.recordings.recording import HEADINGS, Participant, Recording
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 from rulec.recordings.tracks.derived_motion import accelerations_of
@@ -85,11 +85,8 @@ class TrafficWorld:
         Ego is the last of its participants. Raises RulecError R0780.
         """
         future = _numbers("a candidate", candidate, 2)
-        return replace(
-            self.recording,
-            participants=(*self._others, self.body_along(future, self.past_of(after))),
-            ego=self.ego,
-        )
+        body = self.body_along(future, self.past_of(after))
+        return replace(self._with_headings, participants=(*self._others, body), ego=self.ego)
 
     def past_of(self, after: ArrayLike | None) -> NDArray[float64]:
         """What was before as an array, empty for nothing. Raises RulecError R0780."""
@@ -129,12 +126,17 @@ class TrafficWorld:
         span = min(first, low), max(last, high)
         key = side, mirrored, span
         if key not in self._prepared:
-            recording = replace(self.recording, participants=(*self._others, self._body))
+            recording = replace(self._with_headings, participants=(*self._others, self._body))
             if mirrored:
                 recording = mirrored_recording(recording)
             self._prepared.clear()
             self._prepared[key] = CandidateDrives(recording, side, self.wanted.thresholds, span)
         return self._prepared[key], mirrored
+
+    @cached_property
+    def _with_headings(self) -> Recording:
+        # Who plans a future knows which way ego looks in it
+        return replace(self.recording, complete=self.recording.complete | {HEADINGS})
 
     @cached_property
     def _body(self) -> Participant:

@@ -10,6 +10,7 @@ from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, latest
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.recordings.recording import HEADINGS
 
 _SIDES = ("own_side", "oncoming_side", "wrong_way")
 
@@ -72,7 +73,7 @@ def _jumps(heading: Floats) -> bool:
 
 def _tells_headings(context: DriveContext) -> bool:
     """False if ego's headings are no more than the directions in which it moved."""
-    if "arrivals" in context.recording.complete:
+    if not context.recording.complete.isdisjoint({"arrivals", HEADINGS}):
         return True
     x, y, heading = context.ego.x[0], context.ego.y[0], context.ego.heading[0]
     steps = np.hypot(np.diff(x), np.diff(y))
