@@ -15,6 +15,7 @@ from rulec.recordings import recording
 from rulec.report.findings.code_registry import all_codes
 from rulec.resource_limits import LIMITS, MOST_DIGITS
 from rulec.rulebook.arithmetic import size_limits
+from rulec.rulebook.files import source_walk
 from rulec.scenario import scenario_files, time_grid
 from rulec.scenario.toml import schema
 from rulec.syntax import scanner
@@ -26,6 +27,7 @@ FIXED = {
     "bytes of a rulebook or vocabulary": files.MAX_SOURCE_BYTES,
     "bytes of a law's text, of a saved audit": files.MAX_LAW_BYTES,
     "bytes of a compiled rulebook, of a saved monitor": files.MAX_SAVED_BYTES,
+    "folders inside one another that are walked for sources": source_walk.DEEPEST_FOLDER,
     "bytes of `rulec.toml`": files.MAX_SETTINGS_BYTES,
     "words and signs of a source": scanner.MAX_TOKENS,
     "operators, atoms and comparisons of a rule, definitions put in": size_limits.MOST_PARTS,

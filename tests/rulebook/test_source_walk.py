@@ -33,6 +33,16 @@ def found():
     return [str(path) for path in walked.paths], left, [one.code for one in walked.refused]
 
 
+def test_folders_without_end_are_left_alone_and_named(tree):
+    """Python's own walk takes a call for each level, and as many calls are a mistake of its own."""
+    deep = "/".join("d" * 250)
+    write(f"{deep}/b.rules")
+    write("d/d/c.rules")
+    sources, left, refused = found()
+    assert (sources, refused) == (["a.rules", "d/d/c.rules"], [])
+    assert left == {"/".join("d" * 201): "too deep"}
+
+
 def test_environments_hidden_folders_and_what_git_ignores_are_left_alone(tree):
     folders = ["venv", "node_modules", "env", ".venv", "out", "kept", "x/site-packages"]
     for folder in folders:

@@ -94,6 +94,22 @@ def test_a_row_of_csv_has_an_end(row, large, monkeypatch):
     assert "a row has more than" in refused.message
 
 
+def test_a_cell_of_parquet_has_an_end():
+    pyarrow = pytest.importorskip("pyarrow")
+    # As above.
+    from pyarrow import parquet
+
+    stream = io.BytesIO()
+    cell = pyarrow.array(["x" * 70_000_000])
+    parquet.write_table(
+        pyarrow.table({"trace": ["a"], "step": [0], "p": cell}), stream, compression="zstd"
+    )
+    assert len(stream.getvalue()) < 100_000
+    (refused,) = read(stream.getvalue(), "parquet")
+    assert (refused.code, refused.place.file) == ("R0509", "t")
+    assert "bytes unpacked" in refused.message
+
+
 def test_many_columns_are_few_enough():
     names = [f"p{number}" for number in range(200_000)]
     head, row = ",".join(names), ",".join(["true"] * len(names))

@@ -20,6 +20,9 @@ SUFFIX = ".rules"
 ENVIRONMENTS = frozenset({"__pypackages__", "node_modules", "site-packages", "venv"})
 """Folders of programs that others wrote; hidden ones such as ``.venv`` are left alone anyway."""
 
+DEEPEST_FOLDER = 200
+"""Folders so deep in one another are not entered."""
+
 _MARKS = ("pyvenv.cfg", "conda-meta")
 """A folder that has one of them is an environment of Python's, whatever it is called."""
 
@@ -44,9 +47,9 @@ class FoundSources:
 def sources_below(folder: str) -> FoundSources:
     """The sources in and below a folder, in order.
 
-    Hidden folders, environments and links to folders are not entered. What git ignores, and what
-    begins neither with `rulebook` nor with `vocabulary` is left alone. Links out of the tree, pipes
-    and devices are refused.
+    Hidden folders, environments, links to folders and what is very deep are not entered. What git
+    ignores, and what begins neither with `rulebook` nor with `vocabulary` is left alone. Links out
+    of the tree, pipes and devices are refused.
     """
     found = FoundSources()
     top = Path(os.path.abspath(folder))  # noqa: PTH100 - Path.absolute() keeps `..`
@@ -61,7 +64,8 @@ def sources_below(folder: str) -> FoundSources:
         files = ignored.pop(place)
         entered = []
         for name in sorted(folders):
-            if why := _why_not_entered(place / name, files):
+            deep = "too deep" if len(place.parts) - len(top.parts) >= DEEPEST_FOLDER else ""
+            if why := _why_not_entered(place / name, files) or deep:
                 if not name.startswith("."):
                     found.left_alone.append(LeftAlone(str(Path(here, name)), why))
                 continue

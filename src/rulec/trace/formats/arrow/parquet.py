@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 _ROWS_AT_ONCE = 1 << 17
 
+_LARGEST_COLUMN, _LARGE_CELL = 1 << 26, 1 << 10
+"""Bytes of a row group's column, beside those of cells that are long already."""
+
 _MARK = b"PAR1"
 """How Parquet begins and ends."""
 
@@ -54,6 +57,7 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
         schema = source.schema_arrow
         check_columns(schema.names, SourceLocation(file))
         check_types(schema, pyarrow, file)
+        _check_sizes(source.metadata, file)
         stream.seek(start)
         # Few texts are met again and again; told apart by codes they need not be compared.
         source = parquet.ParquetFile(stream, read_dictionary=_texts(schema, pyarrow))
@@ -71,6 +75,17 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     table = Table(tuple(schema.names), lambda value: value, lambda row: SourceLocation(file, row))
     problems = (pyarrow.ArrowException, OSError, ValueError)
     yield from cut(_pieces(source, problems, file), table, 1, SourceLocation(file))
+
+
+def _check_sizes(metadata: Any, file: str) -> None:
+    """Refuse cells that are decoded as a whole and take gigabytes, packed into a few bytes."""
+    for group in (metadata.row_group(number) for number in range(metadata.num_row_groups)):
+        for column in (group.column(number) for number in range(group.num_columns)):
+            if column.total_uncompressed_size > _LARGEST_COLUMN + _LARGE_CELL * group.num_rows:
+                size = column.total_uncompressed_size
+                message = f"the column `{column.path_in_schema}` has {size:,} bytes unpacked"
+                way_out = f"for {group.num_rows:,} rows that is too much: no cell is as long"
+                raise problem(message, SourceLocation(file), way_out)
 
 
 def _texts(schema: Any, pyarrow: Any) -> list[str]:
