@@ -1,11 +1,9 @@
 """Machines and automata of formulas: their whole language, their form, and which are the same."""
 
 import pytest
-import spot
 from hypothesis import given
 
 from rulec.automata.alphabet import reads_of
-from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import (
     Atom,
@@ -18,7 +16,10 @@ from rulec.logic.formula import (
     atoms_of,
 )
 from support.generators.random_formulas import VOCABULARY, formulas
+from support.oracles.installed_spot import spot, spot_bridge
 from support.oracles.past_in_spot import spot_automaton
+
+explore, in_hoa, translate = spot_bridge.explore, spot_bridge.in_hoa, spot_bridge.translate
 
 
 def machine_of(formula):

@@ -7,11 +7,10 @@ from fractions import Fraction
 from itertools import product
 
 import pytest
-import spot
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from rulec.automata import compiler, spot_bridge
+from rulec.automata import compiler
 from rulec.automata.alphabet import propositions_of
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRulebook
@@ -36,6 +35,7 @@ from rulec.trace import Trace
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.vocabulary import Vocabulary
 from support.generators.random_formulas import ATOMS, VOCABULARY, formulas, letters, words
+from support.oracles.installed_spot import spot, spot_bridge
 from support.oracles.past_in_spot import in_spot, spot_automaton
 
 X = Variable("x", "thing")

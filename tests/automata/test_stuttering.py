@@ -3,19 +3,20 @@
 from itertools import combinations, product
 
 import pytest
-import spot
 from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.automata.alphabet import reads_of
 from rulec.automata.compiler import compile_rulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, stutter_invariant
-from rulec.automata.spot_bridge import explore, translate
 from rulec.automata.tables import build_machine
 from rulec.monitoring.verify import run
 from rulec.rulebook.loader import load_rulebook, parse_rulebook
 from support.generators.random_formulas import ATOMS, VOCABULARY, formulas
+from support.oracles.installed_spot import spot, spot_bridge
 from support.oracles.past_in_spot import in_spot, spot_automaton
+
+explore, translate = spot_bridge.explore, spot_bridge.translate
 
 
 def machine_of(formula):

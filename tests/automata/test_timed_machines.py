@@ -1,13 +1,11 @@
 """Machines of formulas with bounds and numbers, and on finite words."""
 
 import pytest
-import spot
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rulec.automata.alphabet import knowledge, propositions_of, reads_of
 from rulec.automata.random_words import agrees, verdict
-from rulec.automata.spot_bridge import explore, in_hoa, translate
 from rulec.automata.tables import build_machine
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from support.generators.timed_formulas import (
@@ -17,7 +15,10 @@ from support.generators.timed_formulas import (
     letter_number,
     timed_formulas,
 )
+from support.oracles.installed_spot import spot, spot_bridge
 from support.oracles.past_in_spot import in_spot, is_easy, spot_automaton
+
+explore, in_hoa, translate = spot_bridge.explore, spot_bridge.in_hoa, spot_bridge.translate
 
 both_semantics = st.sampled_from(["stutter", "finite"])
 

@@ -1,9 +1,9 @@
 """``rulec compile`` as its user meets it."""
 
 import pytest
-import spot
 
 from rulec.cli.main import main
+from support.oracles.installed_spot import spot
 
 
 def test_files_and_their_contents(tmp_path, capsys):

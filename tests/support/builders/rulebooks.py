@@ -1,5 +1,7 @@
 """Rulebooks made in memory for tests of everything behind the language."""
 
+from hypothesis import reject
+
 from rulec.automata import compiler
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRulebook
 from rulec.automata.prefix_machines import prefix_machines
@@ -47,15 +49,19 @@ def rule(name, formula, *variables, strength="hard"):
 
 def compile_here(rulebook, step_s=None):
     """As the compiler does, without a process of its own: for tests with many small rulebooks."""
-    from rulec.automata import spot_bridge
-    from rulec.automata.compiler_jobs import answer_to
+    from rulec.automata.compiler_jobs import Failed, answer_to
+    from rulec.automata.worker.compiler_choice import choice
+    from rulec.automata.worker.compiler_worker import chosen
+
+    usual = chosen(choice())
 
     compiled = []
     for formula in compiler.lower(rulebook, step_s).rules:
         job = compiler._job(rulebook, formula, cpu_limit_s=5)
-        compiled.append(
-            compiler._compiled(formula.rule, formula.step_s, answer_to(job, spot_bridge.COMPILER))
-        )
+        answer = answer_to(job, usual)
+        if answer == Failed("reach"):
+            reject()
+        compiled.append(compiler._compiled(formula.rule, formula.step_s, answer))
     return CompiledRulebook(
         rulebook.name,
         rulebook.vocabulary,
@@ -65,7 +71,7 @@ def compile_here(rulebook, step_s=None):
         "",
         (),
         "",
-        spot_bridge.VERSION,
+        usual.version,
         semantics=rulebook.semantics,
         levels=rulebook.levels,
         priorities=rulebook.priorities,

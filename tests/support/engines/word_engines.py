@@ -1,12 +1,12 @@
 """Engines that judge a word of letters, which the second reading of a trace has given."""
 
 import numpy as np
-import spot
 
 from rulec.logic.formula import atoms_of
 from rulec.logic.semantics import holds
 from support.engines.engine import each
 from support.oracles.bits import along
+from support.oracles.installed_spot import spot
 from support.oracles.past_in_spot import in_spot, spot_automaton
 from support.oracles.rulebook_oracle import Said, in_steps
 from support.oracles.state_oracle import Reading, number

@@ -6,9 +6,8 @@ Spot's automaton is not the compiler's: it has no registers, and a past that is 
 from bisect import bisect_left
 from functools import cached_property
 
-import spot
-
 from rulec.logic.formula import atoms_of
+from support.oracles.installed_spot import spot
 from support.oracles.past_in_spot import in_spot, spot_automaton
 
 

@@ -4,14 +4,12 @@ Here a fresh proposition is the value of an operator of the past, where the comp
 or what the instant before has left; and bounds are unrolled, where the compiler counts.
 """
 
-import spot
-
 from rulec.automata.alphabet import names_of
-from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.formula import Atom, Binary, Unary, atoms_of
 from rulec.logic.past_registers import eliminate_past
 from support.generators.timed_formulas import without_bounds
+from support.oracles.installed_spot import SpotFormulas, spot
 
 DEFINITIONS = {
     "previously": "!{p} & G(({a} -> X{p}) & ({a} | X!{p}))",
