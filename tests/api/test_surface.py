@@ -120,6 +120,7 @@ def test_what_verbs_return_is_public():
             }
     names = {word for word in words if word[0].isupper()}
     helpers = {
+        "ArrayLike",
         "Before",
         "Callable",
         "Fraction",
