@@ -9,12 +9,11 @@ from hypothesis import Phase, given, settings
 
 import rulec
 from rulec.automata.axiom_instances import counts
-from rulec.automata.mealy_monitor import NumberRead
-from rulec.code_generation.monitor_layout import VERDICTS, monitor_layout
+from rulec.code_generation.monitor_layout import monitor_layout
 from rulec.code_generation.proof.c_library import CLibrary, CMonitor
+from rulec.code_generation.proof.monitor_proof import is_no_narrower
+from rulec.code_generation.proof.probing_inputs import weighs
 from rulec.diagnostics import RulecError
-from rulec.logic.formula import Count
-from rulec.monitoring.online.four_valued import best_of, worst_of
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.rulebooks import compile_here
@@ -52,20 +51,6 @@ def without_intervals(value):
     return UNKNOWN if isinstance(value, Interval) else value
 
 
-def is_within(said, wider):
-    best, worst = map(VERDICTS.index, (best_of(wider), worst_of(wider)))
-    return best <= VERDICTS.index(best_of(said)) and VERDICTS.index(worst_of(said)) <= worst
-
-
-def sums(rule):
-    """Does it read sums of several numbers, which doubles may not decide?"""
-    return any(
-        isinstance(read, NumberRead)
-        and (len(read.terms) > 1 or isinstance(read.terms[0][1], Count))
-        for read in rule.machine.reads
-    )
-
-
 @needs_a_compiler
 @given(seeds)
 @settings(phases=[Phase.generate], max_examples=settings().max_examples // 12)
@@ -73,6 +58,7 @@ def test_what_python_says(chance):
     step_s = chance.choice([Fraction(1), Fraction(1, 2)])
     book = rulebook(chance, step_s)
     compiled = compile_here(book, step_s)
+    weighed = any(weighs(read) for rule in compiled.rules for read in rule.machine.reads)
     counting = any(counts(axiom.formula) for axiom in compiled.axioms)
     library = CLibrary(monitor_layout(compiled, {}), optimised=False)
     for trace in traces(chance, step_s):
@@ -100,10 +86,10 @@ def test_what_python_says(chance):
             plain = plain and is_plain(state)
             for rule in compiled.rules:
                 own, other = said.rules[rule.name], found.rules[rule.name]
-                assert is_within(own, other)
-                assert own == other or not plain or sums(rule)
-            assert is_within(said.verdict, found.verdict)
-            if plain and not any(map(sums, compiled.rules)):
+                assert is_no_narrower(other, own)
+                assert own == other or not plain or any(map(weighs, rule.machine.reads))
+            assert is_no_narrower(found.verdict, said.verdict)
+            if plain and not weighed:
                 assert found.violations == len(ours.violations)
 
 

@@ -94,16 +94,24 @@ class RulebookVerbs(SessionSettings):
         return tuple(write_compiled(rulebook, Path(folder)))
 
     def write_monitor(
-        self, rules: Rules, folder: str | Path, objects: Mapping[str, int] | None = None
+        self,
+        rules: Rules,
+        folder: str | Path,
+        objects: Mapping[str, int] | None = None,
+        *,
+        prove: bool = False,
     ) -> tuple[Path, ...]:
         """Write a monitor in C99: header, source, Makefile, CMakeLists.txt; the paths.
 
         ``objects`` are how many there may be at a time, by type; without it 16 of each type that is
-        below no other. Raises RulecError R0750 if there can be no such monitor.
+        below no other. If it is to ``prove`` it is compiled and held against its tables before it
+        is written, with a report. Raises RulecError R0750 if there can be no such monitor, and to
+        prove R0751 to R0753.
         """
         from rulec.code_generation.monitor_files import write_monitor
 
-        return tuple(write_monitor(self._compiled(rules), Path(folder), objects or {}))
+        compiled = self._compiled(rules)
+        return tuple(write_monitor(compiled, Path(folder), objects or {}, prove=prove))
 
     def verify_compiled(self, path: str | Path) -> tuple[RuleProof, ...]:
         """Hold the tables of a compiled rulebook's file against its formulas, without Spot.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.code import Code
 
@@ -61,4 +63,24 @@ def compiler_failed(command: str, said: str) -> RulecError:
     first = "\n".join(said.strip().splitlines()[:5])
     return C_COMPILER_FAILED.error(
         None, f"`{command}` has failed: {first}", help="name another compiler in `CC`"
+    )
+
+
+MONITOR_DIFFERS = Code(
+    "R0753",
+    title="a monitor in C is not what its tables say",
+    why="`compile --emit c --prove` compiles what it is about to write and holds it against the "
+    "tables and the monitor in Python. If they differ there is a mistake in rulec or in the C "
+    "compiler, none in the rulebook, and nothing is written. Please report the rulebook and the "
+    "compiler.",
+    kind="circumstance",
+)
+
+
+def differs(found: Sequence[str]) -> RulecError:
+    """The error (R0753) about what differs."""
+    return MONITOR_DIFFERS.error(
+        None,
+        f"the monitor in C is not what its tables say: {'; '.join(found[:3])}",
+        help="try another compiler (`CC`), and report this",
     )

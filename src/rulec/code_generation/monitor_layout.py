@@ -70,7 +70,7 @@ class RuleLayout:
         )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MonitorLayout:
     """A monitor, but for its text.
 

@@ -104,4 +104,6 @@ def c_string(text: str) -> str:
         chr(byte) if byte in plain or (byte < 128 and chr(byte).isalpha()) else f"\\{byte:03o}"
         for byte in text.encode("utf-8", "surrogatepass")
     )
-    return '"{}"'.format(re.sub("(?<=rulec)_|(?<=RULEC)_", r"\\137", shown))
+    shown = re.sub("(?<=rulec)_|(?<=RULEC)_", r"\\137", shown)
+    # An escape is the last of its literal, or followed by another one (MISRA C:2012, 4.1).
+    return '"{}"'.format(re.sub(r"(\\[0-7]{3})(?=[^\\])", r'\1" "', shown))

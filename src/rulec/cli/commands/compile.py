@@ -53,6 +53,11 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
     help="How many objects of a type a monitor in C watches at a time; several times.  [default: "
     "16 of each type that is below no other]",
 )
+@click.option(
+    "--prove",
+    is_flag=True,
+    help="Compile the monitor in C, hold it against its tables and write a report of that, too.",
+)
 @shared.at_option
 def command(
     rulebook: str,
@@ -61,6 +66,7 @@ def command(
     steps_s: Sequence[Fraction],
     emit: str,
     objects: Mapping[str, int],
+    prove: bool,
     at: str,
 ) -> None:
     """Compile RULEBOOK: a name, or the path of a source.
@@ -70,8 +76,9 @@ def command(
     Spot. With `--emit c` it writes header, source, Makefile and CMakeLists.txt of a monitor in C99
     instead. Each file appears whole or not at all.
     """
-    if objects and emit != "c":
-        raise click.UsageError("--objects is about monitors in C: add `--emit c`")
+    if (objects or prove) and emit != "c":
+        name = "--objects" if objects else "--prove"
+        raise click.UsageError(f"{name} is about monitors in C: add `--emit c`")
     if emit == "c" and len(steps_s) > 1:
         raise click.UsageError("a monitor in C is for one step: give --step once")
     if not output:
@@ -83,7 +90,7 @@ def command(
     session = open_session(at)
     compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
     if emit == "c":
-        paths = session.write_monitor(compiled, output, objects)
+        paths = session.write_monitor(compiled, output, objects, prove=prove)
     else:
         paths = session.write_compiled(compiled, output)
     for path in paths:

@@ -98,7 +98,7 @@ static inline uint16_t rulec_class(const rulec_rule *rule, const uint16_t *const
         }
         at = cells[at + 1u + low];
     }
-    return (uint16_t)(at & ~(uint16_t)RULEC_LEAF);
+    return (uint16_t)(at & 0x7fffu);
 }
 
 static inline void rulec_set(uint32_t *bits, uint32_t place)
@@ -125,7 +125,7 @@ static void rulec_lead(rulec_state *state, uint16_t cell)
     if (cell < RULEC_LEAF) {
         rulec_set(state->reached, cell);
     } else if (cell != RULEC_EXCLUDED) {
-        rulec_set(state->classes, cell & ~(uint32_t)RULEC_LEAF);
+        rulec_set(state->classes, (uint32_t)cell & 0x7fffu);
     } else {
         /* no state of the world is such */
     }
@@ -342,6 +342,7 @@ static void rulec_judge(rulec_state *state, const rulec_input *in, uint16_t numb
     const rulec_rule *const rule = &rulec_rules[number];
     rulec_range *const said = &verdict->rules[number];
     uint8_t worst_so_far = 0u;
+    uint16_t kind;
     rulec_instance one;
     rulec_begin(state, rule, &one);
     said->best = RULEC_SATISFIED;
@@ -381,11 +382,11 @@ static void rulec_judge(rulec_state *state, const rulec_input *in, uint16_t numb
     if ((rule->n_variables > 0u) && (rule->start != RULEC_SATISFIED)) {
         said->best = (said->best == RULEC_SATISFIED) ? (uint8_t)RULEC_HOLDS_SO_FAR : said->best;
         said->worst = (said->worst == RULEC_SATISFIED) ? (uint8_t)RULEC_HOLDS_SO_FAR : said->worst;
-        for (one.number = 0u; one.number < RULEC_TYPES; one.number++) {
+        for (kind = 0u; kind < RULEC_TYPES; kind++) {
             uint16_t variable;
             for (variable = 0u; variable < rule->n_variables; variable++) {
-                if ((state->absent[one.number] != 0u)
-                    && (rulec_fits[rule->types[variable]][one.number] != 0u)) {
+                if ((state->absent[kind] != 0u)
+                    && (rulec_fits[rule->types[variable]][kind] != 0u)) {
                     state->flags[number] |= RULEC_DOUBTED;
                 }
             }

@@ -34,7 +34,12 @@ static inline uint16_t rulec_truth(uint8_t value)
 
 static inline uint16_t rulec_value(uint8_t value, const uint8_t *digits, uint8_t n, uint8_t size)
 {
-    return (value < n) ? RULEC_KNOWN(digits[value]) : RULEC_FROM_TO(0u, size - 1u);
+    const uint8_t last = (uint8_t)(size - 1u);
+    uint16_t found = RULEC_FROM_TO(0u, last);
+    if (value < n) {
+        found = RULEC_KNOWN(digits[value]);
+    }
+    return found;
 }
 
 static inline uint16_t rulec_number(double value, const double *floors, uint8_t n)
@@ -52,12 +57,20 @@ static inline uint16_t rulec_number(double value, const double *floors, uint8_t 
 
 static inline uint8_t rulec_is(uint8_t value)
 {
-    return (value == 1u) ? RULEC_YES : ((value == 0u) ? RULEC_NO : RULEC_PERHAPS);
+    uint8_t truth = RULEC_PERHAPS;
+    if (value <= 1u) {
+        truth = (value == 1u) ? RULEC_YES : RULEC_NO;
+    }
+    return truth;
 }
 
 static inline uint8_t rulec_has(uint8_t value, uint8_t asked, uint8_t n)
 {
-    return (value == asked) ? RULEC_YES : ((value < n) ? RULEC_NO : RULEC_PERHAPS);
+    uint8_t truth = RULEC_PERHAPS;
+    if (value < n) {
+        truth = (value == asked) ? RULEC_YES : RULEC_NO;
+    }
+    return truth;
 }
 
 static inline uint8_t rulec_not(uint8_t truth)
@@ -77,8 +90,11 @@ static inline uint8_t rulec_or(uint8_t left, uint8_t right)
 
 static inline uint8_t rulec_same(uint8_t left, uint8_t right)
 {
-    const bool known = (left != RULEC_PERHAPS) && (right != RULEC_PERHAPS);
-    return known ? ((left == right) ? RULEC_YES : RULEC_NO) : RULEC_PERHAPS;
+    uint8_t truth = RULEC_PERHAPS;
+    if ((left != RULEC_PERHAPS) && (right != RULEC_PERHAPS)) {
+        truth = (left == right) ? RULEC_YES : RULEC_NO;
+    }
+    return truth;
 }
 
 /* Whether the digits are among some, given as bits. */
@@ -93,7 +109,10 @@ static inline uint8_t rulec_among(uint16_t digits, uint32_t some)
         all = all && is;
         any = any || is;
     }
-    return all ? RULEC_YES : (any ? RULEC_PERHAPS : RULEC_NO);
+    if (all) {
+        return RULEC_YES;
+    }
+    return any ? RULEC_PERHAPS : RULEC_NO;
 }
 
 /* An object's part of a count: lower half for sure, upper half perhaps. */
@@ -122,8 +141,8 @@ static inline uint16_t rulec_counted(uint32_t counts, const uint32_t *limits, ui
 static inline uint16_t rulec_order(double first, double second, uint8_t sides)
 {
     const bool known = rulec_is_number(first) && rulec_is_number(second);
-    const uint16_t least = ((sides & 1u) != 0u) ? 1u : 0u;
-    const uint16_t more = ((sides & 2u) != 0u) ? 1u : 0u;
+    const uint16_t least = (uint16_t)(sides & 1u);
+    const uint16_t more = (uint16_t)((uint16_t)sides >> 1);
     uint16_t digits = RULEC_FROM_TO(0u, least + more);
     if (known) {
         digits = RULEC_KNOWN(((first >= second) ? least : 0u) + ((first > second) ? more : 0u));
@@ -137,7 +156,7 @@ static inline bool rulec_eighths(double value, int64_t *eighths)
     bool is_whole = false;
     if ((value > -1e9) && (value < 1e9)) {
         *eighths = (int64_t)(value * 8.0);
-        is_whole = ((double)*eighths / 8.0 >= value) && ((double)*eighths / 8.0 <= value);
+        is_whole = (((double)*eighths / 8.0) >= value) && (((double)*eighths / 8.0) <= value);
     }
     return is_whole;
 }

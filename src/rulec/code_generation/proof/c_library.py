@@ -38,6 +38,15 @@ def compiler() -> list[str]:
     return command
 
 
+def _first_line_of(command: list[str]) -> str:
+    """What a program says of itself; empty if it says nothing."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return next(iter(done.stdout.splitlines()), "")
+
+
 class CLibrary:
     """A monitor's source, compiled with what a proof asks of it.
 
@@ -68,6 +77,8 @@ class CLibrary:
         library = folder / f"{name}.so"
         flags = [*FLAGS, self._level, "-fPIC", "-shared", f"{name}.c", "-o", library.name]
         command = [*compiler(), *flags]
+        self.command = shlex.join(command)
+        self.compiler_version = _first_line_of([*compiler(), "--version"])
         try:
             done = subprocess.run(
                 command, cwd=folder, capture_output=True, text=True, timeout=300, check=False
@@ -81,6 +92,12 @@ class CLibrary:
     def call(self, name: str) -> Any:
         """A function of the library."""
         return getattr(self._library, f"{self._prefix}_{name}")
+
+    def input_of(
+        self, state: State, objects: Mapping[str, str], ids: dict[str, int]
+    ) -> ctypes.Structure:
+        """The input that says what a state says, or else the defaults; new objects get ``ids``."""
+        return _input_of(self, state, objects, ids)
 
 
 def structures(layout: MonitorLayout) -> tuple[type[ctypes.Structure], type[ctypes.Structure]]:
@@ -130,7 +147,7 @@ class CMonitor:
     def step(self, state: State, objects: Mapping[str, str]) -> CSaid:
         """Take the next state."""
         library = self._library
-        given = input_of(library, state, objects, self._ids)
+        given = library.input_of(state, objects, self._ids)
         status = self.take(given)
         said = self.said.raw
         names = [own.rule.name for own in library.layout.rules]
@@ -149,10 +166,9 @@ def _four(number: int) -> FourValued:
     return VERDICTS[number & 3]
 
 
-def input_of(
+def _input_of(
     library: CLibrary, state: State, objects: Mapping[str, str], ids: dict[str, int]
 ) -> ctypes.Structure:
-    """The input that says what a state says, or else the defaults; new objects get new ``ids``."""
     fields = library.layout.fields
     names = list(objects)
     seated = (library.object_type * max(1, len(names)))()

@@ -1,0 +1,200 @@
+"""A monitor in C held against the tables that it was made of.
+
+Tables are gone through entirely: the class of every letter of every rule, and the step from every
+state by every class, as a single one and as one of several that are possible. Readings are asked
+below, at and above each limit, and with what is unknown. Whole drives are held against the
+``Monitor``.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from math import prod
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from rulec.automata.mealy_monitor import IMPOSSIBLE
+from rulec.code_generation.code_messages import differs
+from rulec.code_generation.monitor_layout import VERDICTS, MonitorLayout, RuleLayout
+from rulec.code_generation.proof.c_library import CLibrary, CMonitor, CSaid
+from rulec.code_generation.proof.probing_inputs import ReadingProbe, drives, probes, weighs
+from rulec.diagnostics import RulecError
+from rulec.monitoring.online.four_valued import RunningVerdict, best_of, four_valued, worst_of
+from rulec.monitoring.online.monitor_state import SoFar
+from rulec.monitoring.online.running_monitor import Monitor
+
+EXCLUDED_CLASS = 0x7FFF
+EXCLUDED_BY_FACTS = 5
+
+_MOST_DIGITS = 1 << 12
+
+
+@dataclass(frozen=True, slots=True)
+class ProofPart:
+    """What has been compared, how often, and what differs, the first few."""
+
+    what: str
+    n: int
+    differs: tuple[str, ...]
+
+
+def proof_report(layout: MonitorLayout, n_states: int = 200) -> str:
+    """What has been compared of a monitor, and how often, line by line.
+
+    Raises RulecError R0751 or R0752 if it cannot be compiled, R0753 if something differs.
+    """
+    library = CLibrary(layout)
+    parts = list(proof_of(library, n_states))
+    if wrong := [text for part in parts for text in part.differs]:
+        raise differs(wrong)
+    book = layout.rulebook
+    lines = [
+        f"monitor in C of {book.name}, by rulec {book.rulec}",
+        *[f"source: {source.name}, SHA-256 {source.sha256}" for source in book.sources],
+        f"compiled by: {library.command}, {library.compiler_version}",
+        *[f"{part.n:>9} {part.what}: 0 differ" for part in parts],
+    ]
+    return "\n".join([*lines, ""])
+
+
+def proof_of(library: CLibrary, n_states: int) -> Iterator[ProofPart]:
+    """All parts of the proof of a monitor; drives have about ``n_states`` states together."""
+    yield _part("letters have the class that they have in the table", _letters(library))
+    yield _part("steps lead from each state by each class where the table says", _steps(library))
+    yield _part("values below, at and above limits, and unknown ones, are read", _readings(library))
+    yield _part(
+        "verdicts where all is known are those of the monitor in Python, or perhaps no narrower "
+        "where a sum is near its limit",
+        _runs(library, n_states, share_unknown=0.0),
+    )
+    yield _part(
+        "verdicts where not all is known are no narrower than those of the monitor in Python",
+        _runs(library, n_states, share_unknown=0.1),
+    )
+
+
+def _part(what: str, found: Iterator[str]) -> ProofPart:
+    """Each thing compared is a text: empty, or how it differs."""
+    n = 0
+    different: list[str] = []
+    for text in found:
+        n += 1
+        if text and len(different) < 5:
+            different.append(text)
+    return ProofPart(what, n, tuple(different))
+
+
+def _letters(library: CLibrary) -> Iterator[str]:
+    ask: Callable[..., None] = library.call("all_classes")
+    for number, own in enumerate(library.layout.rules):
+        reads, sizes = _numbers(own)
+        n = prod(sizes)
+        found = (ctypes.c_uint16 * n)()
+        ask(number, reads, (ctypes.c_uint32 * max(1, len(sizes)))(*sizes), len(sizes), found)
+        expected = np.array(own.rule.machine.letters)
+        expected[expected == IMPOSSIBLE] = EXCLUDED_CLASS
+        equal = np.array(found) == expected
+        yield from _each(equal, f"rule {own.rule.name}, letter")
+
+
+def _steps(library: CLibrary) -> Iterator[str]:
+    ask = library.call("all_steps")
+    for number, own in enumerate(library.layout.rules):
+        machine = own.rule.machine
+        n = len(machine.successors) * len(machine.successors[0])
+        reached, by_sets = (ctypes.c_uint16 * n)(), (ctypes.c_uint16 * n)()
+        verdicts = (ctypes.c_uint8 * n)()
+        if own.n_instances == 0:
+            continue
+        ask(number, reached, verdicts, by_sets)
+        states = np.array(machine.successors).ravel()
+        said = [
+            VERDICTS.index(four_valued(machine, target, accepted))
+            for targets, row in zip(machine.successors, machine.outputs, strict=True)
+            for target, accepted in zip(targets, row, strict=True)
+        ]
+        expected = states * 4 + np.array(said)
+        equal = (np.array(reached) * 4 + np.array(verdicts) == expected) & (
+            np.array(by_sets) == expected
+        )
+        yield from _each(equal, f"rule {own.rule.name}, pair of state and class")
+
+
+def _each(equal: Any, what: str) -> Iterator[str]:
+    for place, is_equal in enumerate(equal.tolist()):
+        yield "" if is_equal else f"{what} {place}"
+
+
+def _numbers(own: RuleLayout) -> tuple[Any, list[int]]:
+    """The places of a rule's reads as the cells have them, and their sizes."""
+    reads = [source << 12 | place for source, place in own.reads]
+    sizes = [read.size for read in own.rule.machine.reads]
+    return (ctypes.c_uint32 * max(1, len(reads)))(*reads), sizes
+
+
+def _readings(library: CLibrary) -> Iterator[str]:
+    digits = (ctypes.c_uint16 * _MOST_DIGITS)()
+    ask = library.call("digits")
+    for probe in probes(library.layout):
+        source, place = probe.place
+        given, who = _input(library, probe)
+        ask(ctypes.byref(given), who, source, digits)
+        low, high = digits[place] & 0xFF, digits[place] >> 8
+        found = ((1 << (high - low + 1)) - 1) << low
+        right = found == probe.digits if probe.is_sharp else found & probe.digits == probe.digits
+        yield "" if right else f"rule {probe.rule}, read {probe.number}, of {probe.state}"
+
+
+def _input(library: CLibrary, probe: ReadingProbe) -> tuple[ctypes.Structure, Any]:
+    given = library.input_of(probe.state, probe.objects, {})
+    names = list(probe.objects)
+    who = [names.index(item) for item in probe.binding]
+    return given, (ctypes.c_size_t * max(1, len(who)))(*who)
+
+
+def _runs(library: CLibrary, n_states: int, share_unknown: float) -> Iterator[str]:
+    layout, chance = library.layout, Random(n_states)
+    weighing = any(weighs(read) for own in layout.rules for read in own.rule.machine.reads)
+    for drive in drives(layout, chance, n_states, share_unknown):
+        ours, theirs = Monitor(layout.rulebook), CMonitor(library)
+        for number, (state, objects) in enumerate(drive):
+            try:
+                said = ours.step(state, objects)
+            except RulecError as error:
+                excluded = theirs.step(state, objects).status == EXCLUDED_BY_FACTS
+                code = error.diagnostics[0].code
+                yield "" if excluded or code != "R0508" else f"state {number}: {state}"
+                break
+            found = theirs.step(state, objects)
+            where = f"state {number}: {state}"
+            sharp = share_unknown == 0
+            yield from _compared(layout, (said, found), where, sharp=sharp)
+            if sharp and not weighing:
+                right = found.violations == len(ours.violations)
+                yield "" if right else f"the number of violations, {where}"
+
+
+def _compared(
+    layout: MonitorLayout, both: tuple[SoFar, CSaid], where: str, *, sharp: bool
+) -> Iterator[str]:
+    said, found = both
+    for own in layout.rules:
+        expected, other = said.rules[own.rule.name], found.rules[own.rule.name]
+        right = found.status == 0 and is_no_narrower(other, expected)
+        if sharp and not any(map(weighs, own.rule.machine.reads)):
+            right = right and other == expected
+        yield "" if right else f"rule {own.rule.name}, {expected} and {other}, {where}"
+    yield "" if is_no_narrower(found.verdict, said.verdict) else f"the rulebook, {where}"
+
+
+def is_no_narrower(wide: RunningVerdict, narrow: RunningVerdict) -> bool:
+    """Whether a verdict lies within another one, or is the same."""
+    ranks: Sequence[int] = [
+        VERDICTS.index(one)
+        for one in (best_of(wide), best_of(narrow), worst_of(narrow), worst_of(wide))
+    ]
+    return list(ranks) == sorted(ranks)

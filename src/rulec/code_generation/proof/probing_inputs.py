@@ -1,0 +1,244 @@
+"""Inputs that tell readings apart: at limits, beside them, unknown; and drives of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache, partial
+from math import inf, nextafter
+from random import Random
+from typing import Any
+
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.thresholds import scale
+from rulec.code_generation.monitor_layout import MonitorLayout, RuleLayout
+from rulec.logic import formula as ltl
+from rulec.logic.kleene import Unknown, weighted_sum
+from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read, read_digits
+from rulec.trace import State
+from rulec.vocabulary import Declaration, Enumeration, Signal
+from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.vocabulary_model import fitting_objects
+
+SEVERAL = 60
+"""States that a read of several values is asked about."""
+
+PLAIN = (0.0, 0.125, 1.0, 2.5, 8.3, 10.0, 50.0, 130.0)
+
+
+@dataclass(frozen=True, slots=True)
+class ReadingProbe:
+    """A state, and the digits, as bits, that a rule's read has in it of the objects of a binding.
+
+    ``place`` is that of the digits in C. They are ``is_sharp`` unless rounding may decide.
+    """
+
+    rule: str
+    number: int
+    place: tuple[int, int]
+    state: State
+    objects: Mapping[str, str]
+    binding: tuple[str, ...]
+    digits: int
+    is_sharp: bool
+
+
+def probes(layout: MonitorLayout) -> Iterator[ReadingProbe]:
+    """Probes of every read of every rule."""
+    chance = Random(0)
+    for own in layout.rules:
+        for number, read in enumerate(own.rule.machine.reads):
+            yield from _probes_of(layout, own, number, read, chance)
+
+
+def _probes_of(
+    layout: MonitorLayout, own: RuleLayout, number: int, read: Read | NumberRead, chance: Random
+) -> Iterator[ReadingProbe]:
+    vocabulary = layout.rulebook.vocabulary
+    binding = {variable.name: f"x{n}" for n, variable in enumerate(own.rule.variables)}
+    objects = {f"x{n}": variable.type for n, variable in enumerate(own.rule.variables)}
+    counted = _counted(read)
+    for n, kind in enumerate([*counted, *counted]):
+        objects[f"y{n}"] = kind
+    declared = [vocabulary.declarations[name] for name in dict.fromkeys(names_of_read(read))]
+    ready = read_digits(read)
+    for state in _states(read, declared, objects, layout, chance):
+        view = StateView(state, objects, vocabulary)
+        sharp = True
+        if isinstance(read, NumberRead) and ready.subject is None:
+            total = weighted_sum(read.terms, binding, view)
+            if len(read.terms) > 1 and counted and isinstance(total, Unknown):
+                continue
+            clear = isinstance(total, Unknown) and not weighs(read)
+            sharp = clear or (not isinstance(total, Unknown) and _is_clear(read, total))
+        yield ReadingProbe(
+            own.rule.name,
+            number,
+            own.reads[number],
+            state,
+            objects,
+            tuple(binding.values()),
+            digits=ready.in_state(binding, view),
+            is_sharp=sharp,
+        )
+
+
+def _is_clear(read: NumberRead, total: Fraction) -> bool:
+    """Whether a sum is not so near to a limit that doubles may not tell."""
+    return not any(map(weighs, _counts(read))) and (
+        len(read.terms) == 1
+        or all(abs(total - side.limit) > Fraction(1, 10**6) for side in read.thresholds)
+    )
+
+
+def weighs(what: Read | NumberRead | ltl.Count) -> bool:
+    """Whether sums of several numbers decide, which are too near to a limit perhaps."""
+    match what:
+        case Read():
+            return False
+        case NumberRead():
+            return len(what.terms) > 1 or any(map(weighs, _counts(what)))
+    sums = [one for one in ltl.atoms_of(what.body) if isinstance(one, ltl.Comparison)]
+    return any(len(one.terms) > 1 or any(map(weighs, _counts(one))) for one in sums)
+
+
+def _counts(what: NumberRead | ltl.Comparison) -> list[ltl.Count]:
+    return [term for _, term in what.terms if isinstance(term, ltl.Count)]
+
+
+def _counted(read: Read | NumberRead) -> list[str]:
+    """The types of objects that a read counts."""
+    if isinstance(read, Read):
+        return []
+    found = [term.type for _, term in read.terms if isinstance(term, ltl.Count)]
+    return list(dict.fromkeys(found))
+
+
+def _states(
+    read: Read | NumberRead,
+    declared: list[Declaration],
+    objects: Mapping[str, str],
+    layout: MonitorLayout,
+    chance: Random,
+) -> Iterator[State]:
+    """All states of a read of one value, some of another one."""
+    choices = {item.name: list(_values(item, layout)) for item in declared}
+    if isinstance(read, Read) or scale(read).quantity is not None:
+        (item,) = declared
+        if isinstance(read, NumberRead):
+            near = [(nextafter(x, -inf), x, nextafter(x, inf)) for x in scale(read).floors]
+            choices[item.name] = [*PLAIN, UNKNOWN, *[x for three in near for x in three]]
+        for value in choices[item.name]:
+            yield {item.name: _everywhere(item, objects, layout, partial(_same, value))}
+        return
+    for _ in range(SEVERAL):
+        unknown = chance.choice([0.0, 0.0, 0.2])
+        state = {
+            item.name: _everywhere(
+                item, objects, layout, partial(_drawn, chance, choices[item.name], unknown)
+            )
+            for item in declared
+        }
+        yield state
+        yield from _at_limits(read, declared, objects, layout, state)
+
+
+def _at_limits(
+    read: NumberRead,
+    declared: list[Declaration],
+    objects: Mapping[str, str],
+    layout: MonitorLayout,
+    state: State,
+) -> Iterator[State]:
+    """The state with the first number of a sum so that the sum is at a limit, or beside it."""
+    (factor, first), *others = read.terms
+    if not isinstance(first, ltl.QuantityTerm) or not others:
+        return
+    declaration = next(item for item in declared if item.name == first.name)
+    names = dict.fromkeys(name for _, term in others for name in _arguments(term))
+    binding = {name: next(iter(objects)) for name in [*names, *first.arguments]}
+    rest = weighted_sum(tuple(others), binding, StateView(state, objects, layout.fields.vocabulary))
+    if isinstance(rest, Unknown):
+        return
+    for side in read.thresholds:
+        value = float((side.limit - rest) / factor)
+        for near in (value, value - 0.125, value + 0.125, nextafter(value, inf)):
+            yield {
+                **state,
+                first.name: _everywhere(declaration, objects, layout, partial(_same, near)),
+            }
+
+
+def _arguments(term: ltl.Term) -> tuple[str, ...]:
+    return term.arguments if isinstance(term, ltl.QuantityTerm) else ()
+
+
+def _everywhere(
+    item: Declaration, objects: Mapping[str, str], layout: MonitorLayout, draw: Callable[[], Any]
+) -> Any:
+    """A value drawn for every choice of objects that a name may be asked about."""
+    vocabulary = layout.rulebook.vocabulary
+
+    def of(parameters: tuple[str, ...]) -> Any:
+        if not parameters:
+            return draw()
+        fitting = fitting_objects(parameters[0], objects, vocabulary)
+        return {one: of(parameters[1:]) for one in fitting}
+
+    return of(item.parameters)
+
+
+def _values(item: Declaration, layout: MonitorLayout) -> list[Any]:
+    if isinstance(item, Signal):
+        return [False, True, UNKNOWN]
+    if isinstance(item, Enumeration):
+        return [*item.values, UNKNOWN]
+    return [*PLAIN, *_limits(layout).get(item.name, ()), UNKNOWN]
+
+
+@lru_cache(maxsize=4)
+def _limits(layout: MonitorLayout) -> Mapping[str, tuple[float, ...]]:
+    """By quantity the limits that rules compare it with by itself, and numbers beside them."""
+    found: dict[str, set[float]] = {}
+    for own in layout.rules:
+        for read in own.rule.machine.reads:
+            if isinstance(read, NumberRead) and (about := scale(read).quantity) is not None:
+                for floor in scale(read).floors:
+                    found.setdefault(about.name, set()).update({floor, nextafter(floor, -inf)})
+    return {name: tuple(sorted(numbers)) for name, numbers in found.items()}
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
+def _drawn(chance: Random, values: Sequence[Any], share_unknown: float) -> Any:
+    return UNKNOWN if chance.random() < share_unknown else chance.choice(values)
+
+
+def drives(
+    layout: MonitorLayout, chance: Random, n_states: int, share_unknown: float
+) -> Iterator[list[tuple[State, Mapping[str, str]]]]:
+    """Random drives with objects that come and go, of about so many states together."""
+    kinds = [kind for kind, (first, end) in layout.seats.items() if first < end]
+    values = {item.name: _values(item, layout)[:-1] for item in layout.fields.read}
+    while n_states > 0:
+        drive: list[tuple[State, Mapping[str, str]]] = []
+        objects: dict[str, str] = {}
+        state: dict[str, Any] = {}
+        for _ in range(min(n_states, chance.randint(1, 20))):
+            objects = {name: kind for name, kind in objects.items() if chance.random() < 0.75}
+            while len(objects) < 4 and chance.random() < 0.6:
+                objects.setdefault(f"o{chance.randrange(8)}", chance.choice(kinds))
+            before, state = state, {}
+            for item in layout.fields.read:
+                if item.name in before and not item.parameters and chance.random() < 0.6:
+                    state[item.name] = before[item.name]
+                    continue
+                draw = partial(_drawn, chance, values[item.name], share_unknown)
+                state[item.name] = _everywhere(item, objects, layout, draw)
+            drive.append((state, dict(objects)))
+        n_states -= len(drive)
+        yield drive
