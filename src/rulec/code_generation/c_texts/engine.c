@@ -15,6 +15,7 @@
 /* Where an instance stands during a step. */
 typedef struct {
     uint32_t number;
+    uint16_t turns[RULEC_VARIABLES]; /* among the seats that are taken, or were */
     uint16_t seats[RULEC_VARIABLES];
     const uint16_t *digits[RULEC_SOURCES];
 } rulec_instance;
@@ -25,6 +26,7 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
     size_t one;
     uint16_t seat;
     *left_out = 0u;
+    state->crowded = 0u;
     for (seat = 0u; seat < RULEC_TYPES; seat++) {
         state->absent[seat] = 0u;
     }
@@ -76,6 +78,7 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
             state->next_type[free] = object->type;
         } else if (!has_seat) {
             *left_out += 1u;
+            state->crowded = 1u;
             state->absent[object->type] = 1u;
         } else {
             /* sits already */
@@ -263,20 +266,20 @@ static void rulec_look(rulec_state *state, const rulec_input *in, const rulec_ru
     }
 }
 
-/* Go on to the next choice of seats; each object stands for one variable alone. */
-static void rulec_turn(const rulec_rule *rule, rulec_instance *one)
+/* Go on to the next choice of seats; false after the last one. */
+static bool rulec_turn(const rulec_state *state, const rulec_rule *rule, rulec_instance *one)
 {
     uint16_t variable = rule->n_variables;
     bool carry = true;
-    one->number += 1u;
     while (carry && (variable > 0u)) {
         variable--;
-        one->seats[variable]++;
-        carry = one->seats[variable] == rule->seats_end[variable];
+        one->turns[variable]++;
+        carry = one->turns[variable] >= state->n_taken;
         if (carry) {
-            one->seats[variable] = rule->seats_first[variable];
+            one->turns[variable] = 0u;
         }
     }
+    return !carry;
 }
 
 typedef struct {
@@ -285,38 +288,52 @@ typedef struct {
     bool is;    /* all are there now */
 } rulec_presence;
 
+/* The best verdict of the worst so far, and the worst, with its best: as verdicts are kept. */
+typedef struct {
+    uint8_t best;
+    uint8_t worst;
+} rulec_tally;
+
+/* Find the instance of a choice of seats; each object stands for one variable alone. */
 static rulec_presence rulec_there(const rulec_state *state, const rulec_rule *rule,
-    const rulec_instance *one)
+    rulec_instance *one)
 {
+    static const rulec_presence never = {false, false, false};
     rulec_presence found = {true, true, true};
+    uint32_t number = 0u;
     uint16_t variable;
     uint16_t other;
     for (variable = 0u; variable < rule->n_variables; variable++) {
-        const uint16_t seat = one->seats[variable];
+        const uint16_t seat = state->taken[one->turns[variable]];
         const uint8_t *const fits = rulec_fits[rule->types[variable]];
+        if ((seat < rule->seats_first[variable]) || (seat >= rule->seats_end[variable])) {
+            return never;
+        }
+        for (other = 0u; other < variable; other++) {
+            if (one->seats[other] == seat) {
+                return never;
+            }
+        }
+        one->seats[variable] = seat;
+        number *= (uint32_t)rule->seats_end[variable] - rule->seats_first[variable];
+        number += (uint32_t)seat - rule->seats_first[variable];
         found.was = found.was && (fits[state->type[seat]] != 0u);
         found.is = found.is && (fits[state->next_type[seat]] != 0u);
         found.stays = found.stays && (state->stays[seat] != 0u);
-        for (other = 0u; other < variable; other++) {
-            if (one->seats[other] == seat) {
-                found.was = false;
-                found.is = false;
-            }
-        }
     }
+    one->number = rule->first_instance + number;
     return found;
 }
 
 static void rulec_begin(const rulec_state *state, const rulec_rule *rule, rulec_instance *one)
 {
-    uint16_t variable;
+    uint16_t each;
     one->number = rule->first_instance;
     one->digits[0] = state->world;
-    for (variable = 1u; variable < RULEC_SOURCES; variable++) {
-        one->digits[variable] = state->shared;
-    }
-    for (variable = 0u; variable < RULEC_VARIABLES; variable++) {
-        one->seats[variable] = rule->seats_first[variable];
+    one->digits[RULEC_SOURCES - 1u] = state->shared;
+    for (each = 0u; each < RULEC_VARIABLES; each++) {
+        one->turns[each] = 0u;
+        one->seats[each] = 0u;
     }
 }
 
@@ -325,64 +342,90 @@ static bool rulec_is_excluded(rulec_state *state, const rulec_input *in, const r
 {
     rulec_instance one;
     bool excluded = false;
+    bool more = (rule->n_variables == 0u) || (state->n_taken > 0u);
     rulec_begin(state, rule, &one);
-    while (one.number < (rule->first_instance + rule->n_instances)) {
+    while (more) {
         if (rulec_there(state, rule, &one).is) {
             rulec_look(state, in, rule, &one);
             excluded = excluded || !rulec_classes(state, rule, one.digits);
         }
-        rulec_turn(rule, &one);
+        more = rulec_turn(state, rule, &one);
     }
     return excluded;
 }
 
-static void rulec_judge(rulec_state *state, const rulec_input *in, uint16_t number,
-    rulec_verdict *verdict)
+/* A step of one instance: it ends, begins, or goes on. */
+static inline void rulec_visit(rulec_state *state, uint16_t number, const rulec_instance *one,
+    rulec_presence there, rulec_tally *tally)
 {
     const rulec_rule *const rule = &rulec_rules[number];
-    rulec_range *const said = &verdict->rules[number];
-    uint8_t worst_so_far = 0u;
-    uint16_t kind;
-    rulec_instance one;
-    rulec_begin(state, rule, &one);
-    said->best = RULEC_SATISFIED;
-    said->worst = RULEC_SATISFIED;
-    while (one.number < (rule->first_instance + rule->n_instances)) {
-        const rulec_presence there = rulec_there(state, rule, &one);
-        if (there.was && !there.stays) {
-            rulec_part(state, number, &one);
+    if (there.was && !there.stays) {
+        rulec_part(state, number, one);
+    }
+    if (there.is) {
+        uint8_t before;
+        uint8_t now;
+        if (!there.was || !there.stays) {
+            state->at[one->number] = 0u;
+            state->verdict[one->number] = RULEC_EXACTLY(rule->start);
         }
-        if (there.is) {
-            uint8_t before;
-            uint8_t now;
-            if (!there.was || !there.stays) {
-                state->at[one.number] = 0u;
-                state->verdict[one.number] = RULEC_EXACTLY(rule->start);
-            }
-            before = state->verdict[one.number];
-            rulec_look(state, in, rule, &one);
-            rulec_advance(state, rule, &one);
-            now = state->verdict[one.number];
-            if ((now == RULEC_EXACTLY(RULEC_VIOLATED)) && (before != now)) {
-                rulec_lose(state, number, &one, state->next_id);
-            }
-            said->best = ((now & 3u) > said->best) ? (uint8_t)(now & 3u) : said->best;
-            said->worst = ((now >> 2) > said->worst) ? (uint8_t)(now >> 2) : said->worst;
-            /* Worse at worst, or as bad at worst and worse at best, in one number */
-            if ((now > worst_so_far) && ((state->flags[number] & RULEC_LOST) == 0u)) {
+        before = state->verdict[one->number];
+        rulec_advance(state, rule, one);
+        now = state->verdict[one->number];
+        if ((now == RULEC_EXACTLY(RULEC_VIOLATED)) && (before != now)) {
+            rulec_lose(state, number, one, state->next_id);
+        }
+        tally->best = ((now & 3u) > tally->best) ? (uint8_t)(now & 3u) : tally->best;
+        /* Worse at worst, or as bad at worst and worse at best, in one number */
+        if (now > tally->worst) {
+            tally->worst = now;
+            if ((state->flags[number] & RULEC_LOST) == 0u) {
                 uint16_t variable;
-                worst_so_far = now;
-                for (variable = 0u; variable < RULEC_VARIABLES; variable++) {
-                    state->about[number][variable] = state->next_id[one.seats[variable]];
+                for (variable = 0u; variable < rule->n_variables; variable++) {
+                    state->about[number][variable] = state->next_id[one->seats[variable]];
                 }
             }
         }
-        rulec_turn(rule, &one);
     }
+}
+
+static void rulec_visit_all(rulec_state *state, const rulec_input *in, uint16_t number,
+    rulec_tally *tally)
+{
+    const rulec_rule *const rule = &rulec_rules[number];
+    rulec_instance one;
+    bool more = state->n_taken > 0u;
+    rulec_begin(state, rule, &one);
+    if (rule->n_variables == 0u) {
+        const rulec_presence always = {true, true, true};
+        rulec_visit(state, number, &one, always, tally);
+    } else {
+        while (more) {
+            const rulec_presence there = rulec_there(state, rule, &one);
+            if (there.is) {
+                rulec_look(state, in, rule, &one);
+            }
+            if (there.is || there.was) {
+                rulec_visit(state, number, &one, there, tally);
+            }
+            more = rulec_turn(state, rule, &one);
+        }
+    }
+}
+
+static void rulec_judge(rulec_state *state, const rulec_input *in, uint16_t number,
+    rulec_range *said)
+{
+    const rulec_rule *const rule = &rulec_rules[number];
+    rulec_tally tally = {0u, 0u};
+    uint16_t kind;
+    rulec_visit_all(state, in, number, &tally);
+    said->best = tally.best;
+    said->worst = (uint8_t)(tally.worst >> 2);
     if ((rule->n_variables > 0u) && (rule->start != RULEC_SATISFIED)) {
         said->best = (said->best == RULEC_SATISFIED) ? (uint8_t)RULEC_HOLDS_SO_FAR : said->best;
         said->worst = (said->worst == RULEC_SATISFIED) ? (uint8_t)RULEC_HOLDS_SO_FAR : said->worst;
-        for (kind = 0u; kind < RULEC_TYPES; kind++) {
+        for (kind = 0u; (state->crowded != 0u) && (kind < RULEC_TYPES); kind++) {
             uint16_t variable;
             for (variable = 0u; variable < rule->n_variables; variable++) {
                 if ((state->absent[kind] != 0u)
@@ -441,6 +484,13 @@ rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verd
     if (status != RULEC_OK) {
         return status;
     }
+    state->n_taken = 0u;
+    for (each = 0u; each < RULEC_SEATS; each++) {
+        if ((state->type[each] != RULEC_NOBODY) || (state->next_type[each] != RULEC_NOBODY)) {
+            state->taken[state->n_taken] = each;
+            state->n_taken++;
+        }
+    }
     rulec_read_world(input, state->world);
     for (each = 0u; each < RULEC_SEATS; each++) {
         if (state->seated[each] != RULEC_EMPTY) {
@@ -452,12 +502,13 @@ rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verd
             return RULEC_EXCLUDED_BY_FACTS;
         }
     }
+    /* A state that is refused has changed nothing so far. */
     verdict->left_out = left_out;
     verdict->book.best = RULEC_SATISFIED;
     verdict->book.worst = RULEC_SATISFIED;
     for (each = 0u; each < RULEC_RULES; each++) {
         const rulec_range *const said = &verdict->rules[each];
-        rulec_judge(state, input, each, verdict);
+        rulec_judge(state, input, each, &verdict->rules[each]);
         if (rulec_rules[each].hard != 0u) {
             verdict->book.best = (said->best > verdict->book.best) ? said->best : verdict->book.best;
             verdict->book.worst = (said->worst > verdict->book.worst) ? said->worst : verdict->book.worst;

@@ -27,6 +27,9 @@ typedef struct {
     uint16_t seated[RULEC_SEATS];
     uint8_t stays[RULEC_SEATS];
     uint8_t absent[RULEC_TYPES];
+    uint8_t crowded;
+    uint16_t n_taken;
+    uint16_t taken[RULEC_SEATS];
     uint16_t world[RULEC_WORLD_READS];
     uint16_t own[RULEC_SEATS][RULEC_OWN_READS];
     uint16_t shared[RULEC_SHARED_READS];
