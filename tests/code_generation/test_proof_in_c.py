@@ -113,7 +113,7 @@ def found_by_a_process(layout, source):
 @pytest.mark.parametrize(
     ("table", "every"),
     [
-        ("entries", 600),
+        ("entries", 200),
         ("cells", 600),
         pytest.param("entries", 1, marks=pytest.mark.long),
         pytest.param("cells", 1, marks=pytest.mark.long),
