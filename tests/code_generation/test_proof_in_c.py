@@ -114,7 +114,7 @@ def found_by_a_process(layout, source):
     ("table", "every"),
     [
         ("entries", 200),
-        ("cells", 600),
+        ("cells", 200),
         pytest.param("entries", 1, marks=pytest.mark.long),
         pytest.param("cells", 1, marks=pytest.mark.long),
     ],
