@@ -50,7 +50,10 @@ def test_a_comment_stays_one(text):
 
 @pytest.mark.parametrize("text", HOSTILE)
 def test_a_literal_has_the_bytes_of_its_text(text):
-    literal = c_string(text)
+    written = c_string(text)
+    # No escape is followed by anything else in its literal (MISRA C:2012, 4.1).
+    assert not re.search(r"\\[0-7]{3}[^\\\"]", written)
+    literal = written.replace('" "', "")
     assert re.fullmatch(r'"([ !#-)+->@-\[\]-~]|\\[0-7]{3})*"', literal)
     found = re.sub(rb"\\([0-7]{3})", lambda x: bytes([int(x[1], 8)]), literal[1:-1].encode())
     assert found == text.encode("utf-8", "surrogatepass")
