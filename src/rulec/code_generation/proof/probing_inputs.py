@@ -76,10 +76,10 @@ def _probes_of(
         yield ReadingProbe(
             own.rule.name,
             number,
-            own.reads[number],
-            state,
-            objects,
-            tuple(binding.values()),
+            place=own.reads[number],
+            state=state,
+            objects=objects,
+            binding=tuple(binding.values()),
             digits=ready.in_state(binding, view),
             is_sharp=sharp,
         )
