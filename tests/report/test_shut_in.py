@@ -1,5 +1,7 @@
 """The reason for which there is no maneuver at all."""
 
+import json
+
 from rulec.cli.main import main
 
 ROAD = """
@@ -35,11 +37,36 @@ def test_others_sweep_all_the_room(tmp_path, capsys):
     # One comes from behind at 12 m/s, one from ahead: they meet where ego is after 2.2 s
     status, text = answered(tmp_path, capsys, ("1", 2, 12), ("2", 58, -12))
     assert status == 1
-    assert "none leads on from between 1 s and 2 s: in steps of 1 s" in text
-    assert "try a shorter --step" in text
+    assert "none leads on from between 1 s and 2 s\n" in text
+    assert "closed by   1, 2: in steps of 1 s they sweep its lanes" in text
+    # They drive through each other, at any step; but they are 2 m wide, and the lane 4 m.
+    assert "opened by   `--extent body`\n" in text
 
 
 def test_nothing_is_said_where_there_is_a_way(tmp_path, capsys):
     status, text = answered(tmp_path, capsys, ("1", 2, 0))
     assert status == 0
     assert "leads on" not in text
+
+
+def test_the_bounds_are_named_where_they_close_the_way(tmp_path, capsys):
+    # 18 m to one that stands: at 20 m/s nobody stops there.
+    file = tmp_path / "fast.toml"
+    ego = ROAD.replace("d = 0", 'd = 0\nspeed = 20\nbounds = "braking=4"')
+    file.write_text(ego + CAR.format(name="c", s=50, speed=0))
+    assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1", "--json"]) == 1
+    end = json.loads(capsys.readouterr().out)["dead_end"]
+    assert end["opened_by"] == ["--bounds none"]
+    assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1"]) == 1
+    assert "within the bounds of ego's motion" in capsys.readouterr().out
+
+
+def test_a_rule_is_named_that_closes_every_way(tmp_path, capsys):
+    file = tmp_path / "narrow.toml"
+    file.write_text(ROAD + CAR.format(name="c", s=50, speed=0))
+    book = tmp_path / "never.rules"
+    book.write_text(
+        "rulebook never\nuse paper\nhard rule away (v: vehicle) { require never b(v) }\n"
+    )
+    assert main(["maneuvers", str(file), "-r", str(book)]) == 1
+    assert "opened by   a softer away (1 more)" in capsys.readouterr().out

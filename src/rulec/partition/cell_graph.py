@@ -62,16 +62,16 @@ class NavigationGraph:
     @property
     def last_layer(self) -> int:
         """The last layer that a path from the start reaches."""
-        return len(self._reached) - 1
+        return len(self.reached) - 1
 
     @property
     def leads_to_a_goal(self) -> bool:
         """Whether there is a path at all."""
-        reached = self._reached
+        reached = self.reached
         return len(reached) == len(self.layers) and not reached[-1].isdisjoint(self.goals)
 
     @property
-    def _reached(self) -> list[set[int]]:
+    def reached(self) -> list[set[int]]:
         """The cells, layer by layer, to which paths from the start lead, as far as they do."""
         reached = [{self.start}]
         for edges in self.successors:

@@ -40,6 +40,7 @@ from rulec.value_display import Rows, short_count
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
+    from rulec.partition.dead_ends import DeadEnd
     from rulec.partition.motion.witness_trajectory import WitnessSearch
     from rulec.planning.trace_history import Before
 
@@ -189,6 +190,21 @@ class Maneuvers(Rows):
         return _first(
             n, chain.from_iterable(self._of_penalty(*penalty, n) for penalty in penalties)
         )
+
+    @cached_property
+    def dead_end(self) -> DeadEnd | None:
+        """Where the last way ends; None if there is a maneuver."""
+        if self.traces:
+            return None
+        from rulec.partition.dead_ends import dead_end  # all of the partition, for few answers
+
+        return dead_end(self.graph)
+
+    def without_each_rule(self) -> dict[str, int]:
+        """By hard rule, most first, how many maneuvers violate it and no other hard rule."""
+        alone = violating_alone(self.perhaps)
+        counts = {name: product.accepted for name, product in alone.items() if product.accepted}
+        return dict(sorted(counts.items(), key=lambda item: -item[1]))
 
     def prunings(self) -> list[RulePruning]:
         """Effect of every rule on the number of maneuvers. Raises RulecError as ``best`` does."""

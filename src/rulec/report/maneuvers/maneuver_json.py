@@ -19,6 +19,7 @@ from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.maneuvers import maneuver_report
+from rulec.report.maneuvers.dead_end_json import DeadEndData, dead_end_data
 from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
 from rulec.report.maneuvers.trajectory_json import TrajectoryData, trajectory_data
 from rulec.report.verdicts.verdict_json import (
@@ -219,6 +220,7 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     unknown: Sequence[str]
     not_judged: Sequence[NotJudgedRule]
     by_default: Sequence[str]
+    dead_end: DeadEndData | None
     seconds: float
     scene: SceneData | UnsetType = UNSET
     violated_before: Sequence[PastViolation] | UnsetType = UNSET
@@ -251,6 +253,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             unknown=maneuvers.unknown,
             not_judged=not_judged_data(maneuvers.not_judged, maneuvers.rules),
             by_default=maneuvers.by_default,
+            dead_end=dead_end_data(maneuvers),
             seconds=round(seconds, 6),
             scene=UNSET if scenario.account is None else _scene(maneuvers, scenario.account),
             violated_before=_each(maneuvers.violated_before, partial(filled, PastViolation)),

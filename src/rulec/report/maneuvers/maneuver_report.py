@@ -87,6 +87,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         f"maneuvers   {_paths(maneuvers)}",
         *_shut_in(maneuvers),
         f"satisfying  {satisfying}",
+        *_without_rules(maneuvers),
         *_doubts(maneuvers),
         *_violated_before(maneuvers.violated_before or ()),
         *([visible(by_default)] if maneuvers.by_default else []),
@@ -159,16 +160,34 @@ def _scene(maneuvers: Maneuvers) -> Iterator[str]:
 
 def _shut_in(maneuvers: Maneuvers) -> Iterator[str]:
     """The reason where there is no maneuver at all."""
-    graph = maneuvers.graph
-    if maneuvers.traces:
+    graph, end = maneuvers.graph, maneuvers.dead_end
+    if end is None:
         return
-    until = graph.last_layer
-    if until == len(graph.layers) - 1:
-        yield "            no way leads to the goal by the end"
+    within = "" if graph.bounds is None else " within the bounds of ego's motion"
+    if end.layer == len(graph.layers) - 1:
+        yield f"            no way leads to the goal by the end{within}"
+    else:
+        low, high = (f"{(end.layer + more) * graph.step_s:g} s" for more in (0, 1))
+        yield f"            none leads on from between {low} and {high}{within}"
+        if end.closed_by:
+            names = first_of(end.closed_by, MOST_DEFAULTS)
+            yield visible(
+                f"closed by   {names}: in steps of {graph.step_s:g} s they sweep its lanes"
+            )
+    ways = " or ".join(f"`{option}`" for option in end.opened_by)
+    yield f"opened by   {ways or 'no shorter step, narrower extent or other adjacency'}"
+
+
+def _without_rules(maneuvers: Maneuvers) -> Iterator[str]:
+    """The hard rules each of which alone closes ways, where no maneuver is satisfying."""
+    if not maneuvers.traces or maneuvers.satisfying or maneuvers.open or not maneuvers.judges:
         return
-    low, high = (f"{(until + more) * graph.step_s:g} s" for more in (0, 1))
-    yield f"            none leads on from between {low} and {high}: in steps of {graph.step_s:g} s"
-    yield "            others sweep all the room that ego has there; try a shorter --step"
+    counts = maneuvers.without_each_rule()
+    if counts:
+        shown = [f"{name} ({shown_count(count)} more)" for name, count in counts.items()]
+        yield visible(f"opened by   a softer {first_of(shown, MOST_DEFAULTS)}")
+    else:
+        yield "opened by   no single softer rule: each maneuver violates two or more"
 
 
 def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:

@@ -1,0 +1,92 @@
+"""Where the last way through a scenario ends, who closes it, and what would open it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+from rulec.diagnostics import RulecError
+from rulec.partition.cell_graph import NavigationGraph
+from rulec.partition.navigation_graph import GraphOptions, navigation_graph
+from rulec.scenario import Box
+from rulec.scenario.motion import swept
+from rulec.scenario.time_grid import MAX_LAYERS
+
+MOST_TIMES_FINER = 4
+"""Steps are halved so often at most to find one that opens a way: by this factor."""
+
+
+@dataclass(frozen=True, slots=True)
+class DeadEnd:
+    """The last layer that a way reaches, and what happens there.
+
+    ``closed_by`` are the obstacles that sweep places onward of its cells within the next layer;
+    none if ways reach the last layer and no goal, or if the road or ego's motion ends them.
+    ``opened_by`` are options of a graph, as the command line has them, with each of which alone
+    there is a way.
+    """
+
+    layer: int
+    closed_by: tuple[str, ...]
+    opened_by: tuple[str, ...]
+
+
+def dead_end(graph: NavigationGraph) -> DeadEnd | None:
+    """Where the last way of a graph ends; None if one leads to a goal."""
+    if graph.leads_to_a_goal:
+        return None
+    layer = graph.last_layer
+    closed = () if layer == len(graph.layers) - 1 else tuple(_closing(graph, layer))
+    return DeadEnd(layer, closed, tuple(_openings(graph)))
+
+
+def _closing(graph: NavigationGraph, layer: int) -> Iterator[str]:
+    """Obstacles that sweep lanes within the cells reached, in the next layer."""
+    lanes = graph.scenario.road.lanes
+    boxes = [box for i in graph.reached[layer] for box in graph.layers[layer].cells[i].boxes]
+    start, end = (float(graph.step * (layer + more)) for more in (1, 2))
+    for obstacle in graph.scenario.obstacles:
+        body = swept(obstacle, start, end)
+        if body is None:
+            continue
+        taken = [
+            Box(body.s_min, body.s_max, right, left)
+            for right, left in pairwise(lanes)
+            if body.d_min < left and right < body.d_max
+        ]
+        if any(part.overlaps(box) for part in taken for box in boxes):
+            yield obstacle.id
+
+
+def _openings(graph: NavigationGraph) -> Iterator[str]:
+    """Options with each of which alone there is a way, those that change least first."""
+    finer = 2
+    while finer <= MOST_TIMES_FINER and (len(graph.layers) - 1) * finer < MAX_LAYERS:
+        step = float(graph.step / finer)
+        if _opens(graph, {"step_s": step}):
+            yield f"--step {step:g}"
+            break
+        finer *= 2
+    if graph.extent == "lane" and _opens(graph, {"extent": "body"}):
+        yield "--extent body"
+    if graph.adjacency != "touch" and _opens(graph, {"adjacency": "touch"}):
+        yield "--adjacency touch"
+    if graph.bounds is not None and _opens(graph, {"bounds": "none"}):
+        yield "--bounds none"
+
+
+def _opens(graph: NavigationGraph, change: GraphOptions) -> bool:
+    options: GraphOptions = {
+        "partition": graph.partition,
+        "adjacency": graph.adjacency,
+        "extent": graph.extent,
+        "step_s": graph.step_s,
+        "horizon_s": float(graph.step * (len(graph.layers) - 1)),
+        "bounds": "none" if graph.bounds is None else graph.bounds,
+        **change,
+    }
+    try:
+        return navigation_graph(graph.scenario, **options).leads_to_a_goal
+    except RulecError:
+        return False
