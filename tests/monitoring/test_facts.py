@@ -149,12 +149,12 @@ def test_facts_that_count_what_no_rule_reads_are_not_asked():
 
 def test_facts_that_exclude_a_state_only_together():
     book = parse_rulebook(
-        "rulebook a signal p, q default false signal r\nfact p implies r\nfact q implies not r\n"
+        "rulebook a signal p, q default false signal r\nfact r or not p\nfact q implies not r\n"
         "hard rule s { require always (p or q) accept { p and q } }"
     )
     found = problem({"p": True, "q": True}, objects={}, rulebook=compile_rulebook(book))
     assert found.message == (
-        "state 0 cannot be: `p implies r` and `q implies not r` hold in every state"
+        "state 0 cannot be: `r or not p` and `q implies not r` hold in every state"
     )
     # Given `r`, it is clear which of them it is.
     found = problem({"p": True, "q": True, "r": True}, objects={}, rulebook=compile_rulebook(book))

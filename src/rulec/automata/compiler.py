@@ -37,6 +37,7 @@ from rulec.logic.printing import time_in_words
 from rulec.rulebook.elaborate.rule_messages import no_multiple
 from rulec.rulebook.rulebook_model import Rule, Rulebook, parts_of
 from rulec.rulebook.rules.exemptions import rule_trigger
+from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.version import __version__
 
 CPU_LIMIT_S = 5
@@ -137,7 +138,7 @@ def build_all(
         raise RulecError(dict.fromkeys(problems))
     return CompiledRulebook(
         **alike(Rulebook, rulebook),
-        vocabulary=rulebook.vocabulary,
+        vocabulary=with_implied(rulebook.vocabulary, [one.formula for one in rulebook.axioms]),
         rules=tuple(compiled),
         sources=rulebook.sources,
         rulec=__version__,

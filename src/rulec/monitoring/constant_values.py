@@ -114,13 +114,14 @@ def _filled(
         for subject, (value, _) in said.items():
             stretches = (present.get(item, (0, last)) for item in subject)
             if all(begins <= number <= ends for begins, ends in stretches):
-                filled = _put(filled, subject, value)
+                filled = put(filled, subject, value)
         yield state if filled == state.get(name) else {**state, name: filled}
 
 
-def _put(given: Any, subject: _Subject, value: object) -> Any:
+def put(given: Any, subject: _Subject, value: object) -> Any:
+    """What a name says, and ``value`` of these objects."""
     if not subject:
         return value
     first, *others = subject
     known = given if isinstance(given, Mapping) else {}
-    return {**known, first: _put(known.get(first), tuple(others), value)}
+    return {**known, first: put(known.get(first), tuple(others), value)}

@@ -12,7 +12,7 @@ from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, Cast, types_of
-from rulec.monitoring.constant_values import with_constants
+from rulec.monitoring.implied_values import with_all_said
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
 from rulec.monitoring.uncertainty.suppositions import spelled_out
@@ -45,7 +45,7 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     is_partial = validator.check(trace.states, "state {}".format, trace.place)
     if is_partial or trace.ends == "cut" or trace.told is not None:
         # What is unknown of everybody is so of each one of whom nothing is said elsewhere.
-        trace = with_constants(spelled_out(trace, rulebook.vocabulary), rulebook.vocabulary)
+        trace = with_all_said(spelled_out(trace, rulebook.vocabulary), rulebook.vocabulary)
         return uncertain_verdict(trace, rulebook)
     reader = letter_reader_of(trace, rulebook)
     check_counting_axioms(rulebook, len(trace.states), reader.view, "state {}".format, trace.place)
@@ -85,7 +85,7 @@ def letter_reader_of(
 
     Raises RulecError R0503 if a constant changes.
     """
-    trace = with_constants(trace, rulebook.vocabulary, where)
+    trace = with_all_said(trace, rulebook.vocabulary, where)
     place, objects, present = trace.place, trace.objects, trace.present
     return LetterReader(
         trace.states, rulebook, where, place=place, objects=objects, present=present

@@ -15,6 +15,7 @@ from rulec.rulebook.overlay.priorities import pre_order
 from rulec.rulebook.overlay.rulebook_overlay import Overlay, in_force, overlay, own_law
 from rulec.rulebook.rulebook_model import Provision, Rule, Rulebook, SourceFile, Topic, Traffic
 from rulec.rulebook.rules.axioms import axioms_of, contradicted
+from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.rulebook.rules.rule_elaboration import translate_rule
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary
@@ -66,6 +67,7 @@ def resolve(
             rules.append(rule)
     good = [rule for rule in rules if rule is not None]
     vocabulary = symbols.vocabulary(file.name.text if file.name else "")
+    vocabulary = with_implied(vocabulary, [axiom.formula for axiom in axioms])
     if not symbols.mistakes:
         for rule in good:
             mistakes += contradicted(rule, axioms, vocabulary)

@@ -76,10 +76,13 @@ class Vocabulary:
     name: str
     types: Mapping[str, ObjectType] = field(default_factory=lambda: MappingProxyType({}))
     declarations: Mapping[str, Declaration] = field(default_factory=lambda: MappingProxyType({}))
+    implied: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    """Signal -> those of the same objects that facts say it implies, where a state has none."""
 
     def __reduce__(self) -> tuple[type[Vocabulary], tuple[object, ...]]:
         # Read-only views of dictionaries cannot be pickled.
-        return Vocabulary, (self.name, dict(self.types), dict(self.declarations))
+        own = self.name, dict(self.types), dict(self.declarations), dict(self.implied)
+        return Vocabulary, own
 
     @cached_property
     def enumeration_of(self) -> Mapping[str, Enumeration]:

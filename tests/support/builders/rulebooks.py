@@ -8,6 +8,7 @@ from rulec.automata.prefix_machines import prefix_machines
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Unary, UnaryOperator
 from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
+from rulec.rulebook.rules.implied_signals import with_implied
 from support.generators.random_formulas import VOCABULARY
 
 P, Q = Atom("p"), Atom("q")
@@ -64,7 +65,7 @@ def compile_here(rulebook, step_s=None):
         compiled.append(compiler._compiled(formula.rule, formula.step_s, answer))
     return CompiledRulebook(
         rulebook.name,
-        rulebook.vocabulary,
+        with_implied(rulebook.vocabulary, [one.formula for one in rulebook.axioms]),
         tuple(compiled),
         "",
         "",

@@ -120,6 +120,18 @@ CASES_OF_OBJECTS = {
             ("of_both @ 0", "of_loud a", "of_loud b"),
         ),
     ),
+    "what a fact makes follow need not be said": case(
+        "rulebook facts\ntype car\n"
+        "signal parked(v: car), stopped(v: car), lit(v: car) default false\n"
+        "fact parked(v) implies stopped(v)\nfact stopped(v) implies lit(v)\n"
+        "hard rule dark (v: car) { require never lit(v) }\n"
+        "hard rule going (v: car) { require never (parked(v) or stopped(v)) }",
+        ((CARS, [{"parked": {"a": True}}]), ("dark a @ 0", "going a @ 0")),
+        ((CARS, [{}, {"stopped": {"a": True, "b": False}}]), ("dark a @ 1", "going a @ 1")),
+        ((CARS, [{"parked": {"a": True}, "lit": {"b": False}}]), ("dark a @ 0", "going a @ 0")),
+        ((CARS, [{"parked": {"a": True}, "stopped": {"a": False}}]), "R0508"),
+        ((CARS, [{"parked": {"a": False}, "stopped": {"a": False}}]), ()),
+    ),
     "facts about two objects, in either order": case(
         "rulebook facts\ntype car\nsignal follows(v: car, w: car), loud(v: car) default false\n"
         "fact follows(v, w) implies loud(w)\n"

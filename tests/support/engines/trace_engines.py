@@ -21,7 +21,7 @@ from support.engines.engine import each, told
 from support.oracles.bits.bit_verdicts import verify_on_bits
 from support.oracles.presence import there
 from support.oracles.rulebook_oracle import Oracle, Refused, Said
-from support.oracles.state_oracle import below
+from support.oracles.state_oracle import as_facts_have_it, below
 
 
 @each
@@ -162,6 +162,7 @@ def across(rulebook, compiled, traces):
     """On bits, eight traces in a byte: those of one shape together."""
     shapes = {}
     for trace in traces:
+        trace = as_facts_have_it(rulebook, trace)
         full = replace(
             trace,
             states=tuple(filled(trace, n, compiled.vocabulary) for n in range(len(trace.states))),

@@ -9,7 +9,7 @@ from support.oracles.bits import along
 from support.oracles.installed_spot import spot
 from support.oracles.past_in_spot import in_spot, spot_automaton
 from support.oracles.rulebook_oracle import Said, in_steps
-from support.oracles.state_oracle import Reading, number
+from support.oracles.state_oracle import Reading, as_facts_have_it, number
 
 
 def word_by_word(keeps):
@@ -17,7 +17,7 @@ def word_by_word(keeps):
 
     @each
     def judge_one(rulebook, compiled, trace):
-        reading = Reading(rulebook, trace)
+        reading = Reading(rulebook, as_facts_have_it(rulebook, trace))
         found = []
         for rule in compiled.rules:
             formula = in_steps(rule.formula, number(trace.step_s))

@@ -199,6 +199,8 @@ def fact(chance, rules):
 
     About every other one is about values that are all of the same objects.
     """
+    if chance.random() < 0.15:
+        return Axiom((), Binary(BinaryOperator.IMPLIES, *chance.sample([Atom("p"), Atom("q")], 2)))
     about = chance.choice(rules)
     variables = about.variables
     read = [

@@ -8,7 +8,7 @@ from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.oracles.formula_oracle import is_kept
 from support.oracles.rulebook_oracle import Said
-from support.oracles.state_oracle import Reading
+from support.oracles.state_oracle import Reading, as_facts_have_it
 
 
 def unknown_places(trace):
@@ -95,6 +95,7 @@ class CompletionOracle:
 
     def __init__(self, oracle, trace, numbers):
         vocabulary = oracle.rulebook.vocabulary
+        trace = as_facts_have_it(oracle.rulebook, trace)
         every = [
             (chosen, oracle.judged(whole))
             for chosen, whole in completions(trace, vocabulary, numbers)

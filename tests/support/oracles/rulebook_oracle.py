@@ -10,7 +10,7 @@ from rulec.logic.formula import Binary, Bound, Unary
 from support.oracles.continuation_oracle import Hope
 from support.oracles.formula_oracle import is_kept
 from support.oracles.possible_letters import possible_letters
-from support.oracles.state_oracle import Reading, number
+from support.oracles.state_oracle import Reading, as_facts_have_it, number
 
 
 @dataclass(frozen=True, order=True)
@@ -41,7 +41,7 @@ class Oracle:
         """All that is violated, sorted; or why nothing can be said."""
         if not trace.states:
             return Refused(frozenset({"R0506"}))
-        reading = Reading(self.rulebook, trace)
+        reading = Reading(self.rulebook, as_facts_have_it(self.rulebook, trace))
         codes = {"R0508"} if reading.breaks_a_counting_fact() else set()
         found = []
         for rule in self.rulebook.rules:

@@ -1,5 +1,6 @@
 """States as a rulebook's vocabulary reads them, written down again from the documentation."""
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
@@ -14,6 +15,32 @@ from rulec.logic.formula import (
     Unary,
     atoms_of,
 )
+
+
+def as_facts_have_it(rulebook, trace):
+    """The trace in which states say, too, what facts make of a signal that they do not mention."""
+    links = [
+        (one.left, one.right)
+        for one in (fact.formula for fact in rulebook.axioms)
+        if isinstance(one, Binary) and one.operator.value == "implies"
+        if isinstance(one.left, Atom) and isinstance(one.right, Atom)
+        if (one.left.value, one.right.value) == (None, None)
+        if one.left.arguments == one.right.arguments
+    ]
+    states = [dict(state) for state in trace.states]
+    for state, (cause, effect) in product(states, links * len(links)):
+        assert len(cause.arguments) < 2, "this reading knows of signals of one object only"
+        said = state.get(cause.name)
+        if not cause.arguments and said is True:
+            state.setdefault(effect.name, True)
+        if (
+            cause.arguments
+            and isinstance(said, dict)
+            and isinstance(state.get(effect.name, {}), dict)
+        ):
+            follows = {item: True for item, value in said.items() if value is True}
+            state[effect.name] = follows | state.get(effect.name, {})
+    return replace(trace, states=tuple(states))
 
 
 class Reading:

@@ -35,6 +35,7 @@ from rulec.rulebook.rulebook_model import (
     SourceFile,
     Variable,
 )
+from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 
@@ -65,6 +66,8 @@ def rulebook_of(read: schema.BundleFile, *, own: bool = False) -> CompiledRulebo
         priorities=_priorities(read),
         axioms=tuple(_axiom(fact, vocabulary) for fact in read.facts),
     )
+    known = with_implied(vocabulary, [axiom.formula for axiom in rulebook.axioms])
+    rulebook = replace(rulebook, vocabulary=known)
     prefixes = _prefixes(read, own=own)
     if read.steps is not UNSET:
         return _with_steps(rulebook, read)

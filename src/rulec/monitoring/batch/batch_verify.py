@@ -23,7 +23,7 @@ from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.uncertain.uncertain_verdicts import uncertain_verdicts
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.bindings import Cast, types_of
-from rulec.monitoring.constant_values import with_constants
+from rulec.monitoring.implied_values import with_all_said
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import (
     check_objects,
@@ -94,8 +94,8 @@ def verify_chunk(
     for place, item in enumerate(items):
         if isinstance(item, Trace):
             try:
-                if rulebook.vocabulary.constants:
-                    item = _with_constants(item, rulebook.vocabulary)
+                if rulebook.vocabulary.constants or rulebook.vocabulary.implied:
+                    item = _with_all_said(item, rulebook.vocabulary)
                 shape = *trace_groups.shape_of(item), item.ends, item.told
                 shapes.setdefault(shape, []).append((place, item))
             except (TypeError, AttributeError, LookupError, RulecError):
@@ -206,10 +206,10 @@ def _is_partial(state: object) -> bool:
     return isinstance(state, Mapping) and has_partial_values(state)
 
 
-def _with_constants(trace: Trace, vocabulary: Vocabulary) -> Trace:
+def _with_all_said(trace: Trace, vocabulary: Vocabulary) -> Trace:
     if any(state.get(name) is UNKNOWN for name in vocabulary.constants for state in trace.states):
         trace = spelled_out(trace, vocabulary)
-    return with_constants(trace, vocabulary)
+    return with_all_said(trace, vocabulary)
 
 
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
@@ -347,7 +347,21 @@ def _verdicts(columns: TraceColumns, rules: CompiledRulebook) -> Sequence[Verdic
         if name in rules.vocabulary.constants
     ):
         raise UnencodableError
+    for cause, effects in rules.vocabulary.implied.items():
+        if any(_lacks(columns, cause, effect) for effect in effects):
+            raise UnencodableError
     return verify_columns(columns, rules)
+
+
+def _lacks(columns: TraceColumns, cause: str, effect: str) -> bool:
+    """Whether in some state a signal is true and another one, which it implies, is not said."""
+    values = columns.values
+    return any(
+        bool(truths.any())
+        and ((effect, items) not in values or bool((~values[effect, items] & truths).any()))
+        for (name, items), truths in values.items()
+        if name == cause
+    )
 
 
 def _verify_block_group(

@@ -22,6 +22,7 @@ from rulec.monitoring.explain.explained_states import states_to_explain
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
 from rulec.monitoring.explain.observed_states import ObservedStates, known_value
+from rulec.monitoring.implied_values import with_implied_values
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
@@ -131,7 +132,8 @@ def explain(
     that were decided by any. A repair is looked for only if it is to be ``repaired``, and
     never in a trace of which a window is looked at.
     """
-    given, declared = trace, rulebook.vocabulary
+    declared = rulebook.vocabulary
+    given = trace = with_implied_values(trace, declared)
     untold = untold_names(declared, trace.told)
     if untold or trace.ends == "cut" or any(map(has_partial_values, trace.states)):
         trace = completed(trace, declared)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rulec.automata.thresholds import EXACT_IN_FLOATS
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize, one_value
 from rulec.monitoring.batch.trace_groups import group_traces
-from rulec.monitoring.constant_values import with_constants
+from rulec.monitoring.implied_values import with_all_said
 from rulec.monitoring.state_view import value_in, with_values
 from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names, with_untold
 from rulec.monitoring.uncertainty.suppositions import spelled_out
@@ -106,8 +106,8 @@ class StateTables(NameTables):
 
     def __init__(self, trace: Trace, vocabulary: Vocabulary) -> None:
         super().__init__(trace.told, trace.objects, len(trace.states), vocabulary)
-        if vocabulary.constants:
-            trace = with_constants(spelled_out(trace, vocabulary), vocabulary)
+        if vocabulary.constants or vocabulary.implied:
+            trace = with_all_said(spelled_out(trace, vocabulary), vocabulary)
         self._present = trace.present
         self._columns = _columns_of(trace, self.vocabulary)
 

@@ -16,6 +16,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation, named
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Cast, in_usual_order
+from rulec.monitoring.implied_values import with_implied_signals
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
@@ -126,6 +127,7 @@ class BoundRules:
 
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)
+        state = with_implied_signals(state, rulebook.vocabulary)
         partial = None
         if self.groups.is_partial or has_partial_values(state):
             partial = self._partial_state(state, (name, place))
@@ -150,6 +152,7 @@ class BoundRules:
         """
         known = None
         try:
+            state = with_implied_signals(state, self._rulebook.vocabulary)
             names = tuple(state)
             reader = self._readers[names] if names in self._readers else self._reader_of(names)
             if reader is not None:
@@ -157,7 +160,7 @@ class BoundRules:
                 known = reader.shape, encoded
                 if not self._counting:
                     return reader.letters(state, encoded), known
-        except (LookupError, TypeError):
+        except (LookupError, TypeError, AttributeError):
             pass
         with suppress(LookupError, TypeError):
             return self._partial[known], known  # type: ignore[index]
@@ -210,6 +213,7 @@ class BoundRules:
         """
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)
+        state = with_implied_signals(state, rulebook.vocabulary)
         reader = LetterReader((state,), rulebook, name.format, place=place, objects=self.objects)
         check_counting_axioms(rulebook, 1, reader.view, name.format, place)
         is_partial = self.groups.is_partial or has_partial_values(state)

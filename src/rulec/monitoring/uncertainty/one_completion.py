@@ -33,7 +33,7 @@ def with_all_defaults(vocabulary: Vocabulary) -> Vocabulary:
         name: replace(item, default=any_value(item))  # type: ignore[arg-type]
         for name, item in vocabulary.declarations.items()
     }
-    return Vocabulary(vocabulary.name, vocabulary.types, declarations)
+    return replace(vocabulary, declarations=declarations)
 
 
 def _known(value: Any, declaration: Declaration, depth: int) -> Any:

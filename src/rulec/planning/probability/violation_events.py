@@ -15,6 +15,7 @@ from rulec.logic.formula import Count, Formula
 from rulec.logic.free_names import names_in, variables_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.bindings import Binding, Cast, types_of
+from rulec.monitoring.implied_values import with_implied_in_graph
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.lazy_bindings import (
@@ -55,7 +56,8 @@ class ViolationEvents:
         self._path = path
         obstacles = {name: predicted.obstacle for name, predicted in path.predicted.items()}
         vocabulary, reading = maneuvers.rules.vocabulary, maneuvers.reading
-        self._words = in_rule_words(maneuvers.graph, path.traces, obstacles, vocabulary, reading)
+        words = in_rule_words(maneuvers.graph, path.traces, obstacles, vocabulary, reading)
+        self._words = with_implied_in_graph(words, vocabulary)
         self._states = [state for (state,) in self._words.states]
         self._past = past_for(
             maneuvers.graph, maneuvers.paths, maneuvers.rules, (*HARD, *SOFT), maneuvers.after

@@ -10,6 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding
+from rulec.monitoring.implied_values import with_implied_in_graph
 from rulec.monitoring.letter_reader import LetterReader, present_in
 from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.uncertainty.lazy_bindings import known_bits
@@ -53,6 +54,7 @@ def instances(
     validator = StateValidator(vocabulary, graph.objects)
     places = [f"a cell of layer {layer}".format for layer in range(len(graph.states))]
     partial = [validator.check(*layer) for layer in zip(graph.states, places, strict=True)]
+    graph = with_implied_in_graph(graph, vocabulary)
     possible = None
     doubtful = past.doubtful_rules
     if any(partial) or graph.told is not None or doubtful:

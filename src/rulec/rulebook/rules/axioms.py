@@ -20,6 +20,7 @@ from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.rulebook_model import Axiom, ExampleState, Rule, Variable
 from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
+from rulec.rulebook.rules.implied_signals import with_what_follows
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import choices
@@ -144,7 +145,8 @@ def contradicted(
             for term in required_inputs(rule.formula, objects, vocabulary.is_subtype)
         )
         for number, state in enumerate(example.states):
-            violated = _violated(ExampleValues(state, read, objects, vocabulary), axioms)
+            said = with_what_follows(state, vocabulary)
+            violated = _violated(ExampleValues(said, read, objects, vocabulary), axioms)
             if violated is not None:
                 axiom, text = violated
                 spans = example.state_spans

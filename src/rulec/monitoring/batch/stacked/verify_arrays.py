@@ -27,7 +27,7 @@ from rulec.monitoring.batch.stacked.stacked_outcomes import (
     outcomes,
 )
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
-from rulec.monitoring.constant_values import with_constants
+from rulec.monitoring.implied_values import with_all_said
 from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.suppositions import spelled_out
@@ -183,7 +183,7 @@ class _CloseLook:
     @cached_property
     def _run(self) -> UncertainRun:
         vocabulary = self._rulebook.vocabulary
-        trace = with_constants(spelled_out(self._trace.trace(), vocabulary), vocabulary)
+        trace = with_all_said(spelled_out(self._trace.trace(), vocabulary), vocabulary)
         return UncertainRun(trace, self._rulebook)
 
     def answer(self, rule: str, binding: Mapping[str, str]) -> Found | None:

@@ -78,7 +78,7 @@ def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
         name: replace(item, default=unknown) if name in untold else item
         for name, item in vocabulary.declarations.items()
     }
-    return Vocabulary(vocabulary.name, vocabulary.types, declarations)
+    return replace(vocabulary, declarations=declarations)
 
 
 BoundLetters: TypeAlias = dict[tuple[object, ...], RuleLetters]

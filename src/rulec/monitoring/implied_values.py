@@ -1,0 +1,72 @@
+"""What a state leaves out, where a fact makes it follow from what it says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from rulec.monitoring.constant_values import put, values_in, with_constants
+from rulec.trace import State, Trace, TraceGraph
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
+
+
+def with_all_said(
+    trace: Trace, vocabulary: Vocabulary, where: Callable[[int], str] = "state {}".format
+) -> Trace:
+    """The trace ``with_constants`` and ``with_implied_values``. Raises RulecError R0503."""
+    return with_implied_values(with_constants(trace, vocabulary, where), vocabulary)
+
+
+def with_implied_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
+    """The trace of valid states that say, too, what follows by ``Vocabulary.implied``."""
+    if not vocabulary.implied:
+        return trace
+    states = tuple([with_implied_signals(state, vocabulary) for state in trace.states])
+    same = all(map(_is, states, trace.states))
+    return trace if same else replace(trace, states=states)
+
+
+def with_implied_in_graph(graph: TraceGraph, vocabulary: Vocabulary) -> TraceGraph:
+    """The graph of valid states that say, too, what follows by ``Vocabulary.implied``."""
+    if not vocabulary.implied:
+        return graph
+    layers = [[with_implied_signals(state, vocabulary) for state in own] for own in graph.states]
+    return replace(graph, states=tuple(map(tuple, layers)))
+
+
+def with_implied_signals(state: State, vocabulary: Vocabulary) -> State:
+    """The state, and each signal that it does not mention and that follows from a true one.
+
+    What it says otherwise it goes on saying: such a state contradicts the fact.
+    """
+    implied = vocabulary.implied
+    if implied.keys().isdisjoint(state):
+        return state
+    filled: dict[str, Any] = dict(state)
+    ahead = [
+        (cause, items)
+        for cause in implied.keys() & state.keys()
+        for items, value in values_in(state[cause], len(vocabulary.declarations[cause].parameters))
+        if value is True
+    ]
+    while ahead:
+        cause, items = ahead.pop()
+        for effect in implied.get(cause, ()):
+            if not _mentions(filled.get(effect), items):
+                filled[effect] = put(filled.get(effect), items, True)
+                ahead.append((effect, items))
+    return state if filled == state else filled
+
+
+def _mentions(said: Any, items: tuple[str, ...]) -> bool:
+    for item in items:
+        if said is UNKNOWN:
+            return True
+        said = said.get(item) if isinstance(said, Mapping) else None
+    return said is not None
+
+
+def _is(one: object, other: object) -> bool:
+    return one is other

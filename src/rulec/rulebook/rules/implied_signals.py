@@ -1,0 +1,59 @@
+"""Signals that facts make true: who is parked stands, whether or not a trace says so."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from types import MappingProxyType
+
+from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula
+from rulec.rulebook.rulebook_model import ExampleState
+from rulec.vocabulary import Signal, Vocabulary
+
+
+def with_implied(vocabulary: Vocabulary, facts: Iterable[Formula]) -> Vocabulary:
+    """The vocabulary with what follows from its signals by ``facts``.
+
+    Only facts that say of one signal that it implies another one of the same objects fill in what
+    a state leaves out, and none that speaks of a constant: what one state says of it holds in all.
+    """
+    following: dict[str, list[str]] = {}
+    for cause, effect in _implications(facts, vocabulary):
+        following.setdefault(cause, []).append(effect)
+    if not following:
+        return vocabulary
+    implied = {cause: tuple(effects) for cause, effects in following.items()}
+    return replace(vocabulary, implied=MappingProxyType(implied))
+
+
+def with_what_follows(said: ExampleState, vocabulary: Vocabulary) -> ExampleState:
+    """What an example's state says, and what follows from it that it does not mention."""
+    known = dict(said)
+    ahead = [one for one, value in said.items() if value is True]
+    while ahead:
+        cause, items = ahead.pop()
+        for effect in vocabulary.implied.get(cause, ()):
+            if (effect, items) not in known:
+                known[effect, items] = True
+                ahead.append((effect, items))
+    return known
+
+
+def _implications(facts: Iterable[Formula], vocabulary: Vocabulary) -> Iterator[tuple[str, str]]:
+    for fact in facts:
+        match fact:
+            case Binary(BinaryOperator.IMPLIES, Atom() as cause, Atom() as effect):
+                if cause.arguments == effect.arguments and _fits(cause, effect, vocabulary):
+                    yield cause.name, effect.name
+
+
+def _fits(cause: Atom, effect: Atom, vocabulary: Vocabulary) -> bool:
+    """Whether both are signals that may change, and whoever has the one has the other."""
+    one, other = vocabulary.declarations[cause.name], vocabulary.declarations[effect.name]
+    return (
+        isinstance(one, Signal)
+        and isinstance(other, Signal)
+        and not (one.constant or other.constant)
+        and len(set(cause.arguments)) == len(cause.arguments)
+        and all(map(vocabulary.is_subtype, one.parameters, other.parameters))
+    )
