@@ -55,7 +55,7 @@ class WrittenDrives:
     @cached_property
     def kinds(self) -> dict[str, type]:
         """The kinds of all names that the drives speak of."""
-        kinds = with_bounds(self.selected.drives.kinds(), MEASURED)
+        kinds = with_bounds(self.selected.kinds(), MEASURED)
         if not kinds:
             message = "nobody in this recording drives on a lane"
             raise NOT_IN_RECORDING.error(SourceLocation(str(self.source.path)), message)

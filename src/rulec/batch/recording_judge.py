@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.batch.batch_messages import process_lost
+from rulec.batch.jobs import Jobs
 from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_parts import RecordingPart
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
 from rulec.extraction.selection import RequestedDrives
 from rulec.monitoring.verdict import NotJudged
-from rulec.recordings.recording import Recording
+from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.recording_files import read_recordings
 from rulec.recordings.recording_format import RecordingSource
 from rulec.report.text.terminal_text import visible
@@ -21,7 +25,7 @@ from rulec.report.verdicts import recording_table, verdict_report
 
 if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
-    from rulec.report.verdict_findings.found_in_drives import DriveFindings
+    from rulec.report.verdict_findings.found_in_drives import DriveFindings, FoundInDrives
     from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
 
 RowMaker: TypeAlias = Callable[
@@ -81,21 +85,39 @@ Piece = str | RulecError | DriveProblem | JudgedRecording
 """A line of JSON, what is wrong with a file or with a drive, or a whole recording."""
 
 
+_ALONE = Jobs(1)
+
+
+def _nobody(*_: object) -> None:
+    """Tell nobody."""
+
+
 def judge(settings: JudgeSettings, path: str) -> Iterator[Piece]:
     """The pieces of a file, in its order; one that cannot be read is an error."""
-    return judge_aloud(settings, path, _silently)
+    return judge_aloud(settings, path, _nobody)
 
 
 def judge_aloud(
-    settings: JudgeSettings, path: str, tell: Callable[[int, int], object]
+    settings: JudgeSettings,
+    path: str,
+    tell: Callable[[int, int], object],
+    jobs: Jobs = _ALONE,
+    lost: Callable[[int | None], object] = _nobody,
 ) -> Iterator[Piece]:
-    """As ``judge``; it tells how many vehicles of how many are done."""
+    """As ``judge``; it tells how many vehicles, or parts, of how many are done.
+
+    Parts of a long recording are judged in several processes; ``lost`` is told by which signal one
+    of them was killed, whose part is judged again.
+    """
     left = settings.to_explain
     label = settings.labels.get(path, path)
     try:
         for recording in read_recordings(replace(settings.source, path=Path(path))):
             judged = _RecordingJudge(settings, recording, label, left)
-            yield from judged.pieces(tell)
+            if jobs.processes > 1 and len(judged.parts) > 1:
+                yield from judged.pieces_side_by_side(tell, jobs, lost)
+            else:
+                yield from judged.pieces(tell)
             left = judged.left
     except RulecError as error:
         yield error if label == path else _relabelled(error, path, label)
@@ -113,8 +135,19 @@ def _relabelled(error: RulecError, path: str, label: str) -> RulecError:
     )
 
 
-def _silently(done: int, total: int) -> None:
-    """Tell nobody."""
+@dataclass(slots=True)
+class _JudgedDrives:
+    """What there is to be said of some drives, one after the other, and of all of them together.
+
+    ``pieces`` are those that say something of one of them.
+    """
+
+    tally: ViolationTally = field(default_factory=ViolationTally)
+    blocks: list[str] = field(default_factory=list)
+    rows: list[Mapping[str, object]] = field(default_factory=list)
+    pieces: list[Piece] = field(default_factory=list)
+    found: FoundInDrives | None = None
+    n_explained: int = 0
 
 
 class _RecordingJudge:
@@ -124,41 +157,102 @@ class _RecordingJudge:
         self._settings = settings
         self._file = file
         self._verdicts = RecordingVerdicts(recording, settings.rules, settings.request, file)
-        self._tally = ViolationTally()
-        self._blocks: list[str] = []
+        self._judged = _JudgedDrives()
         self._findings = _findings(self._verdicts, file) if settings.findings else None
         self.left = left
 
+    @property
+    def parts(self) -> Sequence[RecordingPart]:
+        """The parts that the recording is looked at in."""
+        return self._verdicts.drives.parts
+
     def pieces(self, tell: Callable[[int, int], object]) -> Iterator[Piece]:
         """A piece for each drive that has something to say, and the recording."""
-        verdicts, tally = self._verdicts, self._tally
-        names = [rule.name for rule in verdicts.rules.rules]
-        rows: list[Mapping[str, object]] = []
-        for number, answer in enumerate(verdicts.answers(), 1):
-            tell(number, len(verdicts.egos))
-            tally.add(answer, names)
-            explained: list[Explanation] = []
-            if isinstance(answer, DriveVerdict):
-                if isinstance(answer.answer, NotJudged):
-                    yield DriveProblem(answer.answer.error)
-                else:
-                    explained = self._explained(answer)
-            own = None if self._findings is None else self._findings.add(answer, explained)
-            if self._settings.to_rows is not None:
-                rows += self._settings.to_rows(answer, verdicts, self._file, own)
-            if self._settings.lines:
-                # JSON of explanations and evidence, 30 ms: only where it is wanted.
-                from rulec.report.verdicts import recording_json
+        for number, answer in enumerate(self._verdicts.answers(), 1):
+            tell(number, len(self._verdicts.egos))
+            yield from self._of_drive(answer)
+        yield self._whole()
 
-                yield recording_json.as_json(answer, verdicts, explained)
-        table = recording_table.as_text(verdicts, tally) if self._settings.text else ""
+    def pieces_side_by_side(
+        self,
+        tell: Callable[[int, int], object],
+        jobs: Jobs,
+        lost: Callable[[int | None], object],
+    ) -> Iterator[Piece]:
+        """The same, the recording's parts being judged in several processes.
+
+        Raises RulecError R0708 if one of them is killed twice.
+        """
+        # Processes, 15 ms: not for what one judges.
+        from rulec.batch.worker_pool import LostTask, in_order
+
+        parts, settings, file = self.parts, self._settings, self._file
+        shared = replace(parts[0].recording, participants=())
+        work = partial(_judged_part, settings, shared, file, 0)
+        tasks = [(part.egos, part.recording.participants) for part in parts]
+        for task, judged in in_order(
+            work,
+            tasks,
+            jobs,
+            lambda done: tell(done, len(tasks)),
+            lambda _, signal_number: lost(signal_number),
+        ):
+            if isinstance(judged, LostTask):
+                raise process_lost(file, judged.signal_number)
+            if self.left and judged.tally.first_s:
+                # Which violations are the first ones is known here alone
+                (judged,) = _judged_part(settings, shared, file, self.left, task)
+                self.left -= judged.n_explained
+            yield from judged.pieces
+            self._take(judged)
+        yield self._whole()
+
+    def judged_drives(self) -> _JudgedDrives:
+        """What there is to be said of all drives."""
+        judged = self._judged
+        for answer in self._verdicts.answers():
+            judged.pieces += self._of_drive(answer)
+        judged.found = None if self._findings is None else self._findings.gathered
+        return judged
+
+    def _take(self, later: _JudgedDrives) -> None:
+        self._judged.tally.include(later.tally)
+        self._judged.blocks += later.blocks
+        self._judged.rows += later.rows
+        if self._findings is not None and later.found is not None:
+            self._findings.gathered.include(later.found)
+
+    def _of_drive(self, answer: DriveVerdict | NoDrive) -> Iterator[Piece]:
+        verdicts, judged = self._verdicts, self._judged
+        judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules])
+        explained: list[Explanation] = []
+        if isinstance(answer, DriveVerdict):
+            if isinstance(answer.answer, NotJudged):
+                yield DriveProblem(answer.answer.error)
+            else:
+                explained = self._explained(answer)
+        own = None if self._findings is None else self._findings.add(answer, explained)
+        if self._settings.to_rows is not None:
+            judged.rows += self._settings.to_rows(answer, verdicts, self._file, own)
+        if self._settings.lines:
+            # JSON of explanations and evidence, 30 ms: only where it is wanted.
+            from rulec.report.verdicts import recording_json
+
+            yield recording_json.as_json(answer, verdicts, explained)
+
+    def _whole(self) -> JudgedRecording:
+        verdicts, judged = self._verdicts, self._judged
+        table = recording_table.as_text(verdicts, judged.tally) if self._settings.text else ""
         found = None
         if self._findings is not None:
-            found = replace(self._findings.whole(), rows=tuple(rows))
-        name = verdicts.recording.name
-        explained_in_text = tuple(self._blocks)
-        yield JudgedRecording(
-            self._file, name, tally, table, explained=explained_in_text, found=found
+            found = replace(self._findings.whole(), rows=tuple(judged.rows))
+        return JudgedRecording(
+            self._file,
+            verdicts.recording.name,
+            judged.tally,
+            table,
+            explained=tuple(judged.blocks),
+            found=found,
         )
 
     def _explained(self, result: DriveVerdict) -> list[Explanation]:
@@ -172,6 +266,7 @@ class _RecordingJudge:
         from rulec.monitoring.explain.explanation import explain
 
         self.left -= len(chosen)
+        self._judged.n_explained += len(chosen)
         explained = [
             explain(violation, drive.trace, rules, drive.decided_by) for violation in chosen
         ]
@@ -184,8 +279,22 @@ class _RecordingJudge:
                 width=self._settings.width,
                 doubts=False,
             )
-            self._blocks.append(f"\n{details}")
+            self._judged.blocks.append(f"\n{details}")
         return explained
+
+
+def _judged_part(
+    settings: JudgeSettings,
+    shared: Recording,
+    file: str,
+    left: int,
+    part: tuple[tuple[str, ...], tuple[Participant, ...]],
+) -> Iterator[_JudgedDrives]:
+    """A part of a recording, judged: its egos, and all who are there; the rest is ``shared``."""
+    egos, participants = part
+    settings = replace(settings, request=replace(settings.request, egos=egos))
+    recording = replace(shared, participants=participants)
+    yield _RecordingJudge(settings, recording, file, left).judged_drives()
 
 
 def _findings(verdicts: RecordingVerdicts, file: str) -> DriveFindings:

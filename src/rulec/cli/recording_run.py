@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 from rulec.batch.jobs import Jobs
@@ -79,7 +80,14 @@ class RecordingRun:
             return
         (file,) = files
         with progress(f"judging {self.settings.labels.get(file, file)}", 1) as tell:
-            for piece in judge_aloud(self.settings, file, lambda done, all_: tell(done / all_)):
+            pieces = judge_aloud(
+                self.settings,
+                file,
+                lambda done, all_: tell(done / all_),
+                jobs,
+                partial(self._lost, file),
+            )
+            for piece in pieces:
                 yield file, piece
 
     def _lost(self, file: str, signal_number: int | None) -> None:

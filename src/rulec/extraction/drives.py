@@ -11,6 +11,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import drive_context
+from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_trace
 from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads, junction_lanelets
 from rulec.extraction.tracks.driven_route import RouteStretch, route_stretches
@@ -47,8 +48,6 @@ MOST_KEPT = 1 << 21
 
 _LONGEST_M = 50.0
 """Bodies whose ends count are shorter."""
-
-_DRIVERS = frozenset({"vehicle", "light_rider"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,11 +119,7 @@ class Drives:
 
     def egos(self) -> tuple[str, ...]:
         """The participants that move and steer, in the order of the file."""
-        return tuple(
-            body.id
-            for body in self._tracks.participants
-            if not body.standing and _DRIVERS.intersection(body.object_types)
-        )
+        return egos_of(self.recording)
 
     def kinds(self) -> dict[str, type]:
         """The Python type of each signal of all drives, empty if there is no drive."""

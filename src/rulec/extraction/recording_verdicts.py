@@ -178,6 +178,26 @@ class ViolationTally:
         """The number of drives that have a verdict."""
         return len(self.satisfied) + len(self.violated) + len(self.doubtful)
 
+    def include(self, later: ViolationTally) -> None:
+        """Count those of later drives, too."""
+        self.satisfied += later.satisfied
+        self.violated += later.violated
+        self.doubtful += later.doubtful
+        self.not_judged += later.not_judged
+        for rule, times in later.first_s.items():
+            self.first_s.setdefault(rule, {}).update(times)
+        for own, more in ((self.open_rules, later.open_rules), (self.untold, later.untold)):
+            for rule, names in more.items():
+                own.setdefault(rule, {}).update(names)
+        for rule, causes in later.causes.items():
+            about = self.causes.setdefault(rule, {})
+            for objects, drives in causes.items():
+                about.setdefault(objects, []).extend(drives)
+        self.judged_in.update(later.judged_in)
+        self.open_hard += later.open_hard
+        if later.words is not None:
+            self.words = later.words if self.words is None else self.words & later.words
+
     def add(self, verdict: DriveVerdict | NoDrive, rules: Sequence[str]) -> None:
         """Count a drive's verdict on these rules."""
         if isinstance(verdict, NoDrive):

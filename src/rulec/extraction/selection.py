@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from fractions import Fraction
+from functools import partial
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
 from rulec.extraction.drives import Drives, NoDrive
+from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_parts
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.traffic_thresholds import LARGEST, USUAL, Thresholds
@@ -42,18 +44,39 @@ class RequestedDrives:
     defaults: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class SelectedDrives:
-    """The drives of ``egos`` and the ``recording`` they are from, perhaps mirrored."""
+    """The drives of ``egos`` and the ``recording`` they are from, perhaps mirrored.
+
+    A long recording is looked at in ``parts``, as recorded, one at a time.
+    """
 
     recording: Recording
     mirrored: bool
     egos: tuple[str, ...]
-    drives: Drives
+    parts: tuple[RecordingPart, ...]
+    _drives_of: Callable[[Recording], Drives]
+    _looked_at: tuple[RecordingPart, Drives] | None = None
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
         """The drives of one vehicle, computed when they are asked for."""
-        return self.drives.of(ego)
+        if self._looked_at is None or ego not in self._looked_at[0].egos:
+            part = next(part for part in self.parts if ego in part.egos)
+            # Not both at once
+            self._looked_at = None
+            if part.recording.whole is None:
+                seen = self.recording
+            else:
+                seen = mirrored_recording(part.recording) if self.mirrored else part.recording
+            self._looked_at = part, self._drives_of(seen)
+        return self._looked_at[1].of(ego)
+
+    def kinds(self) -> dict[str, type]:
+        """The Python type of each signal of all drives, empty if nobody has a drive."""
+        drives = (one for ego in self.egos for one in self.of(ego) if isinstance(one, Drive))
+        first = next(drives, None)
+        # Others than those asked for have the same
+        return self._drives_of(self.recording).kinds() if first is None else dict(first.kinds)
 
 
 def chosen_side(
@@ -78,11 +101,8 @@ def selected_drives(
     Raises RulecError R0612 for a vehicle that is not there, or if nobody drives.
     """
     side, mirrored = chosen_side(recording, request, traffic)
-    if mirrored:
-        recording = mirrored_recording(recording)
     writer = TraceWriter(vocabulary, names, request.assumed, request.defaults)
-    drives = Drives(recording, side, request.thresholds, writer)
-    known = drives.egos()
+    known = egos_of(recording)
     if not known and not request.egos:
         raise NOT_IN_RECORDING.error(
             SourceLocation(file),
@@ -97,7 +117,11 @@ def selected_drives(
                 help=did_you_mean(ego, known) or _examples(known),
             )
     egos = tuple(ego for ego in known if not request.egos or ego in request.egos)
-    return SelectedDrives(recording, mirrored, egos, drives)
+    parts = recording_parts(recording, egos, request.thresholds)
+    drives_of = partial(Drives, side=side, thresholds=request.thresholds, writer=writer)
+    if mirrored:
+        recording = mirrored_recording(recording)
+    return SelectedDrives(recording, mirrored, egos, parts, drives_of)
 
 
 def _who_is_there(recording: Recording) -> str:

@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from statistics import median
 from types import MappingProxyType
 
+from rulec.extraction.whole_recordings import whole_recording
 from rulec.recordings.recording import Recording, Rounding
 
 
@@ -96,15 +96,14 @@ def tolerances_of(recording: Recording) -> Tolerances:
     if recording.form == "SUMO data":
         return rounded_to(recording.rounding or USUAL_ROUNDING)
     known = NGSIM if _NGSIM.match(recording.name) else _BY_FORM.get(recording.form, OTHERS)
-    stated = [body.stated_error for body in recording.participants if body.stated_error]
-    if not stated:
+    stated = whole_recording(recording).stated_error
+    if stated is None:
         return known
-    place_m, speed_mps = (median(values) for values in zip(*stated, strict=True))
     # Both of two places may be anywhere in their areas, all of which outlines cover
     return replace(
         known,
-        place_m=max(known.place_m, 2 * place_m),
-        speed_mps=max(known.speed_mps, speed_mps),
+        place_m=max(known.place_m, 2 * stated.place_m),
+        speed_mps=max(known.speed_mps, stated.speed_mps),
     )
 
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.extraction.to_trace import Drive, Place
+from rulec.logic.formula import Comparison, Count, atoms_of
 from rulec.logic.free_names import names_in
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.verdict import Violation
-from rulec.trace import Value
+from rulec.trace import Trace, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +47,7 @@ def evidence_of(
 ) -> ViolationEvidence:
     """The evidence for a violation by a drive; ``explanation`` is its own, if there is one."""
     explained = explanation or explain(
-        violation, drive.trace, rules, drive.decided_by, repaired=False
+        violation, _trace_for(violation, drive, rules), rules, drive.decided_by, repaired=False
     )
     read = dict.fromkeys(names_in(explained.rule.formula))
     told = [name for name in read if name in drive.kinds and name not in assumed]
@@ -65,6 +67,29 @@ def evidence_of(
         margins=tuple(explained.margins()),
         place=drive.places[first] if drive.places else None,
     )
+
+
+def _trace_for(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Trace:
+    """The drive's trace with what the violated rule reads, of the objects that it is about.
+
+    A drive's states say a hundred things of dozens, a rule reads five of one.
+    """
+    arrays = drive.arrays
+    rule = next(rule for rule in rules.rules if rule.name == violation.rule)
+    terms = [
+        term
+        for read in rule.machine.reads
+        if isinstance(read, NumberRead)
+        for _, term in read.terms
+    ]
+    comparisons = [atom for atom in atoms_of(rule.formula) if isinstance(atom, Comparison)]
+    terms += [term for comparison in comparisons for _, term in comparison.terms]
+    names = {name for read in (rule.formula, *terms) for name in names_in(read)}
+    names |= {read.name for read in rule.machine.reads if isinstance(read, Read)}
+    counts = any(isinstance(term, Count) for term in terms)
+    part = arrays.part(names, arrays.objects.keys() if counts else {*violation.binding.values()})
+    # To be completed as the whole trace would be
+    return replace(part, ends="cut" if arrays.is_partial else arrays.ends).trace()
 
 
 def _is_partial(drive: Drive, name: str) -> bool:

@@ -243,6 +243,22 @@ class Rounding(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
+class WholeRecording:
+    """What is to be known of a recording as a whole where a part of it is looked at.
+
+    ``first`` and ``last`` are its time steps, ``stated_error`` the median of what it says itself.
+    ``arrivals``: is some vehicle there from later on than the first step? ``shows`` are the lamps
+    that it speaks of for anybody.
+    """
+
+    first: int
+    last: int
+    stated_error: StatedError | None
+    arrivals: bool
+    shows: frozenset[Lamp]
+
+
+@dataclass(frozen=True, slots=True)
 class Recording:
     """A file: one time step takes ``step_s`` seconds.
 
@@ -250,7 +266,8 @@ class Recording:
     file does not say, ``country`` its code (ISO 3166) or empty. ``complete`` names kinds of things,
     signs for one, that the file would have if they were there. ``remarks``: what the file leaves
     open, and is taken to be. ``rounding`` is that of a file that is exact otherwise. ``ego`` is the
-    participant that the file says to be it, empty if it does not say.
+    participant that the file says to be it, empty if it does not say. ``whole`` is what a part of a
+    recording knows of all of it.
     """
 
     __repr__ = short_repr
@@ -268,3 +285,4 @@ class Recording:
     weather: Weather = Weather()
     rounding: Rounding | None = None
     ego: str = ""
+    whole: WholeRecording | None = None

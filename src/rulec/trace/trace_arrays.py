@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -115,6 +115,34 @@ class TraceArrays:
         if name in self.about and name in self.only:
             said &= np.repeat(self.only[name], np.diff(self.starts))
         return said
+
+    def part(self, names: Set[str], items: Set[str]) -> TraceArrays:
+        """What is said by these names, of the world and of these objects."""
+        kept = np.array([item in items for item in self.objects], dtype=bool)
+        said = np.repeat(kept, np.diff(self.starts))
+
+        def of(values: Mapping[str, Array]) -> dict[str, Array]:
+            return {
+                name: array if name in self.world else array[said]
+                for name, array in values.items()
+                if name in names
+            }
+
+        return replace(
+            self,
+            objects={item: kind for item, kind in self.objects.items() if item in items},
+            spans=self.spans[kept],
+            world=of(self.world),
+            about=of(self.about),
+            unknown=of(self.unknown),
+            absent=of(self.absent),
+            bounds={
+                name: (low, high) if name in self.world else (low[said], high[said])
+                for name, (low, high) in self.bounds.items()
+                if name in names
+            },
+            only={name: flags[kept] for name, flags in self.only.items() if name in names},
+        )
 
     def trace(self) -> Trace:
         """The trace with its states."""

@@ -77,7 +77,7 @@ if TYPE_CHECKING:
 )
 @scenario_options.drives_options
 @scenario_options.recording_or_trace_options
-@shared.jobs_option("Judge so many recordings at a time")
+@shared.jobs_option("Judge so many recordings, or parts of a long one, at a time")
 @output_options(FORMATS, "the answer", multiple=True)
 @click.option(
     "--exposure",

@@ -328,6 +328,8 @@ def _records_arrivals(context: DriveContext) -> bool:
 
     Else those are left out that came after it, as in CommonRoad's cuts from longer recordings.
     """
+    if context.recording.whole is not None:
+        return context.recording.whole.arrivals
     tracks = context.surroundings.tracks
     vehicles = tracks.present[tracks.of_type("vehicle")]
     return bool((~vehicles[:, :1] & vehicles.any(axis=1, keepdims=True)).any())

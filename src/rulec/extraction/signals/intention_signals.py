@@ -71,7 +71,7 @@ def _boarding(context: DriveContext) -> SignalColumns:
 
 
 def _warning_lights(context: DriveContext) -> SignalColumns:
-    if not any("hazard_lights" in body.shows for body in context.recording.participants):
+    if "hazard_lights" not in context.surroundings.whole.shows:
         return SignalColumns()
     hazard, told = _lit(context, "hazard_lights")
     blue, _ = _lit(context, "blue_light")
@@ -82,7 +82,7 @@ def _warning_lights(context: DriveContext) -> SignalColumns:
 
 
 def _hazard_lights(context: DriveContext) -> SignalColumns:
-    if not any("hazard_lights" in body.shows for body in context.recording.participants):
+    if "hazard_lights" not in context.surroundings.whole.shows:
         return SignalColumns()
     hazard, told = _lit(context, "hazard_lights")
     return SignalColumns(

@@ -13,7 +13,8 @@ from rulec.extraction.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.junction_passages import JunctionPassages, junction_passages
 from rulec.extraction.tracks.rings import ring_lanelets
 from rulec.extraction.tracks.tracks import ObjectTypes, Tracks
-from rulec.recordings.recording import Lanelet, Recording, Side, is_lane
+from rulec.extraction.whole_recordings import whole_recording
+from rulec.recordings.recording import Lanelet, Recording, Side, WholeRecording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_beside, lanelet_area, lanes_beside
 
@@ -56,6 +57,11 @@ class Surroundings:
         for name in ("tolerances", "_lanes", "_both_ways"):
             joined.__dict__[name] = getattr(self, name)
         return joined
+
+    @cached_property
+    def whole(self) -> WholeRecording:
+        """What is known of the whole recording."""
+        return whole_recording(self.recording)
 
     @cached_property
     def tolerances(self) -> Tolerances:

@@ -6,7 +6,7 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TypeAlias
 
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from rulec.extraction.source_tolerances import tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
+from rulec.extraction.whole_recordings import looked_at
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.track import TrackOutlines, TrackStates
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
@@ -185,10 +186,8 @@ def tracks_of(
     members = recording.participants if participants is None else participants
     bodies = tuple(body for body in members if body.outlines)
     laid_out = [_poses(body) for body in bodies]
-    steps = [own for body, (own, _) in zip(bodies, laid_out, strict=True) if not body.standing]
-    first = min((int(own.min()) for own in steps), default=0)
-    last = max((int(own.max()) for own in steps), default=0)
-    first, last = span or (first, last)
+    looked = recording if participants is None else replace(recording, participants=bodies)
+    first, last = span or looked_at(looked)
     shape = len(bodies), last - first + 1
     x, y, heading, stated = (np.full(shape, np.nan) for _ in range(4))
     for row, (body, (own, poses)) in enumerate(zip(bodies, laid_out, strict=True)):

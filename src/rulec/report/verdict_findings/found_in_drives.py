@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -23,14 +22,28 @@ from rulec.report.verdict_findings.verdict_finding import (
 
 
 @dataclass
+class FoundInDrives:
+    """What was found of some drives: findings, rules that are not judged, how many were judged."""
+
+    findings: list[VerdictFinding] = field(default_factory=list)
+    not_judged: dict[str, dict[str, RuleNotJudged]] = field(default_factory=dict)
+    judged: int = 0
+
+    def include(self, later: FoundInDrives) -> None:
+        """Take what was found of later drives, too."""
+        self.findings += later.findings
+        self.judged += later.judged
+        for rule, by_drive in later.not_judged.items():
+            self.not_judged.setdefault(rule, {}).update(by_drive)
+
+
+@dataclass
 class DriveFindings:
     """The findings of a recording, gathered drive by drive."""
 
     verdicts: RecordingVerdicts
     file: str
-    _found: list[VerdictFinding] = field(default_factory=list)
-    _not_judged: dict[str, dict[str, RuleNotJudged]] = field(default_factory=dict)
-    _drives: Counter[bool] = field(default_factory=Counter)
+    gathered: FoundInDrives = field(default_factory=FoundInDrives)
 
     def add(
         self, result: DriveVerdict | NoDrive, explained: Sequence[Explanation] = ()
@@ -39,29 +52,29 @@ class DriveFindings:
 
         It is what is violated, then what is open, in the order of the verdict.
         """
-        before = len(self._found)
+        before = len(self.gathered.findings)
         self._take(result, explained)
-        return self._found[before:]
+        return self.gathered.findings[before:]
 
     def _take(self, result: DriveVerdict | NoDrive, explained: Sequence[Explanation]) -> None:
         if isinstance(result, NoDrive):
             own = self._own(vehicle=result.ego, because=result.why)
-            self._found.append(VerdictFinding(outcome="not_judged", **own))
+            self.gathered.findings.append(VerdictFinding(outcome="not_judged", **own))
             return
         drive, answer = result.drive, result.answer
         if isinstance(answer, NotJudged):
             why = answer.error.diagnostics[0].message
             own = self._own(vehicle=drive.arrays.id, because=why)
-            self._found.append(VerdictFinding(outcome="not_judged", **own))
+            self.gathered.findings.append(VerdictFinding(outcome="not_judged", **own))
             return
-        self._drives[True] += 1
+        self.gathered.judged += 1
         for number, violation in enumerate(answer.violations):
             explanation = explained[number] if number < len(explained) else None
-            self._found.append(self._violated(violation, drive, explanation))
+            self.gathered.findings.append(self._violated(violation, drive, explanation))
         rules = {rule.name: rule for rule in self.verdicts.rules.rules}
         for result_ in answer.open:
             own = self._about(rules[result_.rule])
-            self._found.append(
+            self.gathered.findings.append(
                 VerdictFinding(
                     outcome="open",
                     vehicle=drive.arrays.id,
@@ -74,21 +87,21 @@ class DriveFindings:
                 )
             )
         for rule in answer.not_judged:
-            self._not_judged.setdefault(rule.rule, {})[drive.arrays.id] = rule
+            self.gathered.not_judged.setdefault(rule.rule, {})[drive.arrays.id] = rule
 
     def whole(self) -> FoundInRecording:
         """All findings; a rule that is judged in no drive is one finding."""
-        drives = self._drives[True]
+        drives = self.gathered.judged
         return FoundInRecording(
             self.file,
             self.verdicts.recording.name,
             drives,
-            (*self._found, *self._rules_not_judged(drives)),
+            (*self.gathered.findings, *self._rules_not_judged(drives)),
         )
 
     def _rules_not_judged(self, drives: int) -> Iterator[VerdictFinding]:
         rules = {rule.name: rule for rule in self.verdicts.rules.rules}
-        for name, by_drive in self._not_judged.items():
+        for name, by_drive in self.gathered.not_judged.items():
             everywhere = len(by_drive) == drives
             for vehicle, rule in [*by_drive.items()][: 1 if everywhere else None]:
                 yield VerdictFinding(

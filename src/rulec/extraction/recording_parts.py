@@ -1,0 +1,110 @@
+"""A long recording in parts: those who drive one after the other, with all who are there meanwhile.
+
+Arrays of participants by time steps grow with the square of a recording's length. A part has whole
+tracks, of all who are there while one of its egos is, or so shortly before or after that ego might
+have had to think of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.traffic_thresholds import Thresholds
+from rulec.extraction.whole_recordings import span_of, whole_recording
+from rulec.recordings.recording import Recording
+from rulec.value_display import short_repr
+
+MOST_CELLS = 1 << 18
+"""A part has about so many participants times steps, unless a single drive takes more."""
+
+_DRIVERS = frozenset({"vehicle", "light_rider"})
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingPart:
+    """Some ``egos``, and of the ``recording`` those who are there while they are."""
+
+    __repr__ = short_repr
+
+    egos: tuple[str, ...]
+    recording: Recording
+
+
+def egos_of(recording: Recording) -> tuple[str, ...]:
+    """The participants that move and steer, in the order of the file."""
+    return tuple(
+        body.id
+        for body in recording.participants
+        if body.outlines and not body.standing and _DRIVERS.intersection(body.object_types)
+    )
+
+
+def recording_parts(
+    recording: Recording, egos: Sequence[str], thresholds: Thresholds
+) -> tuple[RecordingPart, ...]:
+    """A recording in parts of about ``MOST_CELLS``, in the order of ``egos``; often it is one."""
+    bodies = [body for body in recording.participants if body.outlines]
+    whole = whole_recording(recording)
+    if len(bodies) * (whole.last - whole.first + 1) <= MOST_CELLS:
+        return (RecordingPart(tuple(egos), recording),)
+    always = whole.first, whole.last
+    spans = np.array([always if body.standing else span_of(body) for body in bodies], dtype=intp)
+    farthest = _farthest_steps(thresholds, recording.step_s)
+    attendance = _Attendance(spans[:, 0], spans[:, 1], farthest)
+    rows = {body.id: row for row, body in enumerate(bodies)}
+    parts: list[RecordingPart] = []
+    waiting: list[str] = []
+    low, high = always[::-1]
+
+    def close() -> None:
+        there = attendance.rows_during(low, high).tolist()
+        around = replace(recording, participants=tuple(bodies[k] for k in there), whole=whole)
+        parts.append(RecordingPart(tuple(waiting), around))
+
+    for ego in egos:
+        begins, ends = spans[rows[ego]].tolist()
+        wider = min(low, begins), max(high, ends)
+        if waiting and attendance.cells_during(*wider) > MOST_CELLS:
+            close()
+            waiting.clear()
+            wider = begins, ends
+        low, high = wider
+        waiting.append(ego)
+    if waiting:
+        close()
+    return tuple(parts)
+
+
+def _farthest_steps(thresholds: Thresholds, step_s: float) -> int:
+    """How many steps before or after it anybody may matter to a drive: all waits together."""
+    names = [field.name for field in fields(thresholds) if field.name.endswith("_s")]
+    return int(sum(getattr(thresholds, name) for name in names) / step_s) + 1
+
+
+class _Attendance:
+    """Who is there during some steps, and how large the arrays of their tracks are."""
+
+    def __init__(self, first: NDArray[intp], last: NDArray[intp], farthest: int) -> None:
+        self._first, self._last, self._farthest = first, last, farthest
+        self._firsts, self._lasts = np.sort(first), np.sort(last)
+        # Of those that last until a step or longer, when the first one begins; and the reverse
+        by_last, by_first = np.argsort(last), np.argsort(first)
+        self._earliest = np.minimum.accumulate(first[by_last][::-1])[::-1]
+        self._latest = np.maximum.accumulate(last[by_first])
+
+    def rows_during(self, low: int, high: int) -> NDArray[intp]:
+        """The rows of all who are there during some steps, or shortly before or after."""
+        low, high = low - self._farthest, high + self._farthest
+        return np.flatnonzero((self._first <= high) & (self._last >= low))
+
+    def cells_during(self, low: int, high: int) -> int:
+        """How many participants times steps their tracks take."""
+        low, high = low - self._farthest, high + self._farthest
+        gone, come = np.searchsorted(self._lasts, low), np.searchsorted(self._firsts, high, "right")
+        steps = self._latest[come - 1] - self._earliest[gone] + 1
+        return int((come - gone) * steps)

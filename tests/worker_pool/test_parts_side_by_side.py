@@ -1,0 +1,94 @@
+"""A long recording's parts are judged in several processes, and it comes out as from one."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import rulec
+from rulec.batch import worker_pool
+from rulec.batch.jobs import Jobs
+from rulec.batch.recording_judge import JudgedRecording, JudgeSettings, judge_aloud
+from rulec.diagnostics import RulecError
+from rulec.extraction import recording_parts
+from rulec.extraction.recording_parts import egos_of
+from rulec.extraction.selection import RequestedDrives
+from rulec.recordings.recording_files import read_recording
+from rulec.recordings.recording_format import RecordingSource
+from rulec.rulebook.loader import parse_rulebook
+from support.worlds.stored import StoredWorld
+
+BOOK = """
+rulebook few
+extends schemas
+traffic right
+hard rule slow { require always (speed <= 40 km/h) }
+soft rule forwards { require never drives_against_traffic }
+hard rule apart (u: road_user) { require always (gap(u) >= 8 m) }
+"""
+
+
+@pytest.fixture(scope="module")
+def rules():
+    return rulec.compile_rulebook(parse_rulebook(BOOK), step_s=0.2)
+
+
+@cache
+def some_egos():
+    world = StoredWorld("priority")
+    return egos_of(read_recording(RecordingSource(world.data, world.net)))[:4]
+
+
+def pieces(rules, jobs, to_explain, **more):
+    world = StoredWorld("priority")
+    settings = JudgeSettings(
+        rules,
+        RequestedDrives(some_egos()),
+        RecordingSource(Path("-"), world.net),
+        to_explain=to_explain,
+        every_part=False,
+        width=100,
+        text=True,
+        lines=True,
+        findings=True,
+    )
+    counted = []
+    found = list(judge_aloud(settings, str(world.data), lambda *n: counted.append(n), jobs, **more))
+    return found, counted
+
+
+@pytest.mark.parametrize("to_explain", [0, 3])
+def test_parts_are_put_together(rules, to_explain, monkeypatch):
+    usual, _ = pieces(rules, Jobs(1), to_explain)
+    whole = usual[-1]
+    assert isinstance(whole, JudgedRecording)
+    assert whole.tally.violated
+    assert bool(whole.explained) == (to_explain > 0)
+    monkeypatch.setattr(recording_parts, "MOST_CELLS", 1)
+    # So long this process works alone
+    found, counted = pieces(rules, Jobs(2, alone_s=1e9), to_explain)
+    assert len(counted) >= 3
+    assert found == usual
+
+
+def test_parts_in_processes(rules, monkeypatch):
+    usual, _ = pieces(rules, Jobs(1), 1)
+    monkeypatch.setattr(recording_parts, "MOST_CELLS", 1)
+    found, counted = pieces(rules, Jobs(2), 1)
+    assert len(counted) >= 2
+    assert found == usual
+
+
+def test_a_part_whose_process_is_killed_twice(rules, monkeypatch):
+    monkeypatch.setattr(recording_parts, "MOST_CELLS", 1)
+
+    def killed(work, tasks, jobs, tell, lost):
+        lost(tasks[0], 9)
+        yield tasks[0], worker_pool.LostTask(9)
+
+    monkeypatch.setattr(worker_pool, "in_order", killed)
+    told = []
+    (error,), _ = pieces(rules, Jobs(2), 0, lost=told.append)
+    assert told == [9]
+    assert isinstance(error, RulecError)
+    assert [one.code for one in error.diagnostics] == ["R0708"]
