@@ -49,6 +49,18 @@ def test_nothing_is_said_where_there_is_a_way(tmp_path, capsys):
     assert "leads on" not in text
 
 
+def test_it_says_that_no_trajectory_was_found(tmp_path, capsys, monkeypatch):
+    search = "rulec.partition.motion.witness_trajectory.WitnessSearch.of"
+    file = tmp_path / "free.toml"
+    file.write_text(ROAD.replace("d = 0", 'd = 0\nspeed = 5\nbounds = "car"'))
+    command = ["maneuvers", str(file), "-r", "esterle2019", "--list", "1"]
+    assert main(command) == 0
+    assert "listed      none" not in capsys.readouterr().out
+    monkeypatch.setattr(search, lambda *_: None)
+    assert main(command) == 0
+    assert "listed      none: no trajectory was found" in capsys.readouterr().out
+
+
 def test_the_bounds_are_named_where_they_close_the_way(tmp_path, capsys):
     # 18 m to one that stands: at 20 m/s nobody stops there.
     file = tmp_path / "fast.toml"

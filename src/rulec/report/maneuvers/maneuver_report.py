@@ -97,6 +97,8 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     if answers.classes is not None:
         lines += _class_counts(maneuvers, answers.classes[0])
     lines.append(f"computed in {seconds:.3f} s")
+    if answers.listed is not None and not answers.listed and maneuvers.satisfying:
+        lines.append("listed      none: no trajectory was found along those that cost least")
     for number, maneuver in enumerate(answers.listed or (), 1):
         lines += maneuver_blocks.listed_block(maneuvers, number, maneuver, answers.verdicts)
         lines += _chances(answers, maneuver)
