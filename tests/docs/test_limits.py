@@ -11,7 +11,7 @@ from rulec.automata.worker import compiler_worker
 from rulec.cli.main import main
 from rulec.extraction import traffic_thresholds
 from rulec.rates import finding_rows
-from rulec.recordings import recording
+from rulec.recordings import recording, recording_inputs
 from rulec.report.findings.code_registry import all_codes
 from rulec.resource_limits import LIMITS, MOST_DIGITS
 from rulec.rulebook.arithmetic import size_limits
@@ -20,6 +20,7 @@ from rulec.scenario import scenario_files, time_grid
 from rulec.scenario.toml import schema
 from rulec.syntax import scanner
 from rulec.trace.formats import json_line_problems, table_reader
+from rulec.trace.formats.arrow import parquet
 
 PAGE = (Path(__file__).parents[2] / "docs" / "limits.md").read_text(encoding="utf-8")
 
@@ -28,6 +29,7 @@ FIXED = {
     "bytes of a law's text, of a saved audit": files.MAX_LAW_BYTES,
     "bytes of a compiled rulebook, of a saved monitor": files.MAX_SAVED_BYTES,
     "folders inside one another that are walked for sources": source_walk.DEEPEST_FOLDER,
+    "folders inside one another that are walked for recordings": recording_inputs.DEEPEST_FOLDER,
     "bytes of `rulec.toml`": files.MAX_SETTINGS_BYTES,
     "words and signs of a source": scanner.MAX_TOKENS,
     "operators, atoms and comparisons of a rule, definitions put in": size_limits.MOST_PARTS,
@@ -39,6 +41,9 @@ FIXED = {
     "bytes of a packed file, unpacked": files.LARGEST_UNPACKED,
     "bytes of one line of traces": json_line_problems.LONGEST_LINE_BYTES,
     "characters of a row of CSV": table_reader.LONGEST_ROW,
+    "bytes of a column in a row group of Parquet, unpacked, beside 1,024 a row": (
+        parquet.LARGEST_COLUMN
+    ),
     "time steps of a recording, from the first to the last": recording.MOST_STEPS,
     "time steps of a recording for one that is in it": recording.SPARSEST,
     "a number in findings that `rates` reads": finding_rows.LARGEST,

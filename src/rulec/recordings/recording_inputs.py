@@ -103,7 +103,7 @@ def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:
     return found, others, refused
 
 
-_DEEPEST_FOLDER = 200
+DEEPEST_FOLDER = 200
 """As deep in one another folders are looked into."""
 
 
@@ -113,7 +113,7 @@ def _walk(folder: str) -> Iterator[Path]:
     for at, folders, names in os.walk(folder):
         kept = sorted(name for name in folders if not name.startswith("."))
         whole = [name for name in kept if _is_recording(Path(at, name))]
-        deep = len(Path(at).parts) - top >= _DEEPEST_FOLDER
+        deep = len(Path(at).parts) - top >= DEEPEST_FOLDER
         folders[:] = [] if deep else [name for name in kept if name not in whole]
         files = (name for name in names if name[0] != "." and Path(at, name).is_file())
         yield from (Path(at, name) for name in sorted([*whole, *files]))

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _ROWS_AT_ONCE = 1 << 17
 
-_LARGEST_COLUMN, _LARGE_CELL = 1 << 26, 1 << 10
+LARGEST_COLUMN, _LARGE_CELL = 1 << 26, 1 << 10
 """Bytes of a row group's column, beside those of cells that are long already."""
 
 _MARK = b"PAR1"
@@ -81,7 +81,7 @@ def _check_sizes(metadata: Any, file: str) -> None:
     """Refuse cells that are decoded as a whole and take gigabytes, packed into a few bytes."""
     for group in (metadata.row_group(number) for number in range(metadata.num_row_groups)):
         for column in (group.column(number) for number in range(group.num_columns)):
-            if column.total_uncompressed_size > _LARGEST_COLUMN + _LARGE_CELL * group.num_rows:
+            if column.total_uncompressed_size > LARGEST_COLUMN + _LARGE_CELL * group.num_rows:
                 size = column.total_uncompressed_size
                 message = f"the column `{column.path_in_schema}` has {size:,} bytes unpacked"
                 way_out = f"for {group.num_rows:,} rows that is too much: no cell is as long"
