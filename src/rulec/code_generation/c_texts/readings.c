@@ -141,8 +141,9 @@ static inline uint16_t rulec_counted(uint32_t counts, const uint32_t *limits, ui
 static inline uint16_t rulec_order(double first, double second, uint8_t sides)
 {
     const bool known = rulec_is_number(first) && rulec_is_number(second);
-    const uint16_t least = (uint16_t)(sides & 1u);
-    const uint16_t more = (uint16_t)((uint16_t)sides >> 1);
+    const uint16_t wide = (uint16_t)sides;
+    const uint16_t least = (uint16_t)(wide & 1u);
+    const uint16_t more = (uint16_t)(wide >> 1);
     uint16_t digits = RULEC_FROM_TO(0u, least + more);
     if (known) {
         digits = RULEC_KNOWN(((first >= second) ? least : 0u) + ((first > second) ? more : 0u));
