@@ -141,7 +141,6 @@ class TestEveryVerb:
         (["monitor", "a.json", "--save", "./a.json"], "would be overwritten"),
         (["monitor", "de", "--save", "a.json", "-o", "./a.json"], "would be overwritten"),
         (["monitor", "de", "--save", "-"], "standard output takes one answer"),
-        (["maneuvers", "s1", "-r", "de", "--after", "-"], "`-` is standard input"),
         (["compile", "./a.json", "-o", "."], "would be overwritten"),
         (["compile", "de", "-o", "-"], "`-` is standard output, and no folder"),
         (["new", "depot", "-o", "-"], "`-` is standard output, and no folder"),

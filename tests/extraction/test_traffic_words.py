@@ -100,7 +100,10 @@ def test_a_queue_on_the_lane_beside(cars, queue):
 
 def test_queues_on_all_lanes():
     cars = [going(k, 20 * (k % 10), 1 + k // 10, 10) for k in (1, 2, 11, 12, 13)]
-    assert first("dense_all_lanes", [going(7, 0, 1, 10), *cars]) is True
+    behind = going(3, -20, 1, 10)
+    assert first("dense_all_lanes", [going(7, 0, 1, 10), *cars, behind]) is True
+    # Whether the last one behind a queue is in it nobody knows
+    assert first("dense_all_lanes", [going(7, 0, 1, 10), *cars]) is UNKNOWN
     assert first("dense_all_lanes", [going(7, 0, 1, 10), *cars], n_lanes=3) is False
 
 

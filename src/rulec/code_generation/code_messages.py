@@ -69,10 +69,10 @@ def compiler_failed(command: str, said: str) -> RulecError:
 MONITOR_DIFFERS = Code(
     "R0753",
     title="a monitor in C is not what its tables say",
-    why="`compile --emit c --prove` compiles what it is about to write and holds it against the "
-    "tables and the monitor in Python. If they differ there is a mistake in rulec or in the C "
-    "compiler, none in the rulebook, and nothing is written. Please report the rulebook and the "
-    "compiler.",
+    why="With `compile --emit c --prove`, rulec compiles what it is about to write and holds it "
+    "against the tables and the monitor in Python. If they differ there is a mistake in rulec or "
+    "in the C compiler, none in the rulebook, and nothing is written. Please report the rulebook "
+    "and the compiler.",
     kind="circumstance",
 )
 

@@ -16,6 +16,7 @@ class Given:
 
     traces: TraceGraph
     scenario = SimpleNamespace(name="random", account=None)
+    bounds = None
 
     @property
     def step(self):

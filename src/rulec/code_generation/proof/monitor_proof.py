@@ -23,6 +23,7 @@ from rulec.code_generation.monitor_layout import VERDICTS, MonitorLayout, RuleLa
 from rulec.code_generation.proof.c_library import CLibrary, CMonitor, CSaid
 from rulec.code_generation.proof.probing_inputs import ReadingProbe, drives, probes, weighs
 from rulec.diagnostics import RulecError
+from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
 from rulec.monitoring.online.four_valued import RunningVerdict, best_of, four_valued, worst_of
 from rulec.monitoring.online.monitor_state import SoFar
 from rulec.monitoring.online.running_monitor import Monitor
@@ -167,7 +168,7 @@ def _runs(library: CLibrary, n_states: int, share_unknown: float) -> Iterator[st
             except RulecError as error:
                 excluded = theirs.step(state, objects).status == EXCLUDED_BY_FACTS
                 code = error.diagnostics[0].code
-                yield "" if excluded or code != "R0508" else f"state {number}: {state}"
+                yield "" if excluded or code != VIOLATED_AXIOM.code else f"state {number}: {state}"
                 break
             found = theirs.step(state, objects)
             where = f"state {number}: {state}"
