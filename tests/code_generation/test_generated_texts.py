@@ -123,6 +123,21 @@ def test_the_page_leads_to_a_running_monitor(tmp_path, monkeypatch):
     assert done.stdout.splitlines() == printed
 
 
+@pytest.mark.skipif(
+    None in map(shutil.which, ("make", "cc", "c++")), reason="there is no make, or no C++ compiler"
+)
+def test_the_page_leads_to_a_monitor_in_cpp(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["compile", "esterle2019", "--emit", "c", "-o", "build"]) == 0
+    Path("watch.cpp").write_text(blocks("cpp")[0], encoding="utf-8")
+    shown = next(block for block in blocks("console") if "c++ " in block)
+    build, run, *printed = shown.splitlines()
+    strict = "c++ -Wall -Wextra -Wconversion -Werror -pedantic "
+    subprocess.run(build[2:].replace("c++ ", strict, 1), shell=True, check=True)
+    done = subprocess.run(run[2:], shell=True, check=True, capture_output=True, text=True)
+    assert done.stdout.splitlines() == printed
+
+
 @pytest.mark.skipif(shutil.which("make") is None, reason="there is no make")
 @needs_a_compiler
 def test_make_builds_a_library(esterle, tmp_path):

@@ -49,6 +49,13 @@ def c_source(layout: MonitorLayout) -> str:
     return in_own_names("\n".join(lines), layout)
 
 
+def cpp_header(layout: MonitorLayout) -> str:
+    """The same monitor as a class of C++17; it takes the header and the source in C."""
+    name = prefix_of(layout.rulebook.name)
+    text = (_TEXTS / "monitor.hpp").read_text(encoding="utf-8").replace("rulec_.h", f"{name}.h")
+    return in_own_names("\n".join([*_head(layout), text]), layout)
+
+
 def in_own_names(text: str, layout: MonitorLayout) -> str:
     """A text in which all names begin with the monitor's own prefix."""
     prefix = prefix_of(layout.rulebook.name)
@@ -80,7 +87,8 @@ def _head(layout: MonitorLayout) -> Iterator[str]:
     steps = [own.rule.step_s for own in layout.rules if own.rule.step_s is not None]
     if steps:
         yield f" * for states that are {steps[0]} s apart"
-    yield f" * compiled by rulec {in_comment(book.rulec)} with Spot {in_comment(book.spot)}"
+    spot = f" with Spot {book.spot}" if book.spot else ""
+    yield f" * compiled by {in_comment(f'rulec {book.rulec}{spot}')}"
     yield " */"
 
 

@@ -1,4 +1,4 @@
-"""The files of a monitor in C: header, source, and what builds them."""
+"""The files of a monitor in C: headers for C and C++, source, and what builds them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.code_generation.c_files import c_header, c_source
+from rulec.code_generation.c_files import c_header, c_source, cpp_header
 from rulec.code_generation.monitor_layout import MonitorLayout, monitor_layout
 from rulec.code_generation.written_names import prefix_of
 from rulec.file_sets import write_together
@@ -45,6 +45,7 @@ def monitor_texts(layout: MonitorLayout) -> dict[str, str]:
     return {
         f"{name}.h": c_header(layout),
         f"{name}.c": c_source(layout),
+        f"{name}.hpp": cpp_header(layout),
         "Makefile": _MAKE.format(name=name),
         "CMakeLists.txt": _CMAKE.format(name=name),
     }
