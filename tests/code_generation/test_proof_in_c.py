@@ -3,8 +3,9 @@
 import faulthandler
 import os
 import re
+import resource
 import shutil
-import signal
+import time
 
 import pytest
 
@@ -103,7 +104,8 @@ def found_by_a_process(layout, source):
     process = os.fork()
     if process == 0:
         faulthandler.disable()  # what a fault does to memory is of no interest
-        signal.alarm(20)
+        seconds = int(time.process_time()) + 4
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
         try:
             os._exit(1 if differs(layout, source) else 0)
         except BaseException:
