@@ -135,6 +135,8 @@ FORMULAS = [
     ("every x: T, y: T (p)", ",", f"{ONE_VARIABLE}`every x: T (every y: T (…))`"),
     # Arguments and what joins formulas.
     ("p(q(v))", "(", "an argument is a name; it has no arguments of its own"),
+    ("nevr (p(v) and q)", "(", "did you mean `never`?"),
+    ("alwais (p and q)", "and", "did you mean `always`?"),
     ("p(v w)", "w", "separate the names by `,`"),
     ("p()", ")", "without arguments there are no parentheses"),
     ("p(1)", "1", NAMES),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from operator import is_
 from typing import Any
 
 from rulec.monitoring.constant_values import put, values_in, with_constants
@@ -24,7 +25,7 @@ def with_implied_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
     if not vocabulary.implied:
         return trace
     states = tuple([with_implied_signals(state, vocabulary) for state in trace.states])
-    same = all(map(_is, states, trace.states))
+    same = all(map(is_, states, trace.states))
     return trace if same else replace(trace, states=states)
 
 
@@ -66,7 +67,3 @@ def _mentions(said: Any, items: tuple[str, ...]) -> bool:
             return True
         said = said.get(item) if isinstance(said, Mapping) else None
     return said is not None
-
-
-def _is(one: object, other: object) -> bool:
-    return one is other

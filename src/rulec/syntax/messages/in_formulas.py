@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from rulec.diagnostics import did_you_mean
 from rulec.syntax import keywords
 from rulec.syntax.messages.parse_context import COMPARISONS, ParseContext
 
@@ -73,8 +74,14 @@ def advise_on_aggregate(scene: ParseContext) -> str:
 
 
 def _arguments(scene: ParseContext) -> str:
-    if scene.opened("(", ")") is None or scene.kind not in ("clause", "formula", "item"):
+    opened = scene.opened("(", ")")
+    if opened is None or scene.kind not in ("clause", "formula", "item"):
         return ""
+    if opened and scene.accepted == {"COMMA", "RPAR"} and scene.text != ")":
+        # `nevr (p and q)` reads as a name with arguments
+        near = did_you_mean(scene.text_at(opened - 1), keywords.UNARY_OPERATORS)
+        if near:
+            return near
     if scene.accepted == {"NAME"} and scene.text_before == "(" and scene.text == ")":
         return "without arguments there are no parentheses"
     if scene.accepted == {"NAME"} and scene.text_before == "," and scene.text == ")":
