@@ -303,7 +303,7 @@ def test_what_nobody_thought_of_is_a_bug_with_a_traceback(monkeypatch):
         compile_rulebook(book(rule("A", P)))
 
 
-def test_a_table_that_fails_on_random_words_is_an_error_too(monkeypatch):
+def test_a_table_that_forgets_is_an_error_too(monkeypatch):
     """Where Spot has not compared the whole: here a register that forgets too soon."""
     forgetting = """
 from rulec.logic.past_registers import Register

@@ -10,9 +10,10 @@ from hypothesis import assume, given, settings
 from rulec.automata import compiler
 from rulec.automata.alphabet import propositions_of, reads_of
 from rulec.automata.axiom_instances import AxiomInstance, axiom_groups
-from rulec.automata.compiler_jobs import Done, Failed, Job, answer_to
+from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.decision_diagrams.diagram_compiler import COMPILER
 from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
+from rulec.automata.worker.job_answers import answer_to
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.logic.semantics import holds

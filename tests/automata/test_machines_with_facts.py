@@ -14,8 +14,9 @@ from rulec.automata import compiler
 from rulec.automata.alphabet import propositions_of
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRulebook
-from rulec.automata.compiler_jobs import Failed, answer_to
+from rulec.automata.compiler_jobs import Failed
 from rulec.automata.mealy_monitor import IMPOSSIBLE
+from rulec.automata.worker.job_answers import answer_to
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import (
     Atom,

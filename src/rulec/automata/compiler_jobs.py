@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from rulec.automata.alphabet import count_letters
 from rulec.automata.axiom_instances import AxiomGroup, AxiomInstance
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
-from rulec.automata.random_words import agrees
-from rulec.automata.tables import DeterministicAutomaton, build_machine
-from rulec.logic.bounds import operations_of
+from rulec.automata.tables import DeterministicAutomaton
 from rulec.logic.formula import Formula
 from rulec.logic.semantics import Semantics
 
@@ -72,13 +68,15 @@ class Translated:
     """A rule's automaton over its letters, and as a text in HOA.
 
     ``possible`` are the letters that facts leave, as bits, None for all of them. ``is_checked``:
-    the automaton has been compared with the formula.
+    the automaton has been compared with the formula. Where that takes long ``compare`` does so, as
+    far as it gets; it raises CheckError.
     """
 
     automaton: DeterministicAutomaton
     possible: int | None
     hoa: str
-    is_checked: bool
+    is_checked: bool = False
+    compare: Callable[[], None] | None = None
 
 
 class CheckError(Exception):
@@ -103,41 +101,3 @@ class Compiler:
     version: str
     translate: Translator
     contradicts: Callable[[Formula], bool]
-
-
-def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
-    """The machine of a job, or why there is none."""
-    if count_letters(job.reads) > job.most_letters:
-        return Failed("letters")
-    if _farthest_step(job.formula) > MOST_STEPS_AHEAD:
-        return Failed("steps")
-    for group in job.groups:
-        if compiler.contradicts(group.known):
-            return Failed("facts", contradiction=_contradiction(group, compiler))
-    try:
-        found = compiler.translate(job)
-    except CheckError:
-        return Failed("check")
-    except BeyondReachError:
-        return Failed("reach")
-    machine = build_machine(found.automaton, job.reads, found.possible)
-    if not found.is_checked and not agrees(machine, job.formula, job.semantics):
-        return Failed("check")
-    return Done(machine, found.hoa)
-
-
-def _farthest_step(formula: Formula) -> Fraction:
-    """The last step that a bound of a formula in steps names."""
-    bounds = [operation.bound for operation in operations_of(formula)]
-    ends = [bound.high or bound.low for bound in bounds if bound is not None]
-    return max(ends, default=Fraction(0))
-
-
-def _contradiction(group: AxiomGroup, compiler: Compiler) -> tuple[AxiomInstance, ...]:
-    needed = group
-    for instance in group.instances:
-        without = tuple(other for other in needed.instances if other is not instance)
-        fewer = replace(needed, instances=without)
-        if compiler.contradicts(fewer.known):
-            needed = fewer
-    return needed.instances

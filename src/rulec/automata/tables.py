@@ -7,7 +7,7 @@ Letters with equal columns are merged, then states that no word tells apart.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from operator import or_
@@ -63,10 +63,8 @@ def build_machine(
     kept = [columns.index(column) for column in merged]
     letters = [IMPOSSIBLE] * n_letters
     for members, column in zip(classes, columns, strict=True):
-        while members:
-            lowest = members & -members
-            letters[lowest.bit_length() - 1] = merged[column]
-            members ^= lowest
+        for letter in _bits(members):
+            letters[letter] = merged[column]
     return MealyMonitor(
         reads,
         tuple(letters),
@@ -75,6 +73,15 @@ def build_machine(
         rejecting_sink=sink_of(successors, outputs, verdict=False),
         accepting_sink=sink_of(successors, outputs, verdict=True),
     )
+
+
+def _bits(members: int) -> Iterator[int]:
+    """The places of a set's bits; to take them off one by one is quadratic in large sets."""
+    digits = f"{members:b}"[::-1]
+    place = digits.find("1")
+    while place >= 0:
+        yield place
+        place = digits.find("1", place + 1)
 
 
 def _letter_classes(automaton: DeterministicAutomaton, met: int) -> list[int]:

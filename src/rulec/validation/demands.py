@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal, TypeAlias
 
-from rulec.validation.functions import FALSE, TRUE, Function, FunctionAlgebra
+from rulec.validation.functions import FALSE, MOST_WORK, TRUE, Function, FunctionAlgebra
 from rulec.validation.unprovable import UnprovableError, exact, require
 
 LONGEST_BOUND = 1 << 12
@@ -74,15 +74,18 @@ Part: TypeAlias = Now | Joined | Future | OfPast
 
 
 class Demands:
-    """Parts of one formula; ``everything`` are all letters that there are, as bits."""
+    """Parts of one formula; ``everything`` are all letters that there are, as bits.
 
-    def __init__(self, everything: int) -> None:
+    ``most_work`` is what may be combined (``FunctionAlgebra``).
+    """
+
+    def __init__(self, everything: int, most_work: int = MOST_WORK) -> None:
         self.everything = everything
         self.parts: list[Part] = []
         self.past: list[Past] = []
         self._numbers: dict[Part, int] = {}
         self._negations: dict[int, int] = {}
-        self.algebra = FunctionAlgebra(self._implies)
+        self.algebra = FunctionAlgebra(self._implies, most_work)
 
     def number(self, part: Part) -> int:
         """The number of a part."""

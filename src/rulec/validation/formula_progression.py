@@ -37,11 +37,13 @@ class FormulaProgression:
         self._full = demands.everything
         self.start = DemandState(frozenset({frozenset({root})}), ((),) * len(demands.past))
         self._moves: dict[DemandState, dict[DemandState, int]] = {}
+        self._steps: dict[tuple[Occasions, ...], _Step] = {}
+        self._repetitions: dict[tuple[Occasions, ...], _Repetition] = {}
 
     def moves(self, state: DemandState) -> dict[DemandState, int]:
         """The states that follow, each with the letters that lead there."""
         if state not in self._moves:
-            step = _Step(self._demands, state.memory)
+            step = self._step(state.memory)
             memories = step.remembered()
             rest = step.after(state.demand)
             self._moves[state] = self._algebra.combined(rest, memories, _state)
@@ -49,7 +51,12 @@ class FormulaProgression:
 
     def memories(self, memory: tuple[Occasions, ...]) -> dict[tuple[Occasions, ...], int]:
         """What the past parts remember next, each with its letters."""
-        return _Step(self._demands, memory).remembered()
+        return self._step(memory).remembered()
+
+    def _step(self, memory: tuple[Occasions, ...]) -> _Step:
+        if memory not in self._steps:
+            self._steps[memory] = _Step(self._demands, memory)
+        return self._steps[memory]
 
     def holds_at_the_end(self, state: DemandState) -> bool:
         """The verdict if nothing comes after the letters that led to a state."""
@@ -58,7 +65,9 @@ class FormulaProgression:
 
     def kept_for_ever(self, state: DemandState) -> int:
         """The letters that, repeated for ever from a state on, satisfy its demand."""
-        return _Repetition(self._demands, state.memory).first(state.demand)
+        if state.memory not in self._repetitions:
+            self._repetitions[state.memory] = _Repetition(self._demands, state.memory)
+        return self._repetitions[state.memory].first(state.demand)
 
 
 def _with_occasion(age: int, known: Occasions, value: Function) -> Occasions:
@@ -228,43 +237,66 @@ class _Repetition:
                 until = self._value(self._demands.negated(number))
                 return [self._full & ~letters for letters in until]
             case Future(_, low, high, left, right):
-                pairs = _aligned(self._value(left), self._value(right), 0)
-                return [self._until(pairs, at, low, high) for at in range(len(pairs))]
+                return self._until(_aligned(self._value(left), self._value(right), 0), low, high)
             case OfPast(past, holds):
                 values = self._since(past)
                 return values if holds else [self._full & ~letters for letters in values]
 
-    def _until(self, pairs: list[tuple[int, int]], at: int, low: int, high: int | None) -> int:
-        """Where ``right`` comes ``low`` to ``high`` instants from one, and ``left`` up to there."""
-        before, found, last = self._full, 0, len(pairs) - 1
-        if at == last:
-            # All later instants are like this one.
-            left, right = pairs[last]
-            return right & left if low > 0 else right
-        for ahead in range(max(low, last - at) + 1):
-            if high is not None and ahead > high:
+    def _until(self, pairs: list[tuple[int, int]], low: int, high: int | None) -> list[int]:
+        """Where ``right`` comes ``low`` to ``high`` instants from each, and ``left`` up to there.
+
+        All instants after the last are like it.
+        """
+        lefts, rights = [left for left, _ in pairs], [right for _, right in pairs]
+        nothing = [0] * len(pairs)
+        if high is None:
+            value = rights[:]
+            for at in reversed(range(len(pairs) - 1)):
+                value[at] |= lefts[at] & value[at + 1]
+        else:
+            value = self._instant_before(rights, lefts, rights, high - low)
+        return self._instant_before(value, lefts, nothing, low)
+
+    def _instant_before(
+        self, value: list[int], lefts: list[int], rights: list[int], times: int
+    ) -> list[int]:
+        """``right``, or ``left`` and the value of one instant later; and so on, so many times."""
+        for _ in range(times):
+            self._demands.algebra.count(len(value))
+            later = [*value[1:], value[-1]]
+            again = [
+                right | left & ahead
+                for left, right, ahead in zip(lefts, rights, later, strict=True)
+            ]
+            if again == value:
                 break
-            left, right = pairs[min(at + ahead, last)]
-            if ahead >= low:
-                found |= before & right
-            before &= left
-        return found
+            value = again
+        return value
 
     def _since(self, past: int) -> list[int]:
         part = self._demands.past[past]
         reach = part.low if part.high is None else part.high
-        pairs = _aligned(self._value(part.left), self._value(part.right), reach)
+        left_values, right_values = self._value(part.left), self._value(part.right)
+        steady = max(len(left_values), len(right_values))
         occasions = {age: self.first(value) for age, value in self._memory[past]}
         values = []
-        for left, right in pairs:
+        for at, (left, right) in enumerate(_aligned(left_values, right_values, reach)):
             older: dict[int, int] = {0: right}
             for age, letters in occasions.items():
                 later = age + 1 if part.high is not None else min(age + 1, part.low)
                 if letters & left and (part.high is None or later <= part.high):
                     older[later] = older.get(later, 0) | letters & left
-            occasions = older
+            found = 0
+            for age, letters in older.items():
+                if age >= part.low:
+                    # Of occasions in reach the youngest stays longest.
+                    older[age] = letters & ~found
+                    found |= letters
+            before, occasions = occasions, {age: each for age, each in older.items() if each}
             self._demands.algebra.count(len(older))
-            values.append(reduce(int.__or__, [m for age, m in older.items() if age >= part.low], 0))
+            values.append(found)
+            if at >= steady and occasions == before:
+                break
         return values
 
 

@@ -32,8 +32,8 @@ _Result = TypeVar("_Result", bound=Hashable)
 class FunctionAlgebra:
     """Conjunction and disjunction of functions; ``implies`` tells which demand implies which."""
 
-    def __init__(self, implies: Callable[[int, int], bool]) -> None:
-        self._implies = implies
+    def __init__(self, implies: Callable[[int, int], bool], most_work: int = MOST_WORK) -> None:
+        self._implies, self._most_work = implies, most_work
         self._known: dict[tuple[bool, Function, Function], Function] = {}
         self._work = 0
 
@@ -100,5 +100,5 @@ class FunctionAlgebra:
     def count(self, work: int) -> None:
         """Count steps of work. Raises UnprovableError once they are too many."""
         self._work += work
-        if self._work > MOST_WORK:
+        if self._work > self._most_work:
             raise UnprovableError("it takes more steps than this checker makes for one table")

@@ -41,8 +41,20 @@ class DigitRead:
     entry: Any
 
 
-class Letters:
-    """The letters of some reads; a set of them is an integer's bits."""
+class NumberedLetters:
+    """So many letters; a set of them is an integer's bits."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self.everything = (1 << count) - 1
+
+    def described(self, letter: int) -> dict[str, str]:
+        """What a letter says of a state, in words."""
+        return {"letter": str(letter)}
+
+
+class Letters(NumberedLetters):
+    """The letters of some reads."""
 
     def __init__(self, reads: Sequence[Any], vocabulary: Mapping[str, Any]) -> None:
         self.reads: list[DigitRead] = []
@@ -53,8 +65,7 @@ class Letters:
             self.reads.append(DigitRead(about, len(digits), digits, stride, entry))
             stride *= len(digits)
             require(stride <= MOST_LETTERS, f"it tells more than {MOST_LETTERS} letters apart")
-        self.count = stride
-        self.everything = (1 << stride) - 1
+        super().__init__(stride)
 
     def where(self, read: DigitRead, digits: Iterable[int]) -> int:
         """The letters in which a read has one of some digits."""

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from rulec.validation.demands import Demands
 from rulec.validation.formula_progression import DemandState, FormulaProgression
-from rulec.validation.letter_sets import Letters
+from rulec.validation.letter_sets import NumberedLetters
 from rulec.validation.unprovable import UnprovableError, require
 
 MOST_STATES = 1 << 13
 """Formulas of more states, as this checker counts them, are not proved."""
+
+QUICK_WORK = 1 << 17
+"""What may be combined where a table has to be proved at once, or not at all."""
 
 MOST_CLASS_BITS = 1 << 28
 """Letter classes times letters."""
@@ -29,7 +33,7 @@ class ClaimedTable:
 
     @classmethod
     def read(
-        cls, entry: Mapping[str, Any], outputs: str, letters: Letters, possible: int
+        cls, entry: Mapping[str, Any], outputs: str, letters: NumberedLetters, possible: int
     ) -> ClaimedTable:
         """The table of an entry, whose ``outputs`` are called so.
 
@@ -95,7 +99,28 @@ class FormulaMachine:
                     yield Move(side, target, verdict)
 
 
-def prove_table(machine: FormulaMachine, entry: Mapping[str, Any], letters: Letters) -> None:
+def prove_words(
+    tree: Any, letters_of: Callable[[Any], int], entry: Mapping[str, Any], *, ends: bool
+) -> None:
+    """Raise UnprovableError unless a table judges every word as a tree does, bounds in steps.
+
+    ``letters_of`` gives the letters of an atom or a comparison; possible are those that have a
+    class. Neither what letters mean is looked at, nor which are possible. For whoever has a table
+    of many to check: it takes a bounded part of a second.
+    """
+    letters = NumberedLetters(len(entry["letters"]))
+    classes = "".join(["0" if number < 0 else "1" for number in reversed(entry["letters"])])
+    possible = int(classes, 2)
+    demands = Demands(possible, QUICK_WORK)
+    root = demands.read(tree, None, lambda atom: letters_of(atom) & possible)
+    prove_table(
+        FormulaMachine(FormulaProgression(demands, root), possible, ends=ends), entry, letters
+    )
+
+
+def prove_table(
+    machine: FormulaMachine, entry: Mapping[str, Any], letters: NumberedLetters
+) -> None:
     """Raise UnprovableError unless a rule's table judges every word as its formula does.
 
     All pairs of states that some word leads both to are gone through, the shortest words first.

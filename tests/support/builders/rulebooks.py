@@ -50,9 +50,10 @@ def rule(name, formula, *variables, strength="hard"):
 
 def compile_here(rulebook, step_s=None):
     """As the compiler does, without a process of its own: for tests with many small rulebooks."""
-    from rulec.automata.compiler_jobs import Failed, answer_to
+    from rulec.automata.compiler_jobs import Failed
     from rulec.automata.worker.compiler_choice import choice
     from rulec.automata.worker.compiler_worker import chosen
+    from rulec.automata.worker.job_answers import answer_to
 
     usual = chosen(choice())
 

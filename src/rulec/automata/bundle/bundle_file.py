@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from codecs import BOM_UTF8
 from collections.abc import Iterable
@@ -46,7 +45,7 @@ def to_json(rulebook: CompiledRulebook) -> str:
     """Text of a compiled rulebook's file, one row of numbers per line."""
     data = msgspec.to_builtins(entry_of(rulebook))
     del data["sha256"]
-    text = json.dumps(data, indent=1, ensure_ascii=False)
+    text = msgspec.json.format(msgspec.json.encode(data), indent=1).decode()
     return with_digest(_STRING_OR_ROW.sub(_on_one_line, text) + "\n")
 
 

@@ -16,7 +16,6 @@ def _translated(job: Job) -> Translated:
         automaton,
         possible,
         in_hoa(found, job.name, job.remarks_on(found.alive)),
-        is_checked=False,
     )
 
 

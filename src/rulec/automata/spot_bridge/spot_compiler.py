@@ -21,6 +21,7 @@ def _translated(job: Job) -> Translated:
         possible_letters(job.reads, joined(AND, axioms)) if axioms else None,
         in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive)),
         translation.is_checked,
+        translation.compare,
     )
 
 

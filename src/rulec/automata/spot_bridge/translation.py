@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import spot
@@ -35,13 +36,15 @@ class Translation:
 
     ``names`` are those of its propositions. ``alive`` is None if it reads infinite words, else the
     proposition that is true as long as a finite word lasts. ``is_checked``: Spot has compared it
-    with the formula both ways.
+    with the formula both ways. With long bounds it takes ``compare`` to ask Spot, which may find no
+    answer in time.
     """
 
     automaton: Any
     names: dict[ltl.Proposition, str]
     alive: str | None
     is_checked: bool
+    compare: Callable[[], None] | None
 
 
 def translate(
@@ -73,7 +76,11 @@ def translate(
     else:
         automaton = _combined(whole, True, spot_formulas)
     is_small = total_bound(whole) <= _SMALL or bool(past.memories)
-    check(automaton, whole, spot_formulas, past.memories, None if is_small else _CHECK_CPU_S)
+    compare: Callable[[], None] | None = None
+    if is_small:
+        check(automaton, whole, spot_formulas, past.memories)
+    else:
+        compare = partial(check, automaton, whole, spot_formulas, past.memories, cpu_s=_CHECK_CPU_S)
     if past.registers:
         automaton = _shaped(with_registers(automaton, past.registers, spot_formulas))
     return Translation(
@@ -81,6 +88,7 @@ def translate(
         {proposition: names[proposition] for proposition in propositions},
         alive,
         is_checked=is_small and not past.registers,
+        compare=compare,
     )
 
 

@@ -13,9 +13,10 @@ import traceback
 from contextlib import suppress
 from dataclasses import dataclass
 
-from rulec.automata.compiler_jobs import MOST_STEPS_AHEAD, Compiler, Failed, Job, answer_to
+from rulec.automata.compiler_jobs import MOST_STEPS_AHEAD, Compiler, Failed, Job
 from rulec.automata.worker.compiler_choice import DIAGRAMS, SPOT
 from rulec.automata.worker.confinement import Confinement
+from rulec.automata.worker.job_answers import answer_to
 
 MEMORY_LIMIT_BYTES = 2 << 30
 

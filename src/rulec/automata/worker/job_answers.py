@@ -1,0 +1,105 @@
+"""The answer to a job: a machine that has been compared with its formula, or why there is none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from rulec.automata.alphabet import count_letters, letters_with, propositions_of
+from rulec.automata.axiom_instances import AxiomGroup, AxiomInstance
+from rulec.automata.compiler_jobs import (
+    MOST_STEPS_AHEAD,
+    BeyondReachError,
+    CheckError,
+    Compiler,
+    Done,
+    Failed,
+    Job,
+    Translated,
+)
+from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.automata.random_words import agrees
+from rulec.automata.tables import build_machine
+from rulec.logic.bounds import operations_of
+from rulec.logic.codec import to_data
+from rulec.logic.formula import Formula
+from rulec.validation.table_proof import prove_words
+from rulec.validation.unprovable import UnprovableError
+
+
+def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
+    """The machine of a job, or why there is none."""
+    if count_letters(job.reads) > job.most_letters:
+        return Failed("letters")
+    if _farthest_step(job.formula) > MOST_STEPS_AHEAD:
+        return Failed("steps")
+    for group in job.groups:
+        if compiler.contradicts(group.known):
+            return Failed("facts", contradiction=_contradiction(group, compiler))
+    try:
+        found = compiler.translate(job)
+    except CheckError:
+        return Failed("check")
+    except BeyondReachError:
+        return Failed("reach")
+    machine = build_machine(found.automaton, job.reads, found.possible)
+    try:
+        return Done(machine, found.hoa) if _is_right(machine, job, found) else Failed("check")
+    except CheckError:
+        return Failed("check")
+
+
+def _farthest_step(formula: Formula) -> Fraction:
+    """The last step that a bound of a formula in steps names."""
+    bounds = [operation.bound for operation in operations_of(formula)]
+    ends = [bound.high or bound.low for bound in bounds if bound is not None]
+    return max(ends, default=Fraction(0))
+
+
+def _contradiction(group: AxiomGroup, compiler: Compiler) -> tuple[AxiomInstance, ...]:
+    needed = group
+    for instance in group.instances:
+        without = tuple(other for other in needed.instances if other is not instance)
+        fewer = replace(needed, instances=without)
+        if compiler.contradicts(fewer.known):
+            needed = fewer
+    return needed.instances
+
+
+def _is_right(machine: MealyMonitor, job: Job, found: Translated) -> bool:
+    """Tell whether a machine judges words as its job's formula does.
+
+    It is proved, for all words. Where that takes too long, the compiler compares its automaton with
+    the formula as far as it can; and unless that was all, the machine is tried on random words.
+    Raises CheckError as ``found.compare``.
+    """
+    try:
+        _prove(machine, job)
+    except RecursionError:
+        pass
+    except UnprovableError as problem:
+        if problem.word:
+            return False
+    else:
+        return True
+    if found.compare is not None:
+        found.compare()
+    return found.is_checked or agrees(machine, job.formula, job.semantics)
+
+
+def _prove(machine: MealyMonitor, job: Job) -> None:
+    """Raise UnprovableError unless a machine judges all words as its formula does."""
+    true_in = letters_with(machine.reads, propositions_of(job.formula))
+    letters = {repr(to_data(one)): own for one, own in true_in.items()}
+    prove_words(
+        to_data(job.formula),
+        lambda atom: letters[repr(atom)],
+        {
+            "letters": machine.letters,
+            "following": machine.successors,
+            "accepting": machine.outputs,
+            "dead": machine.rejecting_sink,
+            "safe": machine.accepting_sink,
+        },
+        ends=job.semantics == "finite",
+    )
