@@ -16,9 +16,9 @@ from timing import children_ms, in_turns, processor_time
 
 from rulec.automata.alphabet import reads_of
 from rulec.automata.compiler import compile_rulebook
-from rulec.automata.random_words import agrees
-from rulec.automata.spot_bridge import explore, in_hoa, translate
-from rulec.automata.tables import build_machine
+from rulec.automata.compiler_jobs import Failed, Job
+from rulec.automata.spot_bridge import COMPILER
+from rulec.automata.worker.job_answers import answer_to
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -93,12 +93,9 @@ def compiled(formulas: list[Formula]) -> Callable[[], None]:
 
     def work() -> None:
         for formula in formulas:
-            reads = reads_of(formula, vocabulary)
-            found = translate(formula, reads)
-            machine = build_machine(explore(found, reads), reads)
-            if not found.is_checked and not agrees(machine, formula, "stutter"):
-                raise RuntimeError(f"a machine is wrong: {formula}")
-            in_hoa(found.automaton, "pattern", [])
+            job = Job("pattern", formula, reads_of(formula, vocabulary), (), "stutter", (), cpu_s=5)
+            if isinstance(answer_to(job, COMPILER), Failed):
+                raise RuntimeError(f"there is no machine of {formula}")
 
     return work
 
