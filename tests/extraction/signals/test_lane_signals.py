@@ -100,6 +100,17 @@ def test_indicators_by_side_and_where_lamps_are_unknown():
     assert "indicator" not in changes().world
 
 
+@pytest.mark.parametrize(("hazards", "unknown"), [(True, False), (False, True)])
+def test_both_indicators_are_hazard_lights_or_nobody_knows(hazards, unknown):
+    """A file may say of both that they are on, and of the hazard lights that they are off."""
+    lit = {"left_indicator", "right_indicator"} | ({"hazard_lights"} if hazards else set())
+    shows = frozenset({"left_indicator", "right_indicator", "hazard_lights"})
+    lamps = dict.fromkeys(range(4), frozenset(lit))
+    found = changes(body=replace(vehicle(7, CHANGE), lamps=lamps, shows=shows))
+    assert set(found.values("indicator").tolist()) == {"no_indicator"}
+    assert found.unknown["indicator"].tolist() == [unknown] * 4
+
+
 def marks(y, right=None, left=None, count=2, route=("1",)):
     """The signals of marks in the first state; marks are those on both lanelets beside a line."""
     road = lanes(count)

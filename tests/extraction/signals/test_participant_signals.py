@@ -108,6 +108,19 @@ def test_the_gap_to_one_that_ego_parts_from_soon_is_moot(leaves_at, unknown):
     assert signals.unknown["safe_gap"][0, 0] == unknown
 
 
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize(("across", "unknown"), [(0.4, True), (0.1, False)])
+def test_the_gap_to_one_that_ego_swings_out_from_is_moot(across, unknown, way):
+    """It is lost from sight 0.6 m short of being clear, after 1.5 s of 4 s that ego has."""
+    ahead = vehicle(8, {k: (12 + 2.5 * k, 0.0) for k in range(4)}, speed=5.0)
+    places = {k: (5 * k, way * (1.4 - across * 1.5 + across * k / 2)) for k in range(10)}
+    bodies = [vehicle(7, places, speed=10.0), ahead]
+    road = [straight("1", -100, 300, width=6.0)]
+    signals = participant_signals(context_of(recording(road, bodies)))
+    assert not signals.about["safe_gap"][0, 0]
+    assert signals.unknown["safe_gap"][0, 0] == unknown
+
+
 def test_only_the_next_one_ahead_precedes():
     others = [steady(8, 40, 0), steady(9, 20, 0), steady(10, 12, 4), steady(11, -20, 0)]
     signals = participant_signals(context(*others))

@@ -88,7 +88,11 @@ def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
 
 
 def _indicator(context: DriveContext) -> SignalColumns:
-    """Ego's indicator, if the recording has its lamps; both at once are no indication."""
+    """Ego's indicator, if the recording has its lamps.
+
+    Both at once are no indication, as hazard lights are none; a file that says that these are off
+    contradicts itself.
+    """
     (ego,) = context.ego.participants
     if not ego.lamps or not ego.shows >= _INDICATORS:
         return SignalColumns()
@@ -96,9 +100,14 @@ def _indicator(context: DriveContext) -> SignalColumns:
     steps = [ego.lamps.get(context.first_step + state) for state in range(context.states)]
     lit = [(lamps or frozenset()) & _INDICATORS for lamps in steps]
     codes = np.array([0 if len(lamps) != 1 else 2 if far in lamps else 1 for lamps in lit])
+    tells_hazards = "hazard_lights" in ego.shows
+    unknown = [
+        lamps is None or (tells_hazards and lamps >= _INDICATORS and "hazard_lights" not in lamps)
+        for lamps in steps
+    ]
     return SignalColumns(
         {"indicator": codes},
-        unknown={"indicator": np.array([lamps is None for lamps in steps])},
+        unknown={"indicator": np.array(unknown)},
         texts={"indicator": _INDICATIONS},
     )
 

@@ -162,23 +162,30 @@ def _stood_before(context: DriveContext) -> Flags:
 def _parts_soon(context: DriveContext, rows: NDArray[intp]) -> Flags:
     """Flags of those whose lane is not ego's at some state within ``parting_s``.
 
-    Or who are clear of ego at its side then, as on a broad lane, or are lost from sight before,
-    going aside by ``_AWAY_MPS``. Of these rows, False in all others.
+    Or who are clear of ego at its side then, as on a broad lane; or who are lost from sight before,
+    and go aside by ``_AWAY_MPS``, or ego does when they are seen last, such that it may be clear of
+    them then. Of these rows, False in all others.
     """
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
     parts, rows = np.zeros(context.relevant.shape, dtype=bool), distinct(rows)
+    way_across = relations.way_across(context)[rows]
     apart = context.extents.lane[rows] != context.ego_extents.lane
-    apart |= relations.way_across(context)[rows] > context.thresholds.touching_m
+    apart |= way_across > context.thresholds.touching_m
     apart &= context.relevant[rows]
     states = np.arange(context.states)
     parts[rows] = next_state(apart, context.states + horizon) <= states + horizon
-    seen, others = context.relevant[rows], context.extents.part(rows, slice(None))
-    middles = (
-        others.d_min + others.d_max - (context.ego_extents.d_min + context.ego_extents.d_max)
-    ) / 2
-    leaves = others.across * np.sign(middles) >= _AWAY_MPS
-    lost = next_state(~seen, context.states + horizon) <= states + horizon
-    parts[rows] |= seen & leaves & lost
+    seen, own = context.relevant[rows], context.ego_extents
+    others = context.extents.part(rows, slice(None))
+    side = np.sign(others.d_min + others.d_max - (own.d_min + own.d_max))
+    gone = next_state(~seen, context.states + horizon)
+    last = np.clip(gone - 1, 0, context.states - 1)
+    away, still = (
+        np.take_along_axis(values, last, axis=1) for values in (-own.across * side, way_across)
+    )
+    left_s = (states + horizon - last) * context.recording.step_s
+    swings_out = (away >= _AWAY_MPS) & (still + away * left_s > -context.tolerances.place_m)
+    lost = gone <= states + horizon
+    parts[rows] |= seen & lost & ((others.across * side >= _AWAY_MPS) | swings_out)
     return parts
 
 
