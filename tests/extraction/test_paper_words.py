@@ -49,6 +49,20 @@ def test_pulling_out_to_the_right_and_getting_in_front():
 
 
 @pytest.mark.parametrize(
+    ("x", "y", "told"), [(46, 2.6, "r"), (46, -2.6, "l"), (48.5, 0.0, "b"), (41.5, 0.4, "f")]
+)
+def test_who_reaches_into_egos_lane_is_at_its_side_or_runs_into_it(x, y, told):
+    """Bodies are 4 m long and 2 m wide, ego's middle is at 45 m; the line at 2 m is overrun."""
+    lanes = [
+        straight(1, 0, 300, y=-4, left_of=2),
+        straight(2, 0, 300, left_of=3, right_of=1),
+        straight(3, 0, 300, y=4, right_of=2),
+    ]
+    cars = [going(7, 40, 10.0, y=0.0), going(8, x, 0.0, y=y)]
+    assert positions(cars, lanes)[1] == told
+
+
+@pytest.mark.parametrize(
     ("y", "mps", "before", "beside"),
     [
         (-1.5, 0.3, "l", "f"),  # it walks to the left: ego comes from its left, then is before it

@@ -229,8 +229,9 @@ def way_across(context: DriveContext) -> Floats:
 def position(context: DriveContext) -> NDArray[np.str_]:
     """The paper's position letters b, f, l and r.
 
-    Pedestrians have a frame of their own. Where bodies are beside each other in one lane their
-    middles decide.
+    Pedestrians have a frame of their own. Where bodies are beside each other in one lane they are
+    at each other's sides if they overlap across the road by less than along it, and less than half
+    of the narrower one; else their middles decide.
     """
     ego, others = context.ego_extents, context.extents
     walking = np.flatnonzero(context.tracks.of_type("pedestrian"))
@@ -250,6 +251,10 @@ def position(context: DriveContext) -> NDArray[np.str_]:
     column = _along(ego, s_min, s_max)
     row = _across(ego, touched, *others.from_middle(ego.lane))
     inside = (row == SAME_LANE) & (column == BESIDE)
+    half = np.minimum(ego.d_max - ego.d_min, others.d_max - others.d_min) / 2
+    aside = _clear(context) > np.maximum(way_along(context), -half)
+    at_side = inside & (facing % 2 == 0) & aside
+    row, inside = np.where(at_side, _ego_at(context), row), inside & ~at_side
     column = np.where(inside, np.where(ego.s < others.s, BEHIND, IN_FRONT_OF), column)
     tables = np.array([list(PAPER_TABLES[name].decode()) for name in _FACING])
     letters: NDArray[np.str_] = tables[facing, 3 * row + column]
