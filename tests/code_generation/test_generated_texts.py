@@ -10,10 +10,10 @@ import pytest
 
 import rulec
 from rulec.cli.main import main
+from rulec.code_generation.compiled_c.c_library import CLibrary
 from rulec.code_generation.letter_cells import class_of, letter_cells
 from rulec.code_generation.monitor_files import monitor_texts
 from rulec.code_generation.monitor_layout import monitor_layout
-from rulec.code_generation.proof.c_library import CLibrary
 from rulec.code_generation.written_names import Identifiers, c_string, in_comment
 from rulec.diagnostics import RulecError
 from rulec.rulebook.rulebook_model import SourceFile

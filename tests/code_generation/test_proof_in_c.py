@@ -12,9 +12,9 @@ import pytest
 import rulec
 from rulec.cli.main import main
 from rulec.code_generation.c_files import c_source
+from rulec.code_generation.compiled_c.c_library import CLibrary
 from rulec.code_generation.monitor_layout import monitor_layout
 from rulec.code_generation.proof import monitor_proof
-from rulec.code_generation.proof.c_library import CLibrary
 from rulec.code_generation.proof.monitor_proof import proof_of
 from rulec.diagnostics import RulecError
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rulec.extraction.selection import RequestedDrives
     from rulec.monitoring.assumptions import Assumptions
     from rulec.monitoring.batch.verdict_columns import VerdictColumns
-    from rulec.monitoring.verdict import NotJudged, Verdict
+    from rulec.monitoring.verdict import EngineName, NotJudged, Verdict
     from rulec.rates.drive_counts import GroupKey
     from rulec.rates.rule_rates import ViolationRates
     from rulec.recordings.recording import Recording
@@ -76,15 +76,25 @@ class TraceVerbs(SessionSettings):
         traces: Iterable[Trace | RulecError],
         rules: Rules,
         assumptions: Assumptions | None = None,
+        *,
+        engine: EngineName = "python",
     ) -> Iterator[Verdict | NotJudged]:
         """Judge many traces fast, and yield their verdicts in order.
 
-        In place of a verdict that cannot be given there is a ``NotJudged``.
+        In place of a verdict that cannot be given there is a ``NotJudged``. With the ``engine``
+        ``"c"`` the monitor in C judges, compiled by your own compiler; what C does not tell, for
+        want of values, Python does, and each verdict says by its ``engine`` which of them did.
+        Raises RulecError R0751 if there is no compiler.
         """
         from rulec.monitoring.batch.batch_verify import verify_many
 
         if assumptions is not None:
             traces = (assumptions.of([item])[0] for item in traces)
+        if engine == "c":
+            from rulec.code_generation.compiled_c.c_engine import CEngine
+
+            in_c = CEngine(self._compiled(rules))
+            return (in_c.answer(item) for item in traces)
         return verify_many(traces, self._compiled(rules))
 
     def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:

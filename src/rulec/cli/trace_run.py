@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from io import UnsupportedOperation
 from pathlib import Path
-from typing import IO, Any, cast
+from typing import IO, TYPE_CHECKING, Any, cast
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cli.standard_input import standard_input
@@ -28,6 +28,9 @@ from rulec.report.verdicts import verdict_json, verdict_report
 from rulec.trace import Trace
 from rulec.trace.formats.trace_files import Format, format_of, read_chunks
 
+if TYPE_CHECKING:
+    from rulec.code_generation.compiled_c.c_engine import CEngine
+
 Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
 """Traces, which of them, and its verdict, or why there is none."""
 
@@ -36,7 +39,8 @@ Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
 class TraceRun:
     """Judges the traces of files, and adds up what comes out.
 
-    The first ``to_explain`` violations of each file are explained.
+    The first ``to_explain`` violations of each file are explained. ``engine`` judges instead of
+    Python's engines, and each verdict says which one did.
     """
 
     rules: CompiledRulebook
@@ -44,6 +48,7 @@ class TraceRun:
     complaints: Complaints
     to_explain: int
     every_part: bool
+    engine: CEngine | None = None
     counts: Counter[bool | None] = field(default_factory=Counter)
     not_judged: int = 0
     judged: bool = False
@@ -55,7 +60,7 @@ class TraceRun:
             findings: list[VerdictFinding] = []
             rows: list[Mapping[str, object]] = []
             left, traces_before = self.to_explain, self.counts.total()
-            for traces, place, answer in _answers(file, form, self.rules, assumed):
+            for traces, place, answer in self._answers(file, form, assumed):
                 before = len(findings)
                 if isinstance(answer, NotJudged):
                     self._not_judged(file, answer, findings)
@@ -67,6 +72,8 @@ class TraceRun:
                 drives = self.counts.total() - traces_before
                 self.to.found(FoundInRecording(file, "", drives, tuple(findings), tuple(rows)))
         self.to.text(verdict_report.summary(self.counts, self.not_judged))
+        if self.engine is not None:
+            self.to.text(verdict_report.judged_by(self.engine.judged, self.engine.compiled_by))
 
     def _rows(
         self, file: str, answer: Answer, found: Sequence[VerdictFinding]
@@ -107,7 +114,8 @@ class TraceRun:
             trace = cast("Trace", traces[place])
             explained = [explain(one, trace, used) for one in verdict.violations[:left]]
         if self.to.wants_lines:
-            self.to.line(verdict_json.as_json(verdict, used, explained))
+            says_engine = self.engine is not None
+            self.to.line(verdict_json.as_json(verdict, used, explained, says_engine=says_engine))
         if says and self.to.wants_text:
             text = verdict_report.as_text(
                 verdict, used, explained, every_part=self.every_part, width=page_width()
@@ -117,32 +125,32 @@ class TraceRun:
             findings += trace_findings(file, traces[place], verdict, used, explained)
         return len(explained)
 
+    def _answers(self, file: str, form: Format | None, assumed: Assumptions) -> Iterator[Answer]:
+        try:
+            if file == "-":
+                stream = standard_input()
+                yield from self._in_stream(stream, "standard input", form or "jsonl", assumed)
+                return
+            with opened(Path(file)) as stream:
+                yield from self._in_stream(stream, file, form or format_of(file), assumed)
+        except RulecError as error:
+            yield [error], 0, NotJudged(None, error)
 
-def _answers(
-    file: str, form: Format | None, rules: CompiledRulebook, assumed: Assumptions
-) -> Iterator[Answer]:
-    try:
-        if file == "-":
-            stream = standard_input()
-            yield from _in_stream(stream, "standard input", form or "jsonl", rules, assumed)
-            return
-        with opened(Path(file)) as stream:
-            yield from _in_stream(stream, file, form or format_of(file), rules, assumed)
-    except RulecError as error:
-        yield [error], 0, NotJudged(None, error)
-
-
-def _in_stream(
-    stream: IO[bytes], name: str, form: Format, rules: CompiledRulebook, assumed: Assumptions
-) -> Iterator[Answer]:
-    size = None if name == "standard input" else _size(stream)
-    with progress(f"judging {name}", size) as tell:
-        for chunk in read_chunks(stream, name, form, together=True):
-            traces, answers = verify_items(assumed.of(chunk), rules)
-            for place, answer in enumerate(answers):
-                yield traces, place, answer
-            if size is not None:
-                tell(stream.tell())
+    def _in_stream(
+        self, stream: IO[bytes], name: str, form: Format, assumed: Assumptions
+    ) -> Iterator[Answer]:
+        size = None if name == "standard input" else _size(stream)
+        with progress(f"judging {name}", size) as tell:
+            for chunk in read_chunks(stream, name, form, together=self.engine is None):
+                items = assumed.of(chunk)
+                if self.engine is None:
+                    traces, answers = verify_items(items, self.rules)
+                else:
+                    traces, answers = self.engine.verify_items(items)
+                for place, answer in enumerate(answers):
+                    yield traces, place, answer
+                if size is not None:
+                    tell(stream.tell())
 
 
 def _size(stream: IO[bytes]) -> int | None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code
 
 NO_MONITOR_IN_C = Code(
@@ -28,6 +29,12 @@ def too_large(what: str, way_out: str = "") -> RulecError:
         f"there can be no monitor in C: {what}",
         help=way_out or "split the rule, or leave it out",
     )
+
+
+def no_engine_in_c(error: RulecError, place: SourceLocation | None) -> RulecError:
+    """The same of a trace that was to be judged in C."""
+    way_out = "judge it with `--engine python`"
+    return RulecError([replace(one, place=place, help=way_out) for one in error.diagnostics])
 
 
 NO_C_COMPILER = Code(

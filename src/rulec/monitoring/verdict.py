@@ -27,6 +27,8 @@ class Violation:
     step: int | None
 
 
+EngineName: TypeAlias = Literal["python", "c"]
+
 OutcomeName: TypeAlias = Literal["kept", "violated", "open"]
 
 Reason: TypeAlias = Literal["not told", "tolerance", "not over", "began before", "step"]
@@ -120,7 +122,8 @@ class Verdict(Rows):
     """Verdict of a rulebook: what a trace violates for sure, by rule and objects.
 
     ``open`` is what depends on something unknown, ``not_judged`` what this source cannot tell.
-    ``presumed``: names that hold by presumption, because no source tells them.
+    ``presumed``: names that hold by presumption, because no source tells them. ``engine`` is what
+    judged: Python, or the monitor in C.
     """
 
     __repr__ = short_repr
@@ -130,6 +133,7 @@ class Verdict(Rows):
     open: tuple[OpenVerdict, ...] = ()
     not_judged: tuple[RuleNotJudged, ...] = ()
     presumed: tuple[str, ...] = ()
+    engine: EngineName = field(default="python", compare=False, repr=False)
 
     @property
     def satisfied(self) -> bool | None:

@@ -35,14 +35,7 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
             roundings = rulebook.rounded_to(trace.step_s)
         if len(roundings) > 1:
             return agreed([verify(trace, rounded) for rounded in roundings])
-    rulebook = rulebook_for_trace(trace, rulebook)
-    for rule in rulebook.rules:
-        if rule.step_s is not None:
-            check_step(rule, exact_step(trace.step_s), "the trace", trace.place)
-    check_objects(trace.objects, rulebook.vocabulary, trace.place)
-    check_told(trace.told, rulebook.vocabulary, trace.place)
-    validator = StateValidator(rulebook.vocabulary, trace.objects)
-    is_partial = validator.check(trace.states, "state {}".format, trace.place)
+    rulebook, is_partial = rulebook_for_checked(trace, rulebook)
     if is_partial or trace.ends == "cut" or trace.told is not None:
         # What is unknown of everybody is so of each one of whom nothing is said elsewhere.
         trace = with_all_said(spelled_out(trace, rulebook.vocabulary), rulebook.vocabulary)
@@ -62,6 +55,21 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
                 step = None if step is None else binding.first + step
                 violations.append(Violation(rule.name, rule.strength, binding.objects, step))
     return Verdict(trace.id, tuple(violations))
+
+
+def rulebook_for_checked(trace: Trace, rulebook: CompiledRulebook) -> tuple[CompiledRulebook, bool]:
+    """The rulebook for a trace's step, and whether some of its values are not known.
+
+    Raises RulecError as ``verify`` does of a trace that does not fit.
+    """
+    rulebook = rulebook_for_trace(trace, rulebook)
+    for rule in rulebook.rules:
+        if rule.step_s is not None:
+            check_step(rule, exact_step(trace.step_s), "the trace", trace.place)
+    check_objects(trace.objects, rulebook.vocabulary, trace.place)
+    check_told(trace.told, rulebook.vocabulary, trace.place)
+    validator = StateValidator(rulebook.vocabulary, trace.objects)
+    return rulebook, validator.check(trace.states, "state {}".format, trace.place)
 
 
 def _bindings(rule: CompiledRule, trace: Trace, reader: LetterReader) -> Iterator[Binding]:

@@ -28,8 +28,9 @@ from rulec.report.text.console import page_width, print_remark
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.code_generation.compiled_c.c_engine import CEngine
     from rulec.fleet.drive_rows import DriveRows
-    from rulec.monitoring.verdict import NotJudged, Verdict
+    from rulec.monitoring.verdict import EngineName, NotJudged, Verdict
     from rulec.recordings.recording_inputs import InputFiles
     from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
@@ -77,6 +78,9 @@ if TYPE_CHECKING:
 )
 @scenario_options.drives_options
 @scenario_options.recording_or_trace_options
+@shared.choice_option(
+    "--engine", ["python", "c"], "What judges traces: in C your own compiler compiles the monitor."
+)
 @shared.jobs_option("Judge so many recordings, or parts of a long one, at a time")
 @output_options(FORMATS, "the answer", multiple=True)
 @click.option(
@@ -98,6 +102,7 @@ def command(
     at: str,
     egos: tuple[str, ...],
     jobs: Jobs,
+    engine: EngineName,
     *,
     exposure: bool,
     **options: Any,
@@ -133,6 +138,10 @@ def command(
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     if ends is not None and recordings:
         raise click.UsageError("--end is for traces; a recording is always cut.")
+    if engine == "c" and recordings:
+        raise click.UsageError(
+            "--engine c is for traces; `rulec traces --recorded` writes drives as such."
+        )
     if step_s is not None and (recordings or Fraction(str(float(step_s))) != step_s):
         raise click.UsageError("--step is a decimal, and for traces; a recording has its own step.")
     if len(recordings) > 1 and any(one.form == "mcap" for one in to):
@@ -182,13 +191,22 @@ def command(
             assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
             step = None if step_s is None else float(step_s)
             assumed = replace(assumed, step_s=step)
-            traced = TraceRun(rules, outputs, complaints, to_explain, every_part)
+            judge = None if engine == "python" else _c_engine(rules)
+            traced = TraceRun(rules, outputs, complaints, to_explain, every_part, engine=judge)
             traced.files(traces, form, assumed)
             violated |= bool(traced.counts[False]) or (strict and traced.open_hard)
             judged |= traced.judged
             complete &= not traced.not_judged
     complaints.close()
     return ExitStatus.after(answered=judged and complete, failed=violated)
+
+
+def _c_engine(rules: CompiledRulebook) -> CEngine:
+    """The engine in C. Raises RulecError R0751 if there is no compiler."""
+    # numpy and what writes C, 100 ms: only for those who ask for it.
+    from rulec.code_generation.compiled_c.c_engine import CEngine
+
+    return CEngine(rules)
 
 
 def _to_rows(

@@ -104,3 +104,28 @@ void rulec_digits(const rulec_input *in, const size_t *who, uint32_t source, uin
         rulec_read_own(in, who[source - 1u], digits);
     }
 }
+
+/* Steps through all states of a drive: how many have been taken. After each, the verdict of every
+ * instance, the best and the worst times 4, and who sits where; 0 is nobody. */
+uint32_t rulec_run(rulec_state *state, const rulec_input *inputs, uint32_t n, uint8_t *verdicts,
+    uint32_t *ids);
+uint32_t rulec_run(rulec_state *state, const rulec_input *inputs, uint32_t n, uint8_t *verdicts,
+    uint32_t *ids)
+{
+    uint32_t taken;
+    rulec_init(state);
+    for (taken = 0u; taken < n; taken++) {
+        rulec_verdict verdict;
+        uint32_t each;
+        if ((rulec_step(state, &inputs[taken], &verdict) != RULEC_OK) || (verdict.left_out > 0u)) {
+            return taken;
+        }
+        for (each = 0u; each < RULEC_INSTANCES; each++) {
+            verdicts[(taken * RULEC_INSTANCES) + each] = state->verdict[each];
+        }
+        for (each = 0u; each < RULEC_SEATS; each++) {
+            ids[(taken * RULEC_SEATS) + each] = (state->type[each] < RULEC_TYPES) ? state->id[each] : 0u;
+        }
+    }
+    return taken;
+}

@@ -19,8 +19,8 @@ import numpy as np
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.code_generation.code_messages import differs
+from rulec.code_generation.compiled_c.c_library import CLibrary, CMonitor, CSaid
 from rulec.code_generation.monitor_layout import VERDICTS, MonitorLayout, RuleLayout
-from rulec.code_generation.proof.c_library import CLibrary, CMonitor, CSaid
 from rulec.code_generation.proof.probing_inputs import ReadingProbe, drives, probes, weighs
 from rulec.diagnostics import RulecError
 from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM

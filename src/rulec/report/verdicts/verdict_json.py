@@ -187,7 +187,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     """The verdict on a trace: does it keep every hard rule?
 
     ``satisfied`` is null if no hard rule is violated, but one is open or not judged. ``presumed``
-    names hold by presumption, because no source tells them.
+    names hold by presumption, because no source tells them. ``engine`` judged, if asked for.
     """
 
     trace: str
@@ -196,6 +196,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     open: Sequence[OpenData] = ()
     not_judged: Sequence[NotJudgedRule] = ()
     presumed: Sequence[str] = ()
+    engine: Literal["python", "c"] | UnsetType = UNSET
 
 
 class TraceNotJudged(JsonDocument, frozen=True, kw_only=True):
@@ -206,13 +207,19 @@ class TraceNotJudged(JsonDocument, frozen=True, kw_only=True):
 
 
 def as_json(
-    verdict: Verdict, rulebook: CompiledRulebook, explained: Sequence[Explanation] = ()
+    verdict: Verdict,
+    rulebook: CompiledRulebook,
+    explained: Sequence[Explanation] = (),
+    *,
+    says_engine: bool = False,
 ) -> str:
     """Write a verdict; ``explained`` are explanations of its first violations."""
-    violations = violations_data(verdict, rulebook, explained)
-    return as_line(
-        filled(TraceVerdict, verdict, violations=violations, **doubts(verdict, rulebook))
-    )
+    own = {
+        "violations": violations_data(verdict, rulebook, explained),
+        "engine": verdict.engine if says_engine else UNSET,
+        **doubts(verdict, rulebook),
+    }
+    return as_line(filled(TraceVerdict, verdict, **own))
 
 
 def doubts(verdict: Verdict, rulebook: CompiledRulebook) -> dict[str, Any]:

@@ -157,6 +157,16 @@ def _title(rule: CompiledRule, rulebook: str) -> str:
     return f"{title} [{place}]" if place else title
 
 
+def judged_by(judged: Mapping[str, int], compiled_by: str) -> str:
+    """The line that says how many traces were judged in C, and how many in Python."""
+    parts = [f"engine: {judged.get('c', 0):,} judged in C"]
+    if compiled_by:
+        parts.append(f"compiled by {compiled_by}")
+    if judged.get("python"):
+        parts.append(f"{judged['python']:,} in Python, where C does not tell")
+    return ", ".join(parts)
+
+
 def summary(counts: Mapping[bool | None, int], not_judged: int) -> str:
     """The line that ends a run: counts of traces by whether they are satisfied."""
     total = sum(counts.values()) + not_judged

@@ -21,6 +21,7 @@ from rulec.monitoring.online.four_valued import FourValued, RunningVerdict, with
 from rulec.trace import State
 from rulec.vocabulary import Declaration, Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES
+from rulec.vocabulary.vocabulary_model import fitting_objects
 
 FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic")
 
@@ -162,6 +163,21 @@ class CMonitor:
         )
 
 
+def is_all_known(layout: MonitorLayout, state: State, objects: Mapping[str, str]) -> bool:
+    """Whether a state says all that the rules read, or there is a default."""
+    vocabulary = layout.fields.vocabulary
+    for item in layout.fields.read:
+        if item.default is not None and type(item.default) not in UNKNOWN_TYPES:
+            continue
+        places: list[list[str]] = [[]]
+        for kind in item.parameters:
+            fitting = fitting_objects(kind, objects, vocabulary)
+            places = [[*before, name] for before in places for name in fitting]
+        if any(_said(state, item, place) is None for place in places):
+            return False
+    return True
+
+
 def _four(number: int) -> FourValued:
     return VERDICTS[number & 3]
 
@@ -207,7 +223,8 @@ def _said(state: State, item: Declaration, names: Sequence[str]) -> Any:
 
 def _code(item: Declaration, value: Any) -> float | int:
     if isinstance(item, Quantity):
-        return UNKNOWN_NUMBER if value is None or type(value) in UNKNOWN_TYPES else float(value)
+        is_near = value is not None and type(value) not in UNKNOWN_TYPES and abs(value) < 1e300
+        return float(value) if is_near else UNKNOWN_NUMBER
     if value is None or value is UNKNOWN:
         return UNKNOWN_CODE
     return item.values.index(value) if isinstance(item, Enumeration) else int(value)

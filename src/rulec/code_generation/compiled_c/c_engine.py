@@ -1,0 +1,186 @@
+"""Traces judged by monitors in C, which the user's compiler compiles when they are first needed."""
+
+from __future__ import annotations
+
+import ctypes
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.code_generation.code_messages import C_COMPILER_FAILED, no_engine_in_c
+from rulec.code_generation.compiled_c.c_library import CLibrary, compiler, is_all_known
+from rulec.code_generation.monitor_layout import VERDICTS, RuleLayout, monitor_layout
+from rulec.diagnostics import RulecError
+from rulec.monitoring.axiom_violations import check_counting_axioms
+from rulec.monitoring.bindings import Binding, Cast
+from rulec.monitoring.verdict import NotJudged, Verdict, Violation
+from rulec.monitoring.verify import letter_reader_of, rulebook_for_checked, verify
+from rulec.trace import Trace
+from rulec.trace.trace_model import check_trace
+
+LOST = VERDICTS.index("violated") * 5
+"""Best and worst in one number, as C keeps them: the best, and the worst times 4."""
+
+REJECTED = VERDICTS.index("pending")
+
+Bytes: TypeAlias = NDArray[np.uint8]
+
+
+class CEngine:
+    """Judges traces in C. What C leaves in a range, or cannot tell, Python judges.
+
+    Each verdict has its ``engine``, and ``judged`` counts the traces by it. Raises RulecError R0751
+    at once if there is no compiler.
+    """
+
+    def __init__(self, rulebook: CompiledRulebook) -> None:
+        compiler()
+        self.rulebook = rulebook
+        self.judged = Counter[str]()
+        self.compiled_by = ""
+        self._libraries: dict[tuple[float, tuple[int, ...]], CLibrary] = {}
+
+    def verify_items(
+        self, items: Iterable[Trace | RulecError]
+    ) -> tuple[Sequence[Trace | RulecError], list[Verdict | NotJudged]]:
+        """Traces, and their answers."""
+        traces = list(items)
+        return traces, [self.answer(item) for item in traces]
+
+    def answer(self, item: Trace | RulecError) -> Verdict | NotJudged:
+        """The answer for a trace, or for the error that kept it from being read."""
+        if isinstance(item, RulecError):
+            return NotJudged(None, item)
+        try:
+            verdict = self.verify(item)
+        except RulecError as error:
+            if error.diagnostics[0].code == C_COMPILER_FAILED.code:
+                raise  # not of this trace alone
+            return NotJudged(item.id, error)
+        self.judged[verdict.engine] += 1
+        return verdict
+
+    def verify(self, trace: Trace) -> Verdict:
+        """Judge a trace.
+
+        Raises RulecError as ``verify`` does; R0750 if it has too many objects for a monitor in C,
+        R0752 if the compiler fails.
+        """
+        found = None
+        if trace.ends == "complete" and trace.told is None:
+            check_trace(trace)
+            rulebook, is_partial = rulebook_for_checked(trace, self.rulebook)
+            if not is_partial:
+                found = self._violations(trace, rulebook)
+        if found is None:
+            return verify(trace, self.rulebook)
+        return Verdict(trace.id, tuple(found), engine="c")
+
+    def _violations(self, trace: Trace, rulebook: CompiledRulebook) -> list[Violation] | None:
+        """What a trace violates; None if C does not tell."""
+        reader = letter_reader_of(trace, rulebook)
+        check_counting_axioms(
+            rulebook, len(trace.states), reader.view, "state {}".format, trace.place
+        )
+        cast = Cast(
+            trace.objects, rulebook.vocabulary, len(trace.states), trace.present, trace.place
+        )
+        library = self._library(rulebook, cast)
+        run = _Run(library, reader.states, cast)
+        if not run.is_whole:
+            return None
+        found: list[Violation] = []
+        for own in library.layout.rules:
+            for binding in cast.bindings(own.rule):
+                word = run.verdicts(own, binding)
+                if np.any((word & 3) != (word >> 2)):
+                    return None
+                if word[-1] & 3 >= REJECTED:
+                    lost = np.flatnonzero(word == LOST)
+                    step = binding.first + int(lost[0]) if lost.size else None
+                    rule = own.rule
+                    found.append(Violation(rule.name, rule.strength, binding.objects, step))
+        return found
+
+    def _library(self, rulebook: CompiledRulebook, cast: Cast) -> CLibrary:
+        """The monitor with as many seats as there are objects, in powers of two."""
+        vocabulary = rulebook.vocabulary
+        roots = [name for name, kind in vocabulary.types.items() if kind.parent is None]
+        most = dict.fromkeys(roots, 1)
+        for number in range(cast.n_states):
+            there = Counter(
+                list(vocabulary.ancestors(cast.objects[item]))[-1] for item in _there(cast, number)
+            )
+            most = {root: max(n, there[root]) for root, n in most.items()}
+        bounds = {root: 1 << (n - 1).bit_length() for root, n in most.items()}
+        steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
+        key = float(steps[0]) if steps else 0.0, tuple(bounds.values())
+        if key not in self._libraries:
+            try:
+                layout = monitor_layout(rulebook, bounds)
+            except RulecError as error:
+                raise no_engine_in_c(error, cast.place) from None
+            library = self._libraries[key] = CLibrary(layout, optimised=False)
+            self.compiled_by = library.compiler_version
+        return self._libraries[key]
+
+
+def _there(cast: Cast, number: int) -> Iterator[str]:
+    """Who is there in a state."""
+    always = 0, cast.n_states - 1
+    for item in cast.objects:
+        first, last = cast.present.get(item, always)
+        if first <= number <= last:
+            yield item
+
+
+class _Run:
+    """What C says after each state of a trace, of every rule for all seats.
+
+    It ``is_whole`` if all is known and all steps have been taken.
+    """
+
+    def __init__(self, library: CLibrary, states: Sequence[Mapping[str, Any]], cast: Cast) -> None:
+        self._ids: dict[str, int] = {}
+        layout, n = library.layout, cast.n_states
+        n_instances = sum(own.n_instances for own in layout.rules) or 1
+        self._seats: NDArray[np.uint32] = np.zeros((n, layout.n_seats), dtype=np.uint32)
+        self._verdicts: Bytes = np.zeros((n, n_instances), dtype=np.uint8)
+        self._firsts: dict[str, int] = {}
+        first = 0
+        for own in layout.rules:
+            self._firsts[own.rule.name] = first
+            first += own.n_instances
+        inputs = (library.input_type * n)()
+        self.is_whole = True
+        kept = []
+        for number, state in enumerate(states):
+            objects = {item: cast.objects[item] for item in _there(cast, number)}
+            if not is_all_known(library.layout, state, objects):
+                self.is_whole = False
+                return
+            kept.append(library.input_of(state, objects, self._ids))
+            inputs[number] = kept[-1]
+        memory = ctypes.create_string_buffer(library.call("state_size")())
+        library.call("run").restype = ctypes.c_uint32
+        taken = library.call("run")(
+            memory,
+            inputs,
+            ctypes.c_uint32(n),
+            self._verdicts.ctypes.data_as(ctypes.c_void_p),
+            self._seats.ctypes.data_as(ctypes.c_void_p),
+        )
+        self.is_whole = taken == n
+
+    def verdicts(self, own: RuleLayout, binding: Binding) -> Bytes:
+        """The verdicts of a rule for some objects, as long as these are there."""
+        number = 0
+        for item, (first, end) in zip(binding.objects.values(), own.seats, strict=True):
+            (seat,) = np.flatnonzero(self._seats[binding.first] == self._ids[item])
+            number = number * (end - first) + int(seat) - first
+        place = self._firsts[own.rule.name] + number
+        return self._verdicts[binding.first : binding.last + 1, place]

@@ -1,0 +1,92 @@
+"""`verify --engine c` finds what Python's engines find, and says who judged."""
+
+import json
+import shutil
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from hypothesis import Phase, given, settings
+
+import rulec
+from rulec.cli.main import main
+from support.builders.rulebooks import compile_here
+from support.generators.blurred_traces import blurred
+from support.generators.random_rulebooks import rulebook
+from support.generators.random_traces import traces
+from support.generators.seeds import seeds
+
+needs_a_compiler = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+TRACE = {
+    "id": "t",
+    "step_s": 1,
+    "objects": {"a": "vehicle", "b": "vehicle"},
+    "states": [{"position": {"a": at, "b": "b"}} for at in "brf"],
+}
+
+
+def answer(one):
+    return (one.trace, one.error.diagnostics[0].code) if hasattr(one, "error") else one
+
+
+@needs_a_compiler
+@given(seeds)
+@settings(phases=[Phase.generate], max_examples=settings().max_examples // 50)
+def test_what_python_finds(chance):
+    step_s = chance.choice([Fraction(1), Fraction(1, 2)])
+    book = rulebook(chance, step_s)
+    compiled = compile_here(book, step_s)
+    given = list(traces(chance, step_s))
+    names = {name for trace in given for state in trace.states for name in state}
+    given += [blurred(chance, trace, names, most=3) for trace in given[:2]]
+    given.append(replace(given[0], ends="cut"))
+    ours = list(rulec.verify_many(given, compiled))
+    theirs = list(rulec.verify_many(given, compiled, engine="c"))
+    assert list(map(answer, theirs)) == list(map(answer, ours))
+    assert getattr(theirs[-1], "engine", "python") == "python"
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    unknown = json.loads(json.dumps(TRACE))
+    unknown["states"][1]["position"]["a"] = None
+    lines = [TRACE, unknown | {"id": "u"}]
+    (tmp_path / "t.jsonl").write_text("\n".join(map(json.dumps, lines)), encoding="utf-8")
+    return ["verify", "t.jsonl", "-r", "esterle2019"]
+
+
+@needs_a_compiler
+def test_it_says_which_engine_judged(files, capsys):
+    assert main([*files, "--engine", "c", "--json"]) == 1
+    found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [one["engine"] for one in found] == ["c", "python"]
+    assert main([*files, "--json"]) == 1
+    usual = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert usual == [{k: v for k, v in one.items() if k != "engine"} for one in found]
+    assert main([*files, "--engine", "c"]) == 1
+    assert "engine: 1 judged in C, compiled by " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("command", "code"), [("no-such-compiler", "R0751"), ("false", "R0752")])
+def test_it_takes_no_other_engine_in_silence(files, command, code, capsys, monkeypatch):
+    monkeypatch.setenv("CC", command)
+    assert main([*files, "--engine", "c"]) == 2
+    shown = capsys.readouterr()
+    assert f"error[{code}]" in shown.err
+    assert "violated" not in shown.out.replace("0 violated", "")
+
+
+@needs_a_compiler
+def test_too_many_objects_are_refused():
+    names = [f"v{n}" for n in range(4097)]
+    states = ({"position": dict.fromkeys(names, "b")},)
+    crowd = rulec.Trace("t", 1, dict.fromkeys(names, "vehicle"), states)
+    (found,) = rulec.verify_many([crowd], "esterle2019", engine="c")
+    (diagnostic,) = found.error.diagnostics
+    assert (diagnostic.code, "--engine python" in diagnostic.help) == ("R0750", True)
+
+
+def test_it_is_for_traces(tmp_path, capsys):
+    assert main(["verify", "docs/samples", "-r", "esterle2019", "--engine", "c"]) == 2
+    assert "--engine c is for traces" in capsys.readouterr().err
