@@ -186,10 +186,11 @@ class _Placing:
             raise too_large(f"{what} {len(rule.variables)} variables, at most {MOST_VARIABLES}")
         if len(machine.successors) > MOST_STATES:
             raise too_large(f"{what} {len(machine.successors)} states, at most {MOST_STATES}")
-        cells = letter_cells(machine.letters, [read.size for read in machine.reads])
+        reads = [self._placed(read, rule) for read in machine.reads]
+        of_nobody = {number for number, (source, _) in enumerate(reads) if source == WORLD}
+        cells = letter_cells(machine.letters, [read.size for read in machine.reads], of_nobody)
         if len(cells) >= LEAF or len(machine.successors[0]) >= LEAF - 1:
             raise too_large(f"{what} too many letters that are not alike")
-        reads = [self._placed(read, rule) for read in machine.reads]
         at = 1
         while at < len(cells):
             read = cells[at]

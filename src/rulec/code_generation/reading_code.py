@@ -148,12 +148,15 @@ class ReadingCode:
 
     def _weighed(self, read: NumberRead, places: Places) -> list[str]:
         size = len(read.terms)
-        lines = [f"double low[{size}u];", f"double high[{size}u];"]
+        counting = any(isinstance(term, ltl.Count) for _, term in read.terms)
+        high = "high" if counting else "low"
+        lines = [f"double low[{size}u];", *[f"double high[{size}u];"] * counting]
         for number, (_, term) in enumerate(read.terms):
             match term:
                 case ltl.QuantityTerm(name, arguments):
                     value = self._value(name, arguments, places)
-                    lines += [f"low[{number}u] = {value};", f"high[{number}u] = low[{number}u];"]
+                    lines.append(f"low[{number}u] = {value};")
+                    lines += [f"high[{number}u] = low[{number}u];"] * counting
                 case ltl.Count():
                     # After all declarations of the block
                     lines.insert(2, f"const uint32_t count{number} = {self._count(term, places)};")
@@ -161,7 +164,7 @@ class ReadingCode:
                         f"low[{number}u] = (double)(count{number} & 0xffffu);",
                         f"high[{number}u] = (double)(count{number} >> 16);",
                     ]
-        return [*lines, f"return rulec_weigh(low, high, &{self._shape(read)});"]
+        return [*lines, f"return rulec_weigh(low, {high}, &{self._shape(read)});"]
 
     def _shape(self, read: NumberRead) -> str:
         """The factors and limits of a sum, also as whole numbers if they are small enough."""

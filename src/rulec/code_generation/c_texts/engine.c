@@ -3,7 +3,7 @@
 
 #define RULEC_NOBODY ((uint8_t)RULEC_TYPES) /* the type of who sits on an empty seat */
 #define RULEC_EMPTY 0xffffu   /* no object of the input */
-#define RULEC_SEVERAL 0xffffu /* several states, or several classes of letters */
+#define RULEC_SEVERAL 0xffffu /* not one entry of the table, or several classes of letters */
 #define RULEC_LEAF 0x8000u
 #define RULEC_EXCLUDED 0xffffu
 #define RULEC_EXACTLY(verdict) ((uint8_t)((uint8_t)(verdict) * 5u)) /* best, and worst times 4 */
@@ -12,19 +12,45 @@
 #define RULEC_LOST ((uint8_t)1u)    /* violated for good */
 #define RULEC_DOUBTED ((uint8_t)2u) /* perhaps violated by who has left */
 
+/* Where an instance is: the entry that it took last, or RULEC_SEVERAL. Then its states are a set, and
+ * its verdict has a place of its own. */
+static inline uint8_t rulec_said(const rulec_state *state, uint32_t instance)
+{
+    const uint16_t at = state->at[instance];
+    return (at == RULEC_SEVERAL) ? state->verdict[instance] : RULEC_EXACTLY(at & 3u);
+}
+
 /* Where an instance stands during a step. */
 typedef struct {
     uint32_t number;
     uint16_t turns[RULEC_VARIABLES]; /* among the seats that are taken, or were */
     uint16_t seats[RULEC_VARIABLES];
+    uint16_t start; /* the first cell of which objects decide */
     const uint16_t *digits[RULEC_SOURCES];
 } rulec_instance;
+
+/* The seat that an object has had, looked for at a likely one first. */
+static uint16_t rulec_seat_of(const rulec_state *state, const rulec_object *object, uint16_t likely)
+{
+    uint16_t seat = likely;
+    if ((seat < RULEC_SEATS) && (state->id[seat] == object->id) && (state->type[seat] == object->type)) {
+        return seat;
+    }
+    for (seat = rulec_first[object->type]; seat < rulec_end[object->type]; seat++) {
+        if ((state->id[seat] == object->id) && (state->type[seat] == object->type)) {
+            return seat;
+        }
+    }
+    return RULEC_EMPTY;
+}
 
 /* Seats: objects keep theirs as long as they are there, others get those that are free. */
 static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32_t *left_out)
 {
     size_t one;
     uint16_t seat;
+    size_t n_new = 0u;
+    uint16_t next = 0u; /* where the next object sits, if they come in the order of their seats */
     *left_out = 0u;
     state->crowded = 0u;
     for (seat = 0u; seat < RULEC_TYPES; seat++) {
@@ -38,15 +64,15 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
         if (object->type >= RULEC_TYPES) {
             return RULEC_BAD_TYPE;
         }
-        for (seat = rulec_first[object->type]; seat < rulec_end[object->type]; seat++) {
-            if ((state->id[seat] == object->id) && (state->type[seat] == object->type)) {
-                if (state->seated[seat] != RULEC_EMPTY) {
-                    return RULEC_TWICE;
-                }
-                state->seated[seat] = (uint16_t)one;
-                break;
+        seat = rulec_seat_of(state, object, next);
+        if (seat != RULEC_EMPTY) {
+            if (state->seated[seat] != RULEC_EMPTY) {
+                return RULEC_TWICE;
             }
+            state->seated[seat] = (uint16_t)one;
+            next = (uint16_t)(seat + 1u);
         }
+        n_new += (seat == RULEC_EMPTY) ? 1u : 0u;
     }
     for (seat = 0u; seat < RULEC_SEATS; seat++) {
         const bool stays = state->seated[seat] != RULEC_EMPTY;
@@ -54,7 +80,7 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
         state->next_id[seat] = state->id[seat];
         state->next_type[seat] = stays ? state->type[seat] : RULEC_NOBODY;
     }
-    for (one = 0u; one < in->n_objects; one++) {
+    for (one = 0u; (n_new > 0u) && (one < in->n_objects); one++) {
         const rulec_object *object = &in->objects[one];
         uint16_t free = RULEC_EMPTY;
         bool has_seat = false;
@@ -87,21 +113,30 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
     return RULEC_OK;
 }
 
-/* The class of the letter that an instance reads, if what is not known cannot decide. */
-static inline uint16_t rulec_class(const rulec_rule *rule, const uint16_t *const *digits)
+/* The class of the letter that is read, from a cell on, if what is not known cannot decide. */
+static inline uint16_t rulec_class(const uint16_t *cells, uint16_t start,
+    const uint16_t *const *digits)
 {
-    const uint16_t *const cells = &rulec_cells[rule->first_cell];
-    uint16_t at = cells[0];
+    uint16_t at = start;
     while (at < RULEC_LEAF) {
         const uint16_t read = cells[at];
         const uint16_t digit = digits[read >> 12][read & 0xfffu];
-        const uint16_t low = digit & 0xffu;
-        if (low != (uint16_t)(digit >> 8)) {
+        if (digit > 0xffu) {
             return RULEC_SEVERAL;
         }
-        at = cells[at + 1u + low];
+        at = cells[at + 1u + digit];
     }
     return (uint16_t)(at & 0x7fffu);
+}
+
+/* The cell from which on objects are read, after what is said of nobody; a class if nothing is. */
+static uint16_t rulec_start(const uint16_t *cells, const uint16_t *world)
+{
+    uint16_t at = cells[0];
+    while ((at < RULEC_LEAF) && (cells[at] < 0x1000u) && (world[cells[at]] <= 0xffu)) {
+        at = cells[at + 1u + world[cells[at]]];
+    }
+    return at;
 }
 
 static inline void rulec_set(uint32_t *bits, uint32_t place)
@@ -149,7 +184,7 @@ static bool rulec_classes(rulec_state *state, const rulec_rule *rule, const uint
         if (rulec_is_set(state->reached, at)) {
             const uint16_t digit = digits[read >> 12][read & 0xfffu];
             uint16_t each;
-            for (each = digit & 0xffu; each <= (uint16_t)(digit >> 8); each++) {
+            for (each = RULEC_LEAST(digit); each <= RULEC_GREATEST(digit); each++) {
                 rulec_lead(state, cells[at + 1u + each]);
             }
         }
@@ -175,7 +210,7 @@ static void rulec_advance_all(rulec_state *state, const rulec_rule *rule, uint32
     uint32_t word;
     if (state->at[instance] != RULEC_SEVERAL) {
         rulec_clear(states, rule->n_states);
-        rulec_set(states, state->at[instance]);
+        rulec_set(states, (uint32_t)state->at[instance] >> 2);
     }
     rulec_clear(state->following, rule->n_states);
     for (from = 0u; from < rule->n_states; from++) {
@@ -197,18 +232,22 @@ static void rulec_advance_all(rulec_state *state, const rulec_rule *rule, uint32
     for (word = 0u; word <= ((uint32_t)rule->n_states >> 5); word++) {
         states[word] = state->following[word];
     }
-    state->at[instance] = (found == 1u) ? last : (uint16_t)RULEC_SEVERAL;
+    if ((found == 1u) && (best == worst)) {
+        state->at[instance] = (uint16_t)((uint16_t)(last << 2) | best);
+    } else {
+        state->at[instance] = RULEC_SEVERAL;
+    }
     state->verdict[instance] = RULEC_WITHIN(best, worst);
 }
 
-static inline void rulec_advance(rulec_state *state, const rulec_rule *rule, const rulec_instance *one)
+/* A step by what is read. */
+static void rulec_advance(rulec_state *state, const rulec_rule *rule, const rulec_instance *one)
 {
-    const uint16_t by = rulec_class(rule, one->digits);
+    const uint16_t by = rulec_class(&rulec_cells[rule->first_cell], one->start, one->digits);
     const uint16_t from = state->at[one->number];
     if ((by != RULEC_SEVERAL) && (from != RULEC_SEVERAL)) {
-        const uint16_t entry = rulec_entries[rule->first_entry + ((uint32_t)from * rule->n_classes) + by];
-        state->at[one->number] = (uint16_t)(entry >> 2);
-        state->verdict[one->number] = RULEC_EXACTLY(entry & 3u);
+        state->at[one->number] = rulec_entries[rule->first_entry
+            + (((uint32_t)from >> 2) * rule->n_classes) + by];
     } else {
         if (by == RULEC_SEVERAL) {
             (void)rulec_classes(state, rule, one->digits);
@@ -235,7 +274,7 @@ static void rulec_lose(rulec_state *state, uint16_t number, const rulec_instance
 /* Objects part: what is pending is violated, what is open stays open. */
 static void rulec_part(rulec_state *state, uint16_t number, const rulec_instance *one)
 {
-    const uint8_t verdict = state->verdict[one->number];
+    const uint8_t verdict = rulec_said(state, one->number);
     const uint8_t best = verdict & 3u;
     const uint8_t worst = (uint8_t)(verdict >> 2);
     if ((best != RULEC_VIOLATED) && (best >= RULEC_PENDING)) {
@@ -247,15 +286,12 @@ static void rulec_part(rulec_state *state, uint16_t number, const rulec_instance
     }
 }
 
-/* What the digits of an instance are, and whether its objects were and are there. */
+/* The digits that an instance reads of several objects together. */
 static void rulec_look(rulec_state *state, const rulec_input *in, const rulec_rule *rule,
-    rulec_instance *one)
+    const rulec_instance *one)
 {
     uint16_t each;
     uint16_t variable;
-    for (variable = 0u; variable < rule->n_variables; variable++) {
-        one->digits[variable + 1u] = state->own[one->seats[variable]];
-    }
     for (each = 0u; each < rule->n_together; each++) {
         size_t who[RULEC_VARIABLES];
         const uint16_t read = rulec_together[rule->first_together + each];
@@ -264,22 +300,6 @@ static void rulec_look(rulec_state *state, const rulec_input *in, const rulec_ru
         }
         state->shared[read] = rulec_read_together(in, who, read);
     }
-}
-
-/* Go on to the next choice of seats; false after the last one. */
-static bool rulec_turn(const rulec_state *state, const rulec_rule *rule, rulec_instance *one)
-{
-    uint16_t variable = rule->n_variables;
-    bool carry = true;
-    while (carry && (variable > 0u)) {
-        variable--;
-        one->turns[variable]++;
-        carry = one->turns[variable] >= state->n_taken;
-        if (carry) {
-            one->turns[variable] = 0u;
-        }
-    }
-    return !carry;
 }
 
 typedef struct {
@@ -294,41 +314,70 @@ typedef struct {
     uint8_t worst;
 } rulec_tally;
 
-/* Find the instance of a choice of seats; each object stands for one variable alone. */
-static rulec_presence rulec_there(const rulec_state *state, const rulec_rule *rule,
+/* Let a variable stand for the object on a seat; false if another one does. */
+static inline bool rulec_bind(const rulec_state *state, uint16_t variable, uint16_t seat,
     rulec_instance *one)
 {
-    static const rulec_presence never = {false, false, false};
-    rulec_presence found = {true, true, true};
-    uint32_t number = 0u;
-    uint16_t variable;
     uint16_t other;
-    for (variable = 0u; variable < rule->n_variables; variable++) {
+    for (other = 0u; other < variable; other++) {
+        if (one->seats[other] == seat) {
+            return false;
+        }
+    }
+    one->seats[variable] = seat;
+    one->digits[variable + 1u] = state->own[seat];
+    return true;
+}
+
+/* Go on to the next choice of seats for all variables but the last; false after the last one. */
+static bool rulec_turn(const rulec_state *state, const rulec_rule *rule, rulec_instance *one)
+{
+    uint16_t variable = (uint16_t)(rule->n_variables - 1u);
+    bool carry = true;
+    while (carry && (variable > 0u)) {
+        variable--;
+        one->turns[variable]++;
+        carry = one->turns[variable] >= state->n_taken;
+        if (carry) {
+            one->turns[variable] = 0u;
+        }
+    }
+    return !carry;
+}
+
+/* Bind all variables but the last as it is their turn; whether somebody is or was there. */
+static bool rulec_there(const rulec_state *state, const rulec_rule *rule, rulec_instance *one,
+    rulec_presence *found)
+{
+    const uint16_t last = (uint16_t)(rule->n_variables - 1u);
+    uint16_t variable;
+    one->number = 0u;
+    found->was = true;
+    found->stays = true;
+    found->is = true;
+    for (variable = 0u; variable < last; variable++) {
         const uint16_t seat = state->taken[one->turns[variable]];
         const uint8_t *const fits = rulec_fits[rule->types[variable]];
-        if ((seat < rule->seats_first[variable]) || (seat >= rule->seats_end[variable])) {
-            return never;
+        if ((seat < rule->seats_first[variable]) || (seat >= rule->seats_end[variable])
+            || !rulec_bind(state, variable, seat, one)) {
+            return false;
         }
-        for (other = 0u; other < variable; other++) {
-            if (one->seats[other] == seat) {
-                return never;
-            }
-        }
-        one->seats[variable] = seat;
-        number *= (uint32_t)rule->seats_end[variable] - rule->seats_first[variable];
-        number += (uint32_t)seat - rule->seats_first[variable];
-        found.was = found.was && (fits[state->type[seat]] != 0u);
-        found.is = found.is && (fits[state->next_type[seat]] != 0u);
-        found.stays = found.stays && (state->stays[seat] != 0u);
+        one->number *= (uint32_t)rule->seats_end[variable] - rule->seats_first[variable];
+        one->number += (uint32_t)seat - rule->seats_first[variable];
+        found->was = found->was && (fits[state->type[seat]] != 0u);
+        found->is = found->is && (fits[state->next_type[seat]] != 0u);
+        found->stays = found->stays && (state->stays[seat] != 0u);
     }
-    one->number = rule->first_instance + number;
-    return found;
+    one->number *= (uint32_t)rule->seats_end[last] - rule->seats_first[last];
+    one->number += rule->first_instance;
+    return found->was || found->is;
 }
 
 static void rulec_begin(const rulec_state *state, const rulec_rule *rule, rulec_instance *one)
 {
     uint16_t each;
     one->number = rule->first_instance;
+    one->start = rulec_start(&rulec_cells[rule->first_cell], state->world);
     one->digits[0] = state->world;
     one->digits[RULEC_SOURCES - 1u] = state->shared;
     for (each = 0u; each < RULEC_VARIABLES; each++) {
@@ -337,26 +386,31 @@ static void rulec_begin(const rulec_state *state, const rulec_rule *rule, rulec_
     }
 }
 
-/* Whether facts exclude what a rule reads of some objects. */
-static bool rulec_is_excluded(rulec_state *state, const rulec_input *in, const rulec_rule *rule)
+/* What an instance says counts for its rule; `before` is what it said a step ago. */
+static void rulec_hear(rulec_state *state, uint16_t number, const rulec_instance *one,
+    uint8_t before, rulec_tally *tally)
 {
-    rulec_instance one;
-    bool excluded = false;
-    bool more = (rule->n_variables == 0u) || (state->n_taken > 0u);
-    rulec_begin(state, rule, &one);
-    while (more) {
-        if (rulec_there(state, rule, &one).is) {
-            rulec_look(state, in, rule, &one);
-            excluded = excluded || !rulec_classes(state, rule, one.digits);
-        }
-        more = rulec_turn(state, rule, &one);
+    const rulec_rule *const rule = &rulec_rules[number];
+    const uint8_t now = rulec_said(state, one->number);
+    if ((now == RULEC_EXACTLY(RULEC_VIOLATED)) && (before != now)) {
+        rulec_lose(state, number, one, state->next_id);
     }
-    return excluded;
+    tally->best = ((now & 3u) > tally->best) ? (uint8_t)(now & 3u) : tally->best;
+    /* Worse at worst, or as bad at worst and worse at best, in one number */
+    if (now > tally->worst) {
+        tally->worst = now;
+        if ((state->flags[number] & RULEC_LOST) == 0u) {
+            uint16_t variable;
+            for (variable = 0u; variable < rule->n_variables; variable++) {
+                state->about[number][variable] = state->next_id[one->seats[variable]];
+            }
+        }
+    }
 }
 
 /* A step of one instance: it ends, begins, or goes on. */
-static inline void rulec_visit(rulec_state *state, uint16_t number, const rulec_instance *one,
-    rulec_presence there, rulec_tally *tally)
+static void rulec_visit(rulec_state *state, const rulec_input *in, uint16_t number,
+    const rulec_instance *one, rulec_presence there, rulec_tally *tally)
 {
     const rulec_rule *const rule = &rulec_rules[number];
     if (there.was && !there.stays) {
@@ -364,28 +418,127 @@ static inline void rulec_visit(rulec_state *state, uint16_t number, const rulec_
     }
     if (there.is) {
         uint8_t before;
-        uint8_t now;
         if (!there.was || !there.stays) {
-            state->at[one->number] = 0u;
-            state->verdict[one->number] = RULEC_EXACTLY(rule->start);
+            state->at[one->number] = rule->start;
         }
-        before = state->verdict[one->number];
+        rulec_look(state, in, rule, one);
+        before = rulec_said(state, one->number);
         rulec_advance(state, rule, one);
-        now = state->verdict[one->number];
-        if ((now == RULEC_EXACTLY(RULEC_VIOLATED)) && (before != now)) {
-            rulec_lose(state, number, one, state->next_id);
+        rulec_hear(state, number, one, before, tally);
+    }
+}
+
+/* Some seats in turn for the last variable of a rule; `there` are the objects of the others. */
+static void rulec_visit_each(rulec_state *state, const rulec_input *in, uint16_t number,
+    rulec_instance *one, const rulec_presence *there, const uint16_t *seats, uint16_t n_seats,
+    rulec_tally *tally)
+{
+    const rulec_rule *const rule = &rulec_rules[number];
+    const uint16_t last = (uint16_t)(rule->n_variables - 1u);
+    const uint8_t *const fits = rulec_fits[rule->types[last]];
+    const uint32_t first = one->number;
+    uint16_t each;
+    for (each = 0u; each < n_seats; each++) {
+        const uint16_t seat = seats[each];
+        rulec_presence all;
+        all.is = there->is && (fits[state->next_type[seat]] != 0u);
+        all.was = there->was && (fits[state->type[seat]] != 0u);
+        all.stays = there->stays && (state->stays[seat] != 0u);
+        if ((all.is || all.was) && rulec_bind(state, last, seat, one)) {
+            one->number = first + (uint32_t)seat - rule->seats_first[last];
+            rulec_visit(state, in, number, one, all, tally);
         }
-        tally->best = ((now & 3u) > tally->best) ? (uint8_t)(now & 3u) : tally->best;
-        /* Worse at worst, or as bad at worst and worse at best, in one number */
-        if (now > tally->worst) {
-            tally->worst = now;
-            if ((state->flags[number] & RULEC_LOST) == 0u) {
-                uint16_t variable;
-                for (variable = 0u; variable < rule->n_variables; variable++) {
-                    state->about[number][variable] = state->next_id[one->seats[variable]];
-                }
+    }
+    one->number = first;
+}
+
+/* The seats of those who stay and are of a type. */
+static void rulec_find_fitting(rulec_state *state, uint8_t type)
+{
+    const uint8_t *const fits = rulec_fits[type];
+    uint16_t each;
+    uint16_t n = 0u;
+    for (each = 0u; each < state->n_taken; each++) {
+        const uint16_t seat = state->taken[each];
+        state->fitting[n] = seat;
+        n = (uint16_t)(n + (state->stays[seat] & fits[state->type[seat]]));
+    }
+    state->n_fitting = n;
+    state->fitting_type = type;
+}
+
+/* The next entry of an instance, by a class of letters; what it says counts if it is news. */
+static inline void rulec_enter(rulec_state *state, uint16_t number, rulec_instance *one,
+    uint16_t entry, rulec_tally *tally)
+{
+    const uint8_t verdict = (uint8_t)(entry & 3u);
+    const uint8_t before = (uint8_t)(state->at[one->number] & 3u);
+    state->at[one->number] = entry;
+    if ((verdict > tally->best) || ((verdict == RULEC_VIOLATED) && (before != RULEC_VIOLATED))) {
+        rulec_hear(state, number, one, RULEC_EXACTLY(before), tally);
+    }
+}
+
+/* Those who stay, in turn for the last variable of a rule, the others of which stay, too. If all is
+ * known the entry is looked up, and nothing else is to be done where it says what has been said. */
+static void rulec_visit_fitting(rulec_state *state, const rulec_input *in, uint16_t number,
+    rulec_instance *one, rulec_tally *tally)
+{
+    const rulec_rule *const rule = &rulec_rules[number];
+    const uint16_t *const cells = &rulec_cells[rule->first_cell];
+    const uint16_t *const entries = &rulec_entries[rule->first_entry];
+    const uint32_t n_classes = rule->n_classes;
+    const uint16_t last = (uint16_t)(rule->n_variables - 1u);
+    const uint32_t first = one->number - rule->seats_first[last];
+    const uint16_t n_fitting = state->n_fitting;
+    const uint16_t start = one->start;
+    uint16_t each;
+    for (each = 0u; each < n_fitting; each++) {
+        const uint16_t seat = state->fitting[each];
+        if (rulec_bind(state, last, seat, one)) {
+            const uint16_t by = rulec_class(cells, start, one->digits);
+            const uint16_t from = state->at[first + seat];
+            one->number = first + seat;
+            if ((by != RULEC_SEVERAL) && (from != RULEC_SEVERAL)) {
+                rulec_enter(state, number, one, entries[(((uint32_t)from >> 2) * n_classes) + by], tally);
+            } else {
+                const rulec_presence always = {true, true, true};
+                rulec_visit(state, in, number, one, always, tally);
             }
         }
+    }
+    one->number = first + rule->seats_first[last];
+}
+
+/* A rule about nobody. */
+static void rulec_visit_world(rulec_state *state, const rulec_input *in, uint16_t number,
+    rulec_instance *one, rulec_tally *tally)
+{
+    const rulec_rule *const rule = &rulec_rules[number];
+    const uint16_t from = state->at[one->number];
+    if ((one->start >= RULEC_LEAF) && (from != RULEC_SEVERAL)) {
+        rulec_enter(state, number, one, rulec_entries[rule->first_entry
+            + (((uint32_t)from >> 2) * rule->n_classes) + (one->start & 0x7fffu)], tally);
+    } else {
+        const rulec_presence always = {true, true, true};
+        rulec_visit(state, in, number, one, always, tally);
+    }
+}
+
+/* All objects in turn for the last variable of a rule; `there` are those of the others. */
+static void rulec_visit_last(rulec_state *state, const rulec_input *in, uint16_t number,
+    rulec_instance *one, const rulec_presence *there, rulec_tally *tally)
+{
+    const rulec_rule *const rule = &rulec_rules[number];
+    const uint8_t type = rule->types[rule->n_variables - 1u];
+    if (there->is && there->stays && (rule->n_together == 0u)) {
+        if (state->fitting_type != type) {
+            rulec_find_fitting(state, type);
+        }
+        rulec_visit_fitting(state, in, number, one, tally);
+        rulec_visit_each(state, in, number, one, there, state->changed, state->n_changed, tally);
+    } else {
+        rulec_visit_each(state, in, number, one, there, state->taken, state->n_taken, tally);
     }
 }
 
@@ -394,23 +547,48 @@ static void rulec_visit_all(rulec_state *state, const rulec_input *in, uint16_t 
 {
     const rulec_rule *const rule = &rulec_rules[number];
     rulec_instance one;
+    rulec_presence there = {true, true, true};
     bool more = state->n_taken > 0u;
     rulec_begin(state, rule, &one);
     if (rule->n_variables == 0u) {
-        const rulec_presence always = {true, true, true};
-        rulec_visit(state, number, &one, always, tally);
+        rulec_visit_world(state, in, number, &one, tally);
     } else {
         while (more) {
-            const rulec_presence there = rulec_there(state, rule, &one);
-            if (there.is) {
-                rulec_look(state, in, rule, &one);
-            }
-            if (there.is || there.was) {
-                rulec_visit(state, number, &one, there, tally);
+            if (rulec_there(state, rule, &one, &there)) {
+                rulec_visit_last(state, in, number, &one, &there, tally);
             }
             more = rulec_turn(state, rule, &one);
         }
     }
+}
+
+/* Whether facts exclude what a rule reads of some objects. */
+static bool rulec_is_excluded(rulec_state *state, const rulec_input *in, const rulec_rule *rule)
+{
+    rulec_instance one;
+    rulec_presence there;
+    bool excluded = false;
+    bool more = state->n_taken > 0u;
+    rulec_begin(state, rule, &one);
+    if (rule->n_variables == 0u) {
+        return !rulec_classes(state, rule, one.digits);
+    }
+    while (more) {
+        uint16_t turn;
+        const bool is = rulec_there(state, rule, &one, &there) && there.is;
+        const uint16_t last = (uint16_t)(rule->n_variables - 1u);
+        for (turn = 0u; is && (turn < state->n_taken); turn++) {
+            const uint16_t seat = state->taken[turn];
+            if ((seat >= rule->seats_first[last]) && (seat < rule->seats_end[last])
+                && (rulec_fits[rule->types[last]][state->next_type[seat]] != 0u)
+                && rulec_bind(state, last, seat, &one)) {
+                rulec_look(state, in, rule, &one);
+                excluded = excluded || !rulec_classes(state, rule, one.digits);
+            }
+        }
+        more = rulec_turn(state, rule, &one);
+    }
+    return excluded;
 }
 
 static void rulec_judge(rulec_state *state, const rulec_input *in, uint16_t number,
@@ -462,7 +640,7 @@ void rulec_init(rulec_state *state)
             state->about[each][variable] = 0u;
         }
         if (rule->n_variables == 0u) {
-            state->verdict[rule->first_instance] = RULEC_EXACTLY(rule->start);
+            state->at[rule->first_instance] = rule->start;
         }
     }
     state->violations = 0u;
@@ -485,10 +663,16 @@ rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verd
         return status;
     }
     state->n_taken = 0u;
+    state->n_changed = 0u;
+    state->fitting_type = RULEC_NOBODY;
     for (each = 0u; each < RULEC_SEATS; each++) {
         if ((state->type[each] != RULEC_NOBODY) || (state->next_type[each] != RULEC_NOBODY)) {
             state->taken[state->n_taken] = each;
             state->n_taken++;
+            if (state->stays[each] == 0u) {
+                state->changed[state->n_changed] = each;
+                state->n_changed++;
+            }
         }
     }
     rulec_read_world(input, state->world);

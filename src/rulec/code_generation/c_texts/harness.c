@@ -20,6 +20,7 @@ void rulec_all_classes(uint32_t number, const uint32_t *reads, const uint32_t *s
     uint16_t *classes)
 {
     static uint16_t digits[RULEC_SOURCES][0x1000];
+    const uint16_t *const cells = &rulec_cells[rulec_rules[number].first_cell];
     const uint16_t *sources[RULEC_SOURCES];
     uint32_t each;
     uint32_t letter = 0u;
@@ -31,7 +32,7 @@ void rulec_all_classes(uint32_t number, const uint32_t *reads, const uint32_t *s
         digits[reads[each] >> 12][reads[each] & 0xfffu] = RULEC_KNOWN(0u);
     }
     while (more) {
-        classes[letter] = rulec_class(&rulec_rules[number], sources);
+        classes[letter] = rulec_class(cells, cells[0], sources);
         letter++;
         more = false;
         for (each = 0u; (each < n) && !more; each++) {
@@ -79,12 +80,11 @@ void rulec_all_steps(uint32_t number, uint16_t *reached, uint8_t *verdicts, uint
             const uint16_t entry = rulec_entries[rule->first_entry + place];
             reached[place] = (uint16_t)(entry >> 2);
             verdicts[place] = (uint8_t)(entry & 3u);
-            state.at[rule->first_instance] = (uint16_t)from;
+            state.at[rule->first_instance] = (uint16_t)(from << 2);
             rulec_clear(state.classes, rule->n_classes);
             rulec_set(state.classes, by);
             rulec_advance_all(&state, rule, rule->first_instance);
-            by_sets[place] = (uint16_t)((uint32_t)state.at[rule->first_instance] << 2)
-                | (state.verdict[rule->first_instance] & 3u);
+            by_sets[place] = state.at[rule->first_instance];
         }
     }
 }
@@ -121,7 +121,7 @@ uint32_t rulec_run(rulec_state *state, const rulec_input *inputs, uint32_t n, ui
             return taken;
         }
         for (each = 0u; each < RULEC_INSTANCES; each++) {
-            verdicts[(taken * RULEC_INSTANCES) + each] = state->verdict[each];
+            verdicts[(taken * RULEC_INSTANCES) + each] = rulec_said(state, each);
         }
         for (each = 0u; each < RULEC_SEATS; each++) {
             ids[(taken * RULEC_SEATS) + each] = (state->type[each] < RULEC_TYPES) ? state->id[each] : 0u;

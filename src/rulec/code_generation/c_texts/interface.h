@@ -28,8 +28,13 @@ typedef struct {
     uint8_t stays[RULEC_SEATS];
     uint8_t absent[RULEC_TYPES];
     uint8_t crowded;
+    uint8_t fitting_type;
     uint16_t n_taken;
+    uint16_t n_changed;
+    uint16_t n_fitting;
     uint16_t taken[RULEC_SEATS];
+    uint16_t changed[RULEC_SEATS];
+    uint16_t fitting[RULEC_SEATS];
     uint16_t world[RULEC_WORLD_READS];
     uint16_t own[RULEC_SEATS][RULEC_OWN_READS];
     uint16_t shared[RULEC_SHARED_READS];

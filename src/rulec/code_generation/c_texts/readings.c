@@ -1,9 +1,12 @@
 /* Reading: what an input says, as digits. A digit is a number below 255 that says on which side of
  * its limits a value is, or which one it is. Where the value is not known there are several: the
- * lower byte has the least of them, the upper byte the greatest. */
+ * lower byte has the least of them, the upper byte how many more there are. */
 
-#define RULEC_KNOWN(digit) ((uint16_t)((uint16_t)(digit) * 0x101u))
-#define RULEC_FROM_TO(low, high) ((uint16_t)((uint16_t)(low) | (uint16_t)((uint16_t)(high) << 8)))
+#define RULEC_KNOWN(digit) ((uint16_t)(digit))
+#define RULEC_FROM_TO(low, high) \
+    ((uint16_t)((uint16_t)(low) | (uint16_t)((uint16_t)((uint16_t)(high) - (uint16_t)(low)) << 8)))
+#define RULEC_LEAST(digits) ((uint16_t)((digits) & 0xffu))
+#define RULEC_GREATEST(digits) ((uint16_t)(((digits) & 0xffu) + ((uint16_t)(digits) >> 8)))
 #define RULEC_MOST 9007199254740992.0 /* 2^53: numbers beyond it, infinity and NaN are unknown */
 
 /* Truth values of S. C. Kleene, "Introduction to metamathematics", 1952 */
@@ -100,11 +103,11 @@ static inline uint8_t rulec_same(uint8_t left, uint8_t right)
 /* Whether the digits are among some, given as bits. */
 static inline uint8_t rulec_among(uint16_t digits, uint32_t some)
 {
-    const uint32_t high = (uint32_t)digits >> 8;
+    const uint32_t high = RULEC_GREATEST(digits);
     bool all = true;
     bool any = false;
     uint32_t each;
-    for (each = (uint32_t)digits & 0xffu; each <= high; each++) {
+    for (each = RULEC_LEAST(digits); each <= high; each++) {
         const bool is = ((some >> each) & 1u) != 0u;
         all = all && is;
         any = any || is;
@@ -156,8 +159,9 @@ static inline bool rulec_eighths(double value, int64_t *eighths)
 {
     bool is_whole = false;
     if ((value > -1e9) && (value < 1e9)) {
-        *eighths = (int64_t)(value * 8.0);
-        is_whole = (((double)*eighths / 8.0) >= value) && (((double)*eighths / 8.0) <= value);
+        const double exact = value * 8.0; /* only the exponent changes */
+        *eighths = (int64_t)exact;
+        is_whole = ((double)*eighths >= exact) && ((double)*eighths <= exact);
     }
     return is_whole;
 }
@@ -190,7 +194,11 @@ static uint16_t rulec_weigh(const double *low, const double *high, const rulec_s
         most += last;
         size += ((first < 0.0) ? -first : first) + ((last < 0.0) ? -last : last);
         is_whole = is_whole && rulec_eighths(low[each], &below);
-        is_whole = is_whole && rulec_eighths(high[each], &above);
+        if (high == low) {
+            above = below;
+        } else {
+            is_whole = is_whole && rulec_eighths(high[each], &above);
+        }
         if (is_whole) {
             whole_least += shape->whole_factors[each] * (up ? below : above);
             whole_most += shape->whole_factors[each] * (up ? above : below);

@@ -144,8 +144,8 @@ def _readings(library: CLibrary) -> Iterator[str]:
         source, place = probe.place
         given, who = _input(library, probe)
         ask(ctypes.byref(given), who, source, digits)
-        low, high = digits[place] & 0xFF, digits[place] >> 8
-        found = ((1 << (high - low + 1)) - 1) << low
+        low, more = digits[place] & 0xFF, digits[place] >> 8
+        found = ((1 << (more + 1)) - 1) << low
         right = found == probe.digits if probe.is_sharp else found & probe.digits == probe.digits
         yield "" if right else f"rule {probe.rule}, read {probe.number}, of {probe.state}"
 
