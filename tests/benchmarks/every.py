@@ -22,6 +22,7 @@ NAMES = (
     "peers",
     "long",
     "online",
+    "onboard",
     "unknown",
     "graph",
     "world",

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from rulec.api.session_settings import SessionSettings
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rulec.extraction.selection import RequestedDrives
     from rulec.monitoring.assumptions import Assumptions
     from rulec.monitoring.batch.verdict_columns import VerdictColumns
-    from rulec.monitoring.verdict import EngineName, NotJudged, Verdict
+    from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.rates.drive_counts import GroupKey
     from rulec.rates.rule_rates import ViolationRates
     from rulec.recordings.recording import Recording
@@ -77,7 +77,7 @@ class TraceVerbs(SessionSettings):
         rules: Rules,
         assumptions: Assumptions | None = None,
         *,
-        engine: EngineName = "python",
+        engine: Literal["python", "c"] = "python",
     ) -> Iterator[Verdict | NotJudged]:
         """Judge many traces fast, and yield their verdicts in order.
 
