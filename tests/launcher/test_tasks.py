@@ -25,6 +25,7 @@ def tools(checkout):
         ("docs", ["sphinx"]),
         ("regenerate", ["tools.regenerate"]),
         ("lock", ["tools.lock"]),
+        ("playground", ["tools.playground"]),
         ("coverage", ["coverage"] * 5),
     ],
 )
@@ -48,6 +49,7 @@ def test_every_task_of_the_list_is_there(ready):
         "mutations",
         "fuzz",
         "worlds",
+        "playground",
         "docs",
         "regenerate",
         "lock",

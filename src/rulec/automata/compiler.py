@@ -28,7 +28,7 @@ from rulec.automata.bundle.compiled_rulebook import (
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.compiler_messages import no_machine, no_spot, not_confined
 from rulec.automata.worker import compiler_choice
-from rulec.automata.worker.compiler_worker import WorkerGreeting
+from rulec.automata.worker.worker_answers import HAS_PROCESSES, WorkerGreeting, answered_here
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_steps
@@ -159,6 +159,8 @@ def answers_to(
 
     Raises RulecError R0403 if Spot is asked for and not installed.
     """
+    if not HAS_PROCESSES:
+        return [*answered_here(jobs)], ""
     answers: list[Done | Failed | None] = []
     spot: str | None = None
     while len(answers) < len(jobs) or spot is None:

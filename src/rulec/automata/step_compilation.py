@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import ceil, floor
+from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import RulebookFormulas, build_all, lower
-from rulec.automata.prefix_machines import prefix_machines
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import Rounding, in_steps
 from rulec.logic.formula import Formula
 from rulec.resource_limits import STEPS
 from rulec.rulebook.rulebook_model import Rule, Rulebook
+
+if TYPE_CHECKING:
+    from rulec.automata.outcome_machine import OutcomeMachine
 
 MOST_STEPS = 100
 """Machines for so many steps are kept."""
@@ -94,14 +97,19 @@ class StepCompiler:
             more_will_come = self._header is not None
             lacking = replace(formulas, rules=missing)
             built = build_all(self.rulebook, lacking, more_will_come=more_will_come)
-            self._header = replace(
-                built, source=self.rulebook, recompile=self, prefixes=prefix_machines
-            )
+            self._header = replace(built, source=self.rulebook, recompile=self, prefixes=_prefixes)
             machines.update({(rule.name, rule.step_s): rule for rule in built.rules})
         return replace(self._header, rules=tuple(machines[key] for key in keys))
 
     def _compiled(self, rules: Sequence[Rule], step_s: Fraction | None) -> CompiledRulebook:
         return self.built(lower(replace(self.rulebook, rules=tuple(rules)), step_s))
+
+
+def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
+    # With NumPy, a tenth of a second: only for traces that are cut.
+    from rulec.automata.prefix_machines import prefix_machines
+
+    return prefix_machines(rulebook)
 
 
 def _check_steps(before: int, rulebook: Rulebook) -> None:

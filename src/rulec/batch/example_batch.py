@@ -10,7 +10,6 @@ from pathlib import Path
 from rulec.automata.step_compilation import StepCompiler
 from rulec.batch.batch_messages import process_lost
 from rulec.batch.jobs import Jobs
-from rulec.batch.worker_pool import LostTask, in_order
 from rulec.book_tests.example_coverage import RuleCoverage, coverage
 from rulec.book_tests.example_runs import ExampleRun, run_rulebook_examples
 from rulec.diagnostics import RulecError
@@ -50,6 +49,9 @@ def measured_runs(
 
     ``lost`` is told whose process was killed, and by which signal, so that it is run again.
     """
+    # A browser's Python has no processes: only where several may be asked for.
+    from rulec.batch.worker_pool import LostTask, in_order
+
     for rulebook, answer in in_order(partial(_measured, request), rulebooks, jobs, lost=lost):
         if isinstance(answer, LostTask):
             yield process_lost(rulebook, answer.signal_number, "tested")

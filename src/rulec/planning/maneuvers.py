@@ -13,8 +13,8 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.mealy_monitor import stutter_invariant
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import partial_names
-from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names
 from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
+from rulec.monitoring.uncertainty.untold_names import untold_names
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged, Verdict, Violation
 from rulec.planning.product.graph_instances import HARD, SOFT, violations
 from rulec.planning.product.graph_product import (

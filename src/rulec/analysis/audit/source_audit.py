@@ -10,8 +10,8 @@ from typing import Any, Literal, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.logic.free_names import names_in
-from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names
 from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
+from rulec.monitoring.uncertainty.untold_names import untold_names
 from rulec.value_display import Rows, short_repr
 
 Basis: TypeAlias = Literal["evidence", "presumption", "nothing"]

@@ -33,9 +33,9 @@ from rulec.monitoring.state_validation import (
 )
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
-from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names, with_untold
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.monitoring.uncertainty.suppositions import spelled_out
+from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace

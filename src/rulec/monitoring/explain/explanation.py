@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.thresholds import exact_step
@@ -20,7 +20,6 @@ from rulec.logic.semantics import extended_values
 from rulec.monitoring.bindings import Binding, binding_of
 from rulec.monitoring.explain.explained_states import states_to_explain
 from rulec.monitoring.explain.margins import Margin
-from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
 from rulec.monitoring.explain.observed_states import ObservedStates, known_value
 from rulec.monitoring.implied_values import with_implied_values
 from rulec.monitoring.letter_reader import LetterReader
@@ -28,13 +27,16 @@ from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.one_completion import completed, with_all_defaults
-from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names, with_untold
+from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import letter_reader_of
 from rulec.trace import Trace, Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
+
+if TYPE_CHECKING:
+    from rulec.monitoring.explain.nearest_satisfying import Repair
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,6 +167,9 @@ def explain(
     whole = len(numbers) == len(stretch)
     repair = None
     if whole and repaired:
+        # NumPy, a tenth of a second: only where a repair is wanted.
+        from rulec.monitoring.explain.nearest_satisfying import nearest_satisfying
+
         repair = nearest_satisfying(rule.machine, observed.word(rule.machine))
     return Explanation(
         rule=rule,

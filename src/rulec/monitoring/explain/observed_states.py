@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import Unknown, holds, weighted_sum
 from rulec.monitoring.explain.margins import Margin, margin_in
-from rulec.monitoring.explain.nearest_satisfying import Letter
 from rulec.monitoring.state_view import StateView
 from rulec.trace import Value
+
+if TYPE_CHECKING:
+    from rulec.monitoring.explain.nearest_satisfying import Letter
 
 _Known = TypeVar("_Known")
 

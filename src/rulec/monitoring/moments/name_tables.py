@@ -16,8 +16,8 @@ from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.implied_values import with_all_said
 from rulec.monitoring.state_view import value_in, with_values
-from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names, with_untold
 from rulec.monitoring.uncertainty.suppositions import spelled_out
+from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.trace import Trace
 from rulec.trace.trace_columns import Array, Key, TraceColumns
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.logic.free_names import names_in
-from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names, with_untold
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
+from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import RuleNotJudged
 from rulec.vocabulary import Vocabulary
 

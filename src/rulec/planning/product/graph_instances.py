@@ -14,7 +14,7 @@ from rulec.monitoring.implied_values import with_implied_in_graph
 from rulec.monitoring.letter_reader import LetterReader, present_in
 from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.uncertainty.lazy_bindings import known_bits
-from rulec.monitoring.uncertainty.state_letters.possible_letters import untold_names, with_untold
+from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
 from rulec.monitoring.verify import run
 from rulec.planning.product.graph_bindings import graph_bindings

@@ -17,16 +17,13 @@ from rulec.logic.free_names import names_in
 from rulec.monitoring.bindings import Binding
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.state_validation import partial_names
-from rulec.monitoring.uncertainty.state_letters.possible_letters import (
-    PossibleLetters,
-    untold_names,
-    with_untold,
-)
+from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
 from rulec.monitoring.uncertainty.suppositions import (
     Suppositions,
     spelled_out,
 )
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
+from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged
 from rulec.planning.product.graph_bindings import graph_bindings
 from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine

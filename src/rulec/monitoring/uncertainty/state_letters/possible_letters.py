@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -61,24 +61,6 @@ class PossibleWord:
     def unknown(self) -> tuple[frozenset[str], ...]:
         """For each read the names of values of which some are unknown."""
         return self.find_unknown()
-
-
-def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
-    """The names that a source which tells these cannot tell, and that are not presumed."""
-    if told is None:
-        return frozenset()
-    names = vocabulary.declarations.items()
-    return frozenset(name for name, item in names if name not in told and not item.presumed)
-
-
-def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
-    """The vocabulary in which untold names are unknown where no state says them."""
-    unknown: Any = UNKNOWN
-    declarations = {
-        name: replace(item, default=unknown) if name in untold else item
-        for name, item in vocabulary.declarations.items()
-    }
-    return replace(vocabulary, declarations=declarations)
 
 
 BoundLetters: TypeAlias = dict[tuple[object, ...], RuleLetters]

@@ -1,0 +1,78 @@
+"""What a compiler's process says: first what it can do, then an answer to each job.
+
+Where there are no processes, as in a browser, the answers are given in this one.
+"""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+
+from rulec.automata.compiler_jobs import MOST_STEPS_AHEAD, Compiler, Done, Failed, Job
+from rulec.automata.worker import compiler_choice
+from rulec.automata.worker.confinement import Confinement
+from rulec.automata.worker.job_answers import answer_to
+
+HAS_PROCESSES = sys.platform != "emscripten"
+"""A browser has none; whoever runs Python there can end the whole of it, and does."""
+
+_MOST_REMEMBERED = 1 << 10
+
+
+@dataclass(frozen=True, slots=True)
+class WorkerGreeting:
+    """First message of a worker: Spot's version, or None and a ``problem`` if it cannot work.
+
+    The version is empty if it works without Spot. ``confined``: what the worker is kept from.
+    """
+
+    spot: str | None
+    problem: str = ""
+    confined: Confinement | tuple[()] = ()
+
+
+def chosen(choice: str) -> Compiler:
+    """The compiler of a choice, empty for the usual one.
+
+    Raises ImportError if it has to be Spot, and that is not there.
+    """
+    if choice != compiler_choice.DIAGRAMS:
+        try:
+            # Spot is loaded in the worker alone.
+            from rulec.automata import spot_bridge
+
+            return spot_bridge.COMPILER
+        except ImportError:
+            if choice == compiler_choice.SPOT:
+                raise
+    # The library may come with NetworkX: only where Spot does not translate.
+    from rulec.automata.decision_diagrams import diagram_compiler
+
+    sys.setrecursionlimit(MOST_STEPS_AHEAD)
+    return diagram_compiler.COMPILER
+
+
+def answered(job: Job, compiler: Compiler) -> Done | Failed:
+    """The answer to a job, whatever happens."""
+    try:
+        return answer_to(job, compiler)
+    except (MemoryError, RecursionError):
+        return Failed("memory")
+    except Exception:
+        return Failed("bug", traceback.format_exc())
+
+
+def answered_here(jobs: Iterable[Job]) -> list[Done | Failed]:
+    """Answers of decision diagrams in this process, without bounds on time or memory.
+
+    Who edits a rulebook asks for all of its rules again and again, so they are remembered.
+    """
+    return [_remembered(job) for job in jobs]
+
+
+@lru_cache(maxsize=_MOST_REMEMBERED)
+def _remembered(job: Job) -> Done | Failed:
+    return answered(job, chosen(compiler_choice.DIAGRAMS))

@@ -1,0 +1,96 @@
+"""Write the playground into a folder: ``python -m tools.playground -o FOLDER``.
+
+Exit status: 0, or 2 if a part of it cannot be had, or the folder has something else in it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+import rulec
+from tools.playground.parts import (
+    HERE,
+    ROOT,
+    MissingPartError,
+    put_libraries,
+    put_pyodide,
+    put_wheels,
+)
+from tools.textmate import textmate_grammar
+
+MARK = "playground.json"
+"""What Python is to load; a folder that has it is a playground, and may be written anew."""
+
+
+def build(folder: Path) -> None:
+    """Write the page whole, or raise MissingPartError and leave the folder as it was."""
+    if folder.exists() and any(folder.iterdir()) and not (folder / MARK).is_file():
+        raise MissingPartError(f"{folder} has other files in it: name a folder of the page's own")
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=folder.parent, prefix=".playground-") as temporary:
+        page, npm = Path(temporary, "page"), Path(temporary, "npm")
+        npm.mkdir()
+        shutil.copytree(HERE / "page", page)
+        put_pyodide(page / "pyodide", npm)
+        (page / "python").mkdir()
+        wheels = put_wheels(page / "python")
+        put_libraries(page / "python" / "libraries.zip")
+        shutil.copy(HERE / "questions.py", page / "python")
+        (page / "words.json").write_text(textmate_grammar(), "utf-8")
+        books = [{"name": book.name, "title": book.title} for book in rulec.list()]
+        begin = {"samples": samples(), "rulebooks": books}
+        (page / "samples.json").write_text(json.dumps(begin, ensure_ascii=False), "utf-8")
+        (page / MARK).write_text(json.dumps({"wheels": wheels}), "utf-8")
+        shutil.copy(ROOT / "LICENSE", page)
+        if folder.exists():
+            folder.rename(Path(temporary, "before"))
+        page.rename(folder)
+
+
+def samples() -> list[dict[str, str]]:
+    """What the page can start from: the rulebooks of the README and of the tutorial.
+
+    Each has traces that it judges, and a rulebook that it can be held against.
+    """
+    (quiet_lane,) = _blocks("README.md", "rulec")
+    mistaken, *_ = _blocks("docs/tutorial.md", "rulec file")
+    (atlantis,) = _blocks("docs/tutorial.md", "rulec untidy")
+    (drives,) = _blocks("docs/tutorial.md", "json")
+    paper = (ROOT / "docs/samples/traces.jsonl").read_text("utf-8")
+    return [
+        {"title": title, "source": source, "traces": traces, "against": against}
+        for title, source, traces, against in (
+            ("A first rule", quiet_lane, paper, "esterle2019"),
+            ("A country: Atlantis", rulec.format(atlantis), drives, "vienna"),
+            ("Atlantis, with a mistake", mistaken, drives, "vienna"),
+        )
+    ]
+
+
+def _blocks(page: str, kind: str) -> list[str]:
+    text = (ROOT / page).read_text("utf-8")
+    return re.findall(rf"^```{kind}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
+def main() -> int:
+    """Build, and say where."""
+    parser = argparse.ArgumentParser(prog="python -m tools.playground", description=build.__doc__)
+    parser.add_argument("-o", "--output", type=Path, required=True, help="the folder to write")
+    folder = parser.parse_args().output.absolute()
+    try:
+        build(folder)
+    except MissingPartError as error:
+        print(f"playground: {error}", file=sys.stderr)
+        return 2
+    print(f"wrote {folder}; to see it: python -m http.server -d {folder}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,34 @@
+// What is on the page as a link: JSON, packed, behind the `#`, which browsers send to nobody.
+
+const VERSION = "1.";
+const MOST = 1_000_000;
+
+async function through(stream, bytes) {
+  const parts = [];
+  let size = 0;
+  for await (const part of new Blob([bytes]).stream().pipeThrough(stream)) {
+    size += part.length;
+    if (size > MOST) throw new Error("it has too much in it");
+    parts.push(part);
+  }
+  return new Uint8Array(await new Blob(parts).arrayBuffer());
+}
+
+/** The part of a link behind its `#`. */
+export async function packed(content) {
+  const bytes = new TextEncoder().encode(JSON.stringify(content));
+  const small = await through(new CompressionStream("deflate-raw"), bytes);
+  const text = btoa(Array.from(small, (byte) => String.fromCharCode(byte)).join(""));
+  return VERSION + text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}
+
+/** What a link has in it: texts by name. Throws an Error for what is no such link. */
+export async function unpacked(fragment) {
+  if (!fragment.startsWith(VERSION)) throw new Error("it is of another version");
+  const text = fragment.slice(VERSION.length).replaceAll("-", "+").replaceAll("_", "/");
+  const small = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+  const bytes = await through(new DecompressionStream("deflate-raw"), small);
+  const content = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes));
+  const texts = Object.entries(content).filter(([, value]) => typeof value === "string");
+  return Object.fromEntries(texts);
+}

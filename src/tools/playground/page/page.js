@@ -1,0 +1,317 @@
+// The page: what is typed, chosen and asked, and where answers are put.
+
+import { comparison, examples, finding, rules, trouble, verdict } from "./answers.js";
+import { Asker } from "./asker.js";
+import { byId, counted, element } from "./dom.js";
+import { Editor, colouring } from "./editor.js";
+import { packed, unpacked } from "./link.js";
+
+const PAUSE_MS = 250;
+const PATIENCE_MS = 1500;
+const OWN = "this rulebook";
+const TABS = ["test", "judge", "compare", "rules"];
+const DOING = {
+  check: "Reading the rulebook",
+  format: "Tidying",
+  source: "Fetching a rulebook",
+  test: "Running the examples",
+  judge: "Judging the traces",
+  compare: "Comparing",
+  rules: "Saying it in English",
+};
+
+let patience;
+let pause;
+let tab = "test";
+let isSound;
+let asked = {};
+let own = new Set();
+let written = "";
+const editor = new Editor(byId("source"), byId("shown"), edited);
+const traces = byId("traces");
+const asker = new Asker(stateChanged);
+
+function stateChanged(state, about) {
+  clearTimeout(patience);
+  byId("stop").hidden = true;
+  if (state === "starting") say("Python is starting: some 14 MB, the first time");
+  else if (state === "ready") say("Ready");
+  else if (state === "broken") say(`Python does not start: ${about}`);
+  else {
+    // What takes no time need not be announced.
+    patience = setTimeout(() => {
+      say(`${DOING[about.ask]} …`);
+      byId("stop").hidden = false;
+    }, PATIENCE_MS);
+  }
+}
+
+function say(text) {
+  if (byId("state").textContent !== text) byId("state").textContent = text;
+}
+
+// Editing: messages at once, the rest when they have come and there is no error.
+
+function edited() {
+  clearTimeout(pause);
+  pause = setTimeout(look, PAUSE_MS);
+}
+
+async function look() {
+  void keepLink();
+  const source = editor.text;
+  const answer = await asker.ask({ ask: "check", source });
+  if (!answer || source !== editor.text) return;
+  const findings = answer.result ?? answer.findings ?? [];
+  const file = `${/^\s*(?:rulebook|vocabulary)\s+([\w-]+)/m.exec(source)?.[1] ?? "rulebook"}.rules`;
+  for (const one of findings) one.isOwn = one.place?.file === file && one.place.line !== null;
+  editor.mark(findings.filter((one) => one.isOwn));
+  const errors = findings.filter((one) => one.severity === "error").length;
+  const warnings = findings.length - errors;
+  isSound = errors === 0 && !answer.failure;
+  own = new Set([file]);
+  const counts = [errors && counted(errors, "error"), warnings && counted(warnings, "warning")];
+  byId("count").textContent = counts.filter(Boolean).join(", ") || "nothing found";
+  byId("found").replaceChildren(
+    ...(answer.failure ? [trouble(answer)] : findings.map((one) => finding(one, (place) => editor.show(place), mend))),
+  );
+  if (isSound) askTab();
+  else outdated();
+}
+
+function mend(fix) {
+  editor.replace(...exactly(fix.place), fix.text);
+}
+
+/** A place as it is written: that of an insertion is empty. */
+function exactly(place) {
+  const [from, to] = editor.range(place);
+  const isEmpty = place.line === place.end_line && place.column === place.end_column;
+  return isEmpty ? [from, from] : [from, to];
+}
+
+function outdated() {
+  const panel = byId(tab);
+  if (tab === "compare") return;
+  panel.querySelector(".summary").textContent =
+    isSound === false ? "Once there is no error in the rulebook." : "…";
+  panel.querySelector(".result").replaceChildren();
+  delete asked[tab];
+}
+
+// The four questions.
+
+const QUESTIONS = {
+  test: () => ({ source: editor.text }),
+  rules: () => ({ source: editor.text }),
+  judge: () => ({ source: editor.text, book: value("judge-book"), traces: traces.value }),
+};
+
+const value = (id) => (byId(id).value === OWN ? "" : byId(id).value);
+
+function askTab() {
+  if (!(tab in QUESTIONS)) return;
+  const question = { ask: tab, ...QUESTIONS[tab]() };
+  const key = JSON.stringify(question);
+  if (asked[tab] === key) return;
+  if (tab === "judge" && !traces.value.trim()) {
+    put(tab, "No trace yet.", []);
+    return;
+  }
+  asked[tab] = key;
+  void answered(tab, question, key);
+}
+
+async function answered(kind, question, key) {
+  const answer = await asker.ask(question);
+  if (asked[kind] !== key) return;
+  if (!answer) {
+    put(kind, "Stopped.", []);
+    delete asked[kind];
+    return;
+  }
+  if (!("result" in answer)) put(kind, answer.refused ? "Not judged." : "There is no answer.", [trouble(answer)]);
+  else put(kind, ...ANSWERS[kind](answer.result));
+}
+
+const isOwn = (place) => own.has(place.file);
+
+const ANSWERS = {
+  test: (run) => [
+    `${counted(run.examples.length, "example")}: ${run.passed} passed, ${run.failed} failed`,
+    examples(run, isOwn, (place) => editor.show(place), insertion),
+  ],
+  rules: (document) => [counted(document.rules.length, "rule"), rules(document)],
+  judge: (verdicts) => {
+    const kept = verdicts.filter((one) => one.satisfied).length;
+    const wrong = verdicts.filter((one) => one.findings).length;
+    const lost = verdicts.length - kept - wrong;
+    const rest = wrong ? `, ${wrong} not judged` : "";
+    return [`${counted(verdicts.length, "trace")}: ${kept} satisfied, ${lost} violated${rest}`, verdicts.map(verdict)];
+  },
+  compare: (diff) => {
+    const n = (relation) => diff.rules.filter((pair) => pair.relation === relation).length;
+    const parts = ["stricter", "laxer", "incomparable", "equal", "undecided"].filter(n);
+    const days = `${diff.first.name} is the law of ${diff.first.at}, ${diff.second.name} that of ${diff.second.at}.`;
+    const said = parts.map((relation) => `${n(relation)} ${relation}`).join(", ");
+    return [`${counted(diff.rules.length, "shared rule")}${said ? `: ${said}` : ""}. ${days}`, comparison(diff, tried)];
+  },
+};
+
+function put(kind, summary, nodes) {
+  const panel = byId(kind);
+  panel.querySelector(".summary").textContent = summary;
+  panel.querySelector(".result").replaceChildren(...nodes.filter(Boolean));
+}
+
+/** A button that writes a missing example into its rule. */
+function insertion(rule, example) {
+  const head = new RegExp(`\\brule\\s+${rule}\\b`).exec(editor.text);
+  const end = head ? editor.text.indexOf("\n}", head.index) : -1;
+  if (end < 0) return null;
+  return element("button", { type: "button", onclick: () => editor.replace(end, end, `\n  ${example}`) }, "Insert it");
+}
+
+/** Judge a trace that a comparison has found. */
+function tried(trace) {
+  traces.value = JSON.stringify(trace);
+  show("judge");
+  byId("tab-judge").focus();
+  void keepLink();
+}
+
+function compare(event) {
+  event.preventDefault();
+  const question = { ask: "compare", source: editor.text, first: value("first"), second: value("second"), rule: byId("rule").value.trim() };
+  const key = JSON.stringify(question);
+  asked.compare = key;
+  put("compare", "Comparing …", []);
+  void keepLink();
+  void answered("compare", question, key);
+}
+
+// Tabs: arrows go from one to the next, as everywhere.
+
+function show(kind) {
+  tab = kind;
+  for (const name of TABS) {
+    const isChosen = name === kind;
+    byId(name).hidden = !isChosen;
+    byId(`tab-${name}`).setAttribute("aria-selected", isChosen);
+    byId(`tab-${name}`).tabIndex = isChosen ? 0 : -1;
+  }
+  if (isSound) askTab();
+  else outdated();
+}
+
+function listen() {
+  for (const name of TABS) {
+    byId(`tab-${name}`).addEventListener("click", () => {
+      show(name);
+      void keepLink();
+    });
+    byId(`tab-${name}`).addEventListener("keydown", (event) => {
+      const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+      const next = { Home: 0, End: TABS.length - 1 }[event.key] ?? TABS.indexOf(name) + step;
+      if (Number.isNaN(next)) return;
+      event.preventDefault();
+      show(TABS.at(next % TABS.length));
+      byId(`tab-${tab}`).focus();
+      void keepLink();
+    });
+  }
+  traces.addEventListener("input", edited);
+  byId("judge-book").addEventListener("change", edited);
+  byId("comparison").addEventListener("submit", compare);
+  byId("stop").addEventListener("click", () => asker.stop());
+  byId("tidy").addEventListener("click", tidy);
+  byId("share").addEventListener("click", share);
+  byId("start").addEventListener("change", started);
+  window.addEventListener("hashchange", () => void fromLink());
+}
+
+async function tidy() {
+  const source = editor.text;
+  const answer = await asker.ask({ ask: "format", source });
+  if (source !== editor.text) return;
+  if (answer?.result === undefined) say("It cannot be tidied while there are errors in it");
+  else if (answer.result === source) say("It is tidy");
+  else editor.replace(0, source.length, answer.result);
+}
+
+// Links: the address says at all times what is on the page.
+
+async function keepLink() {
+  const content = { source: editor.text, traces: traces.value, tab };
+  for (const id of ["judge-book", "first", "second", "rule"]) content[id] = byId(id).value;
+  written = `#${await packed(content)}`;
+  history.replaceState(null, "", written);
+}
+
+async function fromLink() {
+  if (location.hash.length < 2 || location.hash === written) return false;
+  try {
+    fill(await unpacked(location.hash.slice(1)));
+    return true;
+  } catch (error) {
+    say(`The link cannot be read: ${error.message}`);
+    return false;
+  }
+}
+
+function fill(content) {
+  editor.text = content.source ?? "";
+  traces.value = content.traces ?? "";
+  for (const id of ["judge-book", "first", "second"]) {
+    const has = [...byId(id).options].some((option) => option.value === content[id]);
+    if (has) byId(id).value = content[id];
+  }
+  byId("rule").value = content.rule ?? "";
+  asked = {};
+  isSound = undefined;
+  show(TABS.includes(content.tab) ? content.tab : "test");
+  void look();
+}
+
+async function share() {
+  await keepLink();
+  try {
+    await navigator.clipboard.writeText(location.href);
+    say("The link is copied");
+  } catch {
+    say("The link is in the address bar");
+  }
+}
+
+async function started() {
+  const chosen = byId("start").value;
+  const sample = samples.find((one) => one.title === chosen);
+  if (sample) {
+    fill({ ...sample, tab, "judge-book": OWN, first: OWN, second: sample.against });
+    return;
+  }
+  const answer = await asker.ask({ ask: "source", name: chosen });
+  if (answer?.result !== undefined && byId("start").value === chosen) {
+    fill({ source: answer.result, traces: traces.value, tab });
+  }
+}
+
+// To begin with
+
+const fetched = async (name) => (await fetch(name)).json();
+const [words, { samples, rulebooks }] = await Promise.all([fetched("words.json"), fetched("samples.json")]);
+editor.spansOf = colouring(words);
+
+const options = (listed) => listed.map(({ name, title }) => element("option", { value: name }, title === name ? name : `${name}: ${title}`));
+byId("start").append(
+  element("optgroup", { label: "Samples" }, samples.map(({ title }) => element("option", { value: title }, title))),
+  element("optgroup", { label: "Rulebooks that ship" }, options(rulebooks)),
+);
+for (const id of ["judge-book", "first", "second"]) {
+  byId(id).append(element("option", { value: OWN }, OWN), ...options(rulebooks));
+}
+listen();
+if (!(await fromLink())) {
+  byId("start").value = samples[0].title;
+  await started();
+}

@@ -1,0 +1,91 @@
+"""The parts of the page that come from elsewhere: Pyodide, rulec's own wheel, libraries."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[2]
+
+PYODIDE_FILES = (
+    "pyodide.mjs",
+    "pyodide.asm.mjs",
+    "pyodide.asm.wasm",
+    "python_stdlib.zip",
+    "pyodide-lock.json",
+)
+"""Python itself, as the package ``pyodide`` has it: Python 3.14 in WebAssembly."""
+
+PLATFORM = (
+    "--platform",
+    "pyemscripten_2026_0_wasm32",
+    "--python-version",
+    "3.14",
+    "--abi",
+    "cp314",
+)
+
+LIBRARIES = ("astutils", "click", "dd", "lark", "ply", "typing_extensions")
+"""Taken from this environment: what the page's questions import, in Python alone."""
+
+
+class MissingPartError(Exception):
+    """A part of the page cannot be had."""
+
+
+def put_pyodide(folder: Path, work: Path) -> None:
+    """Put Pyodide's files, of the release in ``package-lock.json``, into a folder."""
+    npm = shutil.which("npm")
+    if npm is None:
+        raise MissingPartError("npm is not there, which Pyodide comes from: install Node.js")
+    for name in ("package.json", "package-lock.json"):
+        shutil.copy(HERE / name, work)
+    run([npm, "ci", "--omit=dev", "--ignore-scripts", "--no-audit", "--no-fund", "--silent"], work)
+    folder.mkdir()
+    for name in PYODIDE_FILES:
+        shutil.copy(work / "node_modules" / "pyodide" / name, folder)
+
+
+def put_wheels(folder: Path) -> list[str]:
+    """Put rulec's wheel, of this checkout, and msgspec's into a folder; their names."""
+    run([sys.executable, "-m", "hatchling", "build", "--target", "wheel", "-d", folder], ROOT)
+    ready = ("--only-binary", ":all:", "--no-deps", "--require-hashes", *PLATFORM)
+    wanted = ("--requirement", HERE / "requirements.txt", "--dest", folder, "--quiet")
+    run([sys.executable, "-m", "pip", "download", *ready, *wanted], folder)
+    return sorted(path.name for path in folder.glob("*.whl"))
+
+
+def put_libraries(archive: Path) -> None:
+    """Write the libraries' modules and licences, each as it is installed here."""
+    with ZipFile(archive, "w", ZIP_DEFLATED) as stream:
+        for name, path in sorted(_files()):
+            # Without the times of this installation, the same libraries are the same file.
+            stream.writestr(ZipInfo(name), path.read_bytes(), ZIP_DEFLATED)
+
+
+def _files() -> Iterator[tuple[str, Path]]:
+    for library in LIBRARIES:
+        try:
+            files = distribution(library).files or ()
+        except PackageNotFoundError as error:
+            raise MissingPartError(f"{library} is not installed: call ./rulec once") from error
+        for file in files:
+            name, inside = file.as_posix(), ".dist-info/" in file.as_posix()
+            if ".." not in name and (inside or file.suffix == ".py"):
+                yield name, Path(str(file.locate()))
+
+
+def run(command: Sequence[str | Path], folder: Path) -> None:
+    """Run a tool in a folder. Raises MissingPartError with what it says if it fails."""
+    done = subprocess.run(
+        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False
+    )
+    if done.returncode != 0:
+        said = done.stdout.decode(errors="replace").strip()
+        raise MissingPartError(f"{Path(command[0]).name} ended with {done.returncode}:\n{said}")
