@@ -1,11 +1,14 @@
 """Phrases: every word of a vocabulary that ships has one in each language, of its own."""
 
+from fractions import Fraction
+
 import pytest
 
+from rulec.logic.formula import Comparison, QuantityTerm
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.language import LANGUAGES
 from rulec.logic.sentences.spoken_words import forms, spoken_formula
-from rulec.logic.sentences.wording import atom_clause
+from rulec.logic.sentences.wording import atom_clause, comparison_clause
 from rulec.rulebook.loader import load_rulebook, load_vocabulary
 from rulec.rulebook.vocabulary_phrases import phrases_in, phrases_of
 from rulec.vocabulary import Enumeration, Quantity
@@ -40,3 +43,12 @@ def test_sentences_speak_in_phrases_and_keep_their_reading():
     raining = spoken_formula(type(formula)("raining"), phrases)
     # What holds a comma or an `or` of its own stays apart from what it is joined with.
     assert atom_clause(raining, ENGLISH, holds=True) == "“rain, snow or hail falls”"
+
+
+def test_a_noun_with_the_name_of_another_quantity_in_it_is_said_once():
+    speed, limit = (Fraction(1), QuantityTerm("speed")), (Fraction(-1), QuantityTerm("limit"))
+    below = Comparison((speed, limit), "<=", Fraction(0), "speed <= limit")
+    spoken = spoken_formula(below, phrases_in("road", "en"))
+    assert comparison_clause(spoken, ENGLISH, holds=True) == (
+        "ego's speed is at most the signposted speed limit"
+    )

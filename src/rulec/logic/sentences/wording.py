@@ -75,16 +75,19 @@ def comparison_clause(comparison: Comparison, language: Language, *, holds: bool
 
 def _aloud(text: str, terms: Sequence[Term], language: Language) -> str:
     """Arithmetic with the quantities in it named in words."""
+    nouns = {
+        term_text(term): (
+            term.noun
+            if isinstance(term, SpokenQuantity)
+            else of_objects(term.name, term.arguments, language)
+        )
+        for term in terms
+        if isinstance(term, QuantityTerm)
+    }
     text = language.decimals(text)
-    for term in terms:
-        if isinstance(term, QuantityTerm):
-            written = re.compile(rf"(?<![\w.]){re.escape(term_text(term))}(?![\w(])")
-            words = (
-                term.noun
-                if isinstance(term, SpokenQuantity)
-                else of_objects(term.name, term.arguments, language)
-            )
-            text = written.sub(lambda _, words=words: words, text)  # type: ignore[misc]
+    if nouns:  # All at once: a noun may have another quantity's name in it.
+        written = "|".join(re.escape(name) for name in sorted(nouns, key=len, reverse=True))
+        text = re.sub(rf"(?<![\w.])(?:{written})(?![\w(])", lambda name: nouns[name[0]], text)
     return text.replace(" * ", f" {language.times} ")
 
 
