@@ -49,7 +49,7 @@ SESSIONS = {name: tuple(steps(text)) for name, text in PAGES.items()}
 
 def printed(kind, what, capsys, monkeypatch):
     if kind == "command":
-        what, _, read = what.partition(" < ")
+        what, read = re.fullmatch(r"(.*?)(?: < (\S+))?", what).groups()
         with Path(read or os.devnull).open(encoding="utf-8") as stream:
             monkeypatch.setattr(sys, "stdin", stream)
             main(shlex.split(what)[1:])
