@@ -80,6 +80,13 @@ def test_ego_stands_in_the_junction_for_another_reason():
     assert exit_clear(road(), STOPS, ahead) == [True] * 7
 
 
+@pytest.mark.parametrize(("metres", "clear"), [(1.25, False), (1.75, True)])
+def test_one_that_drives_on_makes_nobody_stand(metres, clear):
+    """At 9 or 12.6 km/h, in steps of 0.5 s; it leaves 1.75 or 3.25 m where ego stands."""
+    ahead = going(8, [120 + metres * k for k in range(7)])
+    assert exit_clear(road(), STOPS, ahead) == [clear] * 4 + [True] * 3
+
+
 def test_a_queue_within_the_junction_takes_the_room_behind_it():
     # Room behind the junction: 131 - 120 = 11 m, less 5 m for each of the two that are in it
     queue = [queueing(8, 133), queueing(9, 118), queueing(10, 113)]

@@ -231,10 +231,10 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
     """Is there room for ego behind what it enters, and where is that unknown?
 
     There is none if the one ahead leaves too little behind the place where it is at that time, and
-    it makes ego stand on it, where others cross or join its way. Where the recording ends before
-    ego is through it is unknown, and so it is where places decide whether it stands there, and of
-    one ahead that stands all the time: ego may wait to drive round it. What ego enters is the last
-    place that it has got to, and before any the next one.
+    makes ego stand on it, where others cross or join its way: it walks at most while ego stands.
+    Where the recording ends before ego is through it is unknown, and so it is where places decide
+    whether it stands there, and of one ahead that stands all the time: ego may wait to drive round
+    it. What ego enters is the last place that it has got to, and before any the next one.
     """
     places = [*context.road.junctions, *context.road.crossings, *_rail_stretches(context)]
     clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
@@ -245,6 +245,7 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
     beyond = corner_ahead(context) + error
     ahead = _ahead_on_lane(context)
     still = _standing_rows(context, ahead)
+    holds_up = context.tracks.speed * KMH < context.thresholds.walking_pace_kmh
     for number, (start, end) in enumerate(places):
         nears, passed = entered == number, (rear >= end).any()
         place = _shared(context, start, end)
@@ -252,13 +253,13 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
         perhaps = (front + error > place) & (rear - error < end) & stands
         if not nears.any() or (passed and not perhaps.any()):
             continue
-        short, may_be_short = (
+        short, may_be_short, stops, may_stop = (
             _free_beyond(context, those, (start, end)) < front - rear + _ROOM_M
-            for those in (ahead & ~still, ahead)
+            for those in (ahead & ~still, ahead, ahead & ~still & holds_up, ahead & holds_up)
         )
-        blocked = nears & short & _until(stuck & short)
+        blocked = nears & short & _until(stuck & stops)
         clear &= ~blocked
-        may_be = _until(perhaps & may_be_short) | (not passed)
+        may_be = _until(perhaps & may_stop) | (not passed)
         unknown |= nears & may_be_short & ~blocked & may_be
     return SignalColumns({"exit_clear": clear}, unknown={"exit_clear": unknown & clear})
 
