@@ -9,6 +9,7 @@ from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.source_tolerances import (
+    DRONES,
     NGSIM,
     OTHERS,
     USUAL_ROUNDING,
@@ -31,6 +32,8 @@ def of_source(name, *bodies, form="CommonRoad scenario", count=2):
         ("USA_US101-4_1_T-1", "CommonRoad scenario", NGSIM),
         ("USA_Lanker-1_3_T-1", "CommonRoad scenario", NGSIM),
         ("ESP_Toledo-11_5_T-1", "CommonRoad scenario", OTHERS),
+        ("highD_01", "highD tracks", DRONES),
+        ("DR_USA_Intersection_EP0", "INTERACTION tracks", DRONES),
         ("fcd", "SUMO data", rounded_to(USUAL_ROUNDING)),
     ],
 )

@@ -13,6 +13,9 @@ _NEARER_M, _BESIDE_M, _ALIKE = 0.9, 6.0, 0.7
 _ABOUT_M = 0.5
 """Where two are so nearly level nobody can say whether they are."""
 
+_SEEN_S = 0.5
+"""Who is seen behind for less has hardly come from there: recordings have every second state."""
+
 
 def near_side_facts(world):
     """Who came from behind, was beside on a lane nearer to the kerb, and got in front."""
@@ -52,6 +55,7 @@ def _passes(world, track, other):
         if not nearer[around].any() and not moves:
             continue
         sure = nearer[around].all() and not moves
+        sure &= begin * world.step_s >= _SEEN_S
         sure &= (begin, end) in level and not _in_queues(world, track, other, first + begin)
         at = ((first + begin - 10) * world.step_s, (first + end + 10) * world.step_s)
         yield Fact(track.id, "near_side_passing", *at, bool(sure), other.id)
