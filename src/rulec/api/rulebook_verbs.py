@@ -100,8 +100,11 @@ class RulebookVerbs(SessionSettings):
         objects: Mapping[str, int] | None = None,
         *,
         prove: bool = False,
+        language: Literal["c", "rust"] = "c",
     ) -> tuple[Path, ...]:
         """Write a monitor in C99: header, source, Makefile, CMakeLists.txt; the paths.
+
+        In the other ``language`` it is a crate of Rust, without the standard library.
 
         ``objects`` are how many there may be at a time, by type; without it 16 of each type that is
         below no other. If it is to ``prove`` it is compiled and held against its tables before it
@@ -111,7 +114,8 @@ class RulebookVerbs(SessionSettings):
         from rulec.code_generation.monitor_files import write_monitor
 
         compiled = self._compiled(rules)
-        return tuple(write_monitor(compiled, Path(folder), objects or {}, prove=prove))
+        paths = write_monitor(compiled, Path(folder), objects or {}, prove=prove, language=language)
+        return tuple(paths)
 
     def verify_compiled(self, path: str | Path) -> tuple[RuleProof, ...]:
         """Hold the tables of a compiled rulebook's file against its formulas, without Spot.

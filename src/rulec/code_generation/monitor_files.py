@@ -1,16 +1,22 @@
-"""The files of a monitor in C: headers for C and C++, source, and what builds them."""
+"""The files of a monitor: headers for C and C++, source, what builds them; or a crate of Rust."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Literal, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.code_generation.c_files import c_header, c_source, cpp_header
 from rulec.code_generation.monitor_layout import MonitorLayout, monitor_layout
+from rulec.code_generation.reading_code import ReadingCode
+from rulec.code_generation.rust_files import crate_texts
+from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.code_generation.written_names import prefix_of
 from rulec.file_sets import write_together
 from rulec.files import make_folder
+
+Language: TypeAlias = Literal["c", "rust"]
 
 _MAKE = """\
 # A library of the monitor; it takes a compiler for C99 and nothing else.
@@ -52,20 +58,31 @@ def monitor_texts(layout: MonitorLayout) -> dict[str, str]:
 
 
 def write_monitor(
-    rulebook: CompiledRulebook, folder: Path, bounds: Mapping[str, int], *, prove: bool = False
+    rulebook: CompiledRulebook,
+    folder: Path,
+    bounds: Mapping[str, int],
+    *,
+    prove: bool = False,
+    language: Language = "c",
 ) -> list[Path]:
-    """Write a monitor to a folder, all files or none; the paths.
+    """Write a monitor to a folder, all files of each folder or none; the paths.
 
     ``bounds`` are how many objects there may be at a time, by type. If it is to ``prove`` there is
     a report, too. Raises RulecError R0702, R0750, and to prove R0751 to R0753.
     """
-    layout = monitor_layout(rulebook, bounds)
-    texts = monitor_texts(layout)
+    code = ReadingCode if language == "c" else RustReadingCode
+    layout = monitor_layout(rulebook, bounds, code)
+    texts = monitor_texts(layout) if language == "c" else crate_texts(layout)
     if prove:
         # numpy, and all that judges
+        from rulec.code_generation.compiled_c.c_library import CLibrary
+        from rulec.code_generation.compiled_c.rust_library import RustLibrary
         from rulec.code_generation.proof.monitor_proof import proof_report
 
-        texts[f"{prefix_of(rulebook.name)}_proof.txt"] = proof_report(layout)
-    make_folder(folder)
-    write_together(folder, {name: text.encode() for name, text in texts.items()})
+        library = CLibrary(layout) if language == "c" else RustLibrary(layout)
+        texts[f"{prefix_of(rulebook.name)}_proof.txt"] = proof_report(library)
+    for inner in dict.fromkeys(Path(name).parent for name in texts):
+        own = {Path(name).name: text for name, text in texts.items() if Path(name).parent == inner}
+        make_folder(folder / inner)
+        write_together(folder / inner, {name: text.encode() for name, text in own.items()})
     return [folder / name for name in texts]

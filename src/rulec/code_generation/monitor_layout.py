@@ -6,7 +6,7 @@ sit on the seats of the nearest type above it for which there are any.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import prod
 
@@ -93,15 +93,40 @@ class MonitorLayout:
         return max(end for _, end in self.seats.values())
 
     @property
+    def array_sizes(self) -> dict[str, int]:
+        """The sizes of arrays, by what code calls them; none of them is empty."""
+        rules = self.rules
+        machines = [own.rule.machine for own in rules]
+        return {
+            "RULES": len(rules),
+            "TYPES": len(self.fields.types),
+            "SEATS": self.n_seats,
+            "VARIABLES": self.n_variables,
+            "INSTANCES": sum(own.n_instances for own in rules) or 1,
+            "WORDS": sum(own.n_words for own in rules) or 1,
+            "WORLD_READS": len(self.sizes[0]) or 1,
+            "OWN_READS": len(self.sizes[1]) or 1,
+            "SHARED_READS": len(self.sizes[2]) or 1,
+            "CELL_WORDS": max(len(own.cells) for own in rules) // 32 + 1,
+            "CLASS_WORDS": max(len(machine.successors[0]) for machine in machines) // 32 + 1,
+            "STATE_WORDS": max(len(machine.successors) for machine in machines) // 32 + 1,
+        }
+
+    @property
     def n_variables(self) -> int:
         """The most variables that a rule has, at least 1."""
         return max(1, *[len(own.seats) for own in self.rules])
 
 
-def monitor_layout(rulebook: CompiledRulebook, bounds: Mapping[str, int]) -> MonitorLayout:
+def monitor_layout(
+    rulebook: CompiledRulebook,
+    bounds: Mapping[str, int],
+    code: Callable[[InputFields], ReadingCode] = ReadingCode,
+) -> MonitorLayout:
     """The layout for a rulebook, at the step of its first rule that has one.
 
-    ``bounds`` are how many objects there may be at a time, by type. Raises RulecError R0750.
+    ``bounds`` are how many objects there may be at a time, by type; ``code`` writes what reads
+    digits. Raises RulecError R0750.
     """
     steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
     if steps:
@@ -110,7 +135,7 @@ def monitor_layout(rulebook: CompiledRulebook, bounds: Mapping[str, int]) -> Mon
         raise too_large(f"rulebook `{rulebook.name}` has no rules", "give one that has some")
     fields = input_fields(rulebook)
     seats = _seats(fields, bounds)
-    placing = _Placing(ReadingCode(fields), fields, seats)
+    placing = _Placing(code(fields), fields, seats)
     rules = tuple([placing.rule(rule) for rule in rulebook.rules])
     if sum(own.n_instances for own in rules) > MOST_INSTANCES:
         raise too_large(
@@ -220,7 +245,7 @@ class _Placing:
             used = {name for _, term in read.terms for name in variables_of(term)}
         if len(used) > 1:
             kind, source = 2, TOGETHER
-            places = {name: f"who[{number}u]" for number, name in enumerate(names)}
+            places = {name: self.code.place_of(number) for number, name in enumerate(names)}
         else:
             kind = len(used)
             source = OWN + names.index(used.pop()) if used else WORLD

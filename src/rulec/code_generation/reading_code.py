@@ -6,9 +6,11 @@ read may have (see there).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from math import isfinite, lcm
+from typing import Any
 
 from rulec.automata.alphabet import letters_with, reads_of
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -19,6 +21,9 @@ from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
 from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import alias_of
+
+NAME = "\0"
+"""The place of a name in what is defined."""
 
 Places = Mapping[str, str]
 """Variables, and the expressions of their objects' places in the input."""
@@ -41,6 +46,10 @@ class ReadingCode:
         self._named: dict[str, str] = {}
         self.definitions: list[str] = []
 
+    def place_of(self, variable: int) -> str:
+        """Expression for the place of who stands for a rule's variable, of several."""
+        return f"who[{self._whole(variable)}]"
+
     def digits(self, read: Read | NumberRead, places: Places) -> str:
         """Expression for the digits of a read. Raises RulecError R0750 if they are too many."""
         if read.size > MOST_DIGITS:
@@ -50,43 +59,43 @@ class ReadingCode:
         match read.terms:
             case ((1, ltl.QuantityTerm(name, arguments)),):
                 floors = [min(max(floor, -_FAR), _FAR) for floor in scale(read).floors]
-                table = self._array("double", "floors", [each.hex() for each in floors])
+                table = self._array("double", "floors", floors)
                 value = self._value(name, arguments, places)
-                return f"rulec_number({value}, {table}, {len(floors)}u)"
+                return self._call("number", value, table, self._whole(len(floors)))
             case ((1, ltl.Count() as count),):
                 limits = [min(int(side.limit), 1 << 16) for side in read.thresholds]
-                table = self._array("uint32_t", "counts", [f"{limit}u" for limit in limits])
-                return f"rulec_counted({self._count(count, places)}, {table}, {len(limits)}u)"
+                table = self._array("uint32_t", "counts", limits)
+                counted = self._count(count, places)
+                return self._call("counted", counted, table, self._whole(len(limits)))
         return self._sum(read, places)
 
     def _digits_of_value(self, read: Read, places: Places) -> str:
         value = self._value(read.name, read.variables, places)
         if not read.values:
-            return f"rulec_truth({value})"
+            return self._call("truth", value)
         declared = self._fields.values_of(read.name)
-        table = self._array("uint8_t", "digits", [f"{read.digit(each)}u" for each in declared])
-        return f"rulec_value({value}, {table}, {len(declared)}u, {read.size}u)"
+        table = self._array("uint8_t", "digits", [read.digit(each) for each in declared])
+        sizes = self._whole(len(declared)), self._whole(read.size)
+        return self._call("value", value, table, *sizes)
 
     def _value(self, name: str, arguments: Sequence[str], places: Places) -> str:
-        return self._fields.expression(name, [places[variable] for variable in arguments])
+        return self._expression(name, [places[variable] for variable in arguments])
 
     def _truth(self, formula: ltl.Formula, places: Places) -> str:
         def identity(same: ltl.Same) -> str:
             left, right = places[same.left], places[same.right]
-            if left == right:
-                return "RULEC_YES"
-            return f"(({left} == {right}) ? RULEC_YES : RULEC_NO)"
+            return self._word("YES") if left == right else self._is_same(left, right)
 
         return fold(
             formula,
-            Algebra(
+            Algebra[str](
                 proposition=lambda proposition: self._proposition(proposition, places),
-                constant=lambda value: "RULEC_YES" if value else "RULEC_NO",
+                constant=lambda value: self._word("YES" if value else "NO"),
                 identity=identity,
-                negation="rulec_not({})".format,
-                conjunction="rulec_and({}, {})".format,
-                disjunction="rulec_or({}, {})".format,
-                equivalence="rulec_same({}, {})".format,
+                negation=partial(self._call, "not"),
+                conjunction=partial(self._call, "and"),
+                disjunction=partial(self._call, "or"),
+                equivalence=partial(self._call, "same"),
             ),
         )
 
@@ -94,12 +103,13 @@ class ReadingCode:
         if isinstance(proposition, ltl.Atom):
             value = self._value(proposition.name, proposition.arguments, places)
             if proposition.value is None:
-                return f"rulec_is({value})"
+                return self._call("is", value)
             declared = self._fields.values_of(proposition.name)
-            return f"rulec_has({value}, {declared.index(proposition.value)}u, {len(declared)}u)"
+            numbers = declared.index(proposition.value), len(declared)
+            return self._call("has", value, *map(self._whole, numbers))
         reads = reads_of(proposition, self._fields.vocabulary)
         mask = letters_with(reads, [proposition])[proposition]
-        return f"rulec_among({self.digits(reads[0], places)}, 0x{mask:x}u)"
+        return self._call("among", self.digits(reads[0], places), self._whole(mask))
 
     def _count(self, count: ltl.Count, places: Places) -> str:
         """Expression for how many objects count."""
@@ -109,28 +119,14 @@ class ReadingCode:
         each = inner[count.variable] = "each" if alias is None else inner[alias]
         body = self._truth(count.body, inner)
         kind = self._fields.types.index(count.type)
-        counts = f"rulec_counts(in, {each}, {kind}u, {body})"
-        parameters = "".join(f", size_t {inner[variable]}" for variable in free)
-        lines = [f"return {counts};"]
-        if alias is None:
-            lines = [
-                "uint32_t found = 0u;",
-                "size_t each;",
-                "for (each = 0u; each < in->n_objects; each++) {",
-                f"    found += {counts};",
-                "}",
-                "return found;",
-            ]
-        code = "\n    ".join(lines)
-        name = self._function("uint32_t", "count", parameters, code)
-        arguments = "".join(f", {places[variable]}" for variable in free)
-        return f"{name}(in{arguments})"
+        counts = self._call("counts", self._input, each, self._whole(kind), body)
+        lines = self._counting(counts) if alias is None else self._returning(counts)
+        return self._function("uint32_t", "count", {inner[one]: places[one] for one in free}, lines)
 
     def _sum(self, read: NumberRead, places: Places) -> str:
         free = list(dict.fromkeys(name for _, term in read.terms for name in variables_of(term)))
         inner = {variable: f"who{number}" for number, variable in enumerate(free)}
         flags = {(side.limit, side.inclusive) for side in read.thresholds}
-        lines = []
         match read.terms:
             case ((1, ltl.QuantityTerm() as first), (-1, ltl.QuantityTerm() as second)) if all(
                 limit == 0 for limit, _ in flags
@@ -138,33 +134,20 @@ class ReadingCode:
                 # Which of two decimals is the greater their doubles say, too.
                 sides = sum(1 if inclusive else 2 for _, inclusive in flags)
                 pair = [self._value(one.name, one.arguments, inner) for one in (first, second)]
-                lines.append(f"return rulec_order({pair[0]}, {pair[1]}, {sides}u);")
+                lines = self._returning(self._call("order", *pair, self._whole(sides)))
             case _:
-                lines += self._weighed(read, inner)
-        parameters = "".join(f", size_t {inner[variable]}" for variable in free)
-        name = self._function("uint16_t", "sum", parameters, "\n    ".join(lines))
-        arguments = "".join(f", {places[variable]}" for variable in free)
-        return f"{name}(in{arguments})"
+                lines = self._weighed(read, inner)
+        return self._function("uint16_t", "sum", {inner[one]: places[one] for one in free}, lines)
 
     def _weighed(self, read: NumberRead, places: Places) -> list[str]:
-        size = len(read.terms)
-        counting = any(isinstance(term, ltl.Count) for _, term in read.terms)
-        high = "high" if counting else "low"
-        lines = [f"double low[{size}u];", *[f"double high[{size}u];"] * counting]
-        for number, (_, term) in enumerate(read.terms):
-            match term:
-                case ltl.QuantityTerm(name, arguments):
-                    value = self._value(name, arguments, places)
-                    lines.append(f"low[{number}u] = {value};")
-                    lines += [f"high[{number}u] = low[{number}u];"] * counting
-                case ltl.Count():
-                    # After all declarations of the block
-                    lines.insert(2, f"const uint32_t count{number} = {self._count(term, places)};")
-                    lines += [
-                        f"low[{number}u] = (double)(count{number} & 0xffffu);",
-                        f"high[{number}u] = (double)(count{number} >> 16);",
-                    ]
-        return [*lines, f"return rulec_weigh(low, {high}, &{self._shape(read)});"]
+        values = [
+            self._count(term, places)
+            if isinstance(term, ltl.Count)
+            else self._value(term.name, term.arguments, places)
+            for _, term in read.terms
+        ]
+        counted = [isinstance(term, ltl.Count) for _, term in read.terms]
+        return self._weighing(values, counted, self._shape(read))
 
     def _shape(self, read: NumberRead) -> str:
         """The factors and limits of a sum, also as whole numbers if they are small enough."""
@@ -172,7 +155,6 @@ class ReadingCode:
         limits = [side.limit for side in read.thresholds]
         if len(factors) > MOST_DIGITS or not all(map(_is_double, [*factors, *limits])):
             raise too_large("a sum has too many terms, or too large ones")
-        inclusive = [f"{int(side.inclusive)}u" for side in read.thresholds]
         common = lcm(*[number.denominator for number in (*factors, *limits)])
         whole = [int(factor * common) for factor in factors]
         bounds = [int(limit * common * 8) for limit in limits]
@@ -181,36 +163,95 @@ class ReadingCode:
             and max(map(abs, whole)) <= _LARGEST_FACTOR
             and max(map(abs, bounds)) <= _LARGEST_LIMIT
         )
-        parts = [
-            self._array("double", "factors", [float(factor).hex() for factor in factors]),
-            self._array("double", "limits", [float(limit).hex() for limit in limits]),
-            self._array("uint8_t", "inclusive", inclusive),
-            self._array("int64_t", "whole", [f"INT64_C({n})" for n in whole]) if fits else "NULL",
-            self._array("int64_t", "whole", [f"INT64_C({n})" for n in bounds]) if fits else "NULL",
-            f"{len(factors)}u",
-            f"{len(limits)}u",
-        ]
-        return self._defined(
-            "shape", f"static const rulec_shape {{}} = {{{{{', '.join(parts)}}}}};"
+        return self._shaped(
+            self._array("double", "factors", [float(factor) for factor in factors]),
+            self._array("double", "limits", [float(limit) for limit in limits]),
+            self._array("uint8_t", "inclusive", [int(side.inclusive) for side in read.thresholds]),
+            *[self._array("int64_t", "whole", own) if fits else None for own in (whole, bounds)],
+            sizes=(len(factors), len(limits)),
         )
 
-    def _array(self, kind: str, about: str, items: Sequence[str]) -> str:
-        content = ", ".join(items)
-        return self._defined(about, f"static const {kind} {{}}[{len(items)}u] = {{{{{content}}}}};")
-
-    def _function(self, kind: str, about: str, parameters: str, code: str) -> str:
-        return self._defined(
-            about,
-            f"static {kind} {{}}(const rulec_input *in{parameters})\n"
-            f"{{{{\n    {code.replace('{', '{{').replace('}', '}}')}\n}}}}",
-        )
+    def _function(self, kind: str, about: str, places: Places, lines: Sequence[str]) -> str:
+        """A call of a function with these lines, its parameters with the places that they are."""
+        name = self._defined(about, self._function_pattern(kind, list(places), lines))
+        return f"{name}({', '.join([self._input, *places.values()])})"
 
     def _defined(self, about: str, pattern: str) -> str:
         """The name of what is defined by this; the same has been defined once."""
         if pattern not in self._named:
-            name = self._named[pattern] = f"rulec_{about}_{len(self._named)}"
-            self.definitions.append(pattern.format(name))
+            name = self._named[pattern] = self._name(about, len(self._named))
+            self.definitions.append(pattern.replace(NAME, name))
         return self._named[pattern]
+
+    # What differs from language to language
+
+    _input = "in"
+
+    def _name(self, about: str, number: int) -> str:
+        return f"rulec_{about}_{number}"
+
+    def _word(self, name: str) -> str:
+        return f"RULEC_{name}"
+
+    def _call(self, name: str, *arguments: str) -> str:
+        return f"rulec_{name}({', '.join(arguments)})"
+
+    def _whole(self, number: int) -> str:
+        return f"{number}u"
+
+    def _expression(self, name: str, places: Sequence[str]) -> str:
+        return self._fields.expression(name, places)
+
+    def _is_same(self, left: str, right: str) -> str:
+        return f"(({left} == {right}) ? RULEC_YES : RULEC_NO)"
+
+    def _array(self, kind: str, about: str, items: Sequence[float]) -> str:
+        shown: dict[str, Callable[[Any], str]] = {
+            "double": float.hex,
+            "int64_t": "INT64_C({})".format,
+        }
+        content = ", ".join(map(shown.get(kind, "{}u".format), items))
+        return self._defined(about, f"static const {kind} {NAME}[{len(items)}u] = {{{content}}};")
+
+    def _shaped(self, *arrays: str | None, sizes: tuple[int, int]) -> str:
+        parts = [*[array or "NULL" for array in arrays], *map(self._whole, sizes)]
+        name = self._defined("shape", f"static const rulec_shape {NAME} = {{{', '.join(parts)}}};")
+        return f"&{name}"
+
+    def _returning(self, value: str) -> list[str]:
+        return [f"return {value};"]
+
+    def _counting(self, counts: str) -> list[str]:
+        return [
+            "uint32_t found = 0u;",
+            "size_t each;",
+            "for (each = 0u; each < in->n_objects; each++) {",
+            f"    found += {counts};",
+            "}",
+            "return found;",
+        ]
+
+    def _weighing(self, values: Sequence[str], counted: Sequence[bool], shape: str) -> list[str]:
+        size, counting = len(values), any(counted)
+        lines = [f"double low[{size}u];", *[f"double high[{size}u];"] * counting]
+        for number, (value, is_count) in enumerate(zip(values, counted, strict=True)):
+            if is_count:
+                # After all declarations of the block
+                lines.insert(2, f"const uint32_t count{number} = {value};")
+                lines += [
+                    f"low[{number}u] = (double)(count{number} & 0xffffu);",
+                    f"high[{number}u] = (double)(count{number} >> 16);",
+                ]
+            else:
+                lines.append(f"low[{number}u] = {value};")
+                lines += [f"high[{number}u] = low[{number}u];"] * counting
+        high = "high" if counting else "low"
+        return [*lines, f"return rulec_weigh(low, {high}, {shape});"]
+
+    def _function_pattern(self, kind: str, parameters: Sequence[str], lines: Sequence[str]) -> str:
+        given = "".join(f", size_t {name}" for name in parameters)
+        code = "\n    ".join(lines)
+        return f"static {kind} {NAME}(const rulec_input *in{given})\n{{\n    {code}\n}}"
 
 
 def _is_double(number: Fraction) -> bool:

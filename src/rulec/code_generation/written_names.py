@@ -107,3 +107,14 @@ def c_string(text: str) -> str:
     shown = re.sub("(?<=rulec)_|(?<=RULEC)_", r"\\137", shown)
     # An escape is the last of its literal, or followed by another one (MISRA C:2012, 4.1).
     return '"{}"'.format(re.sub(r"(\\[0-7]{3})(?=[^\\])", r'\1" "', shown))
+
+
+def rust_string(text: str) -> str:
+    """A literal of Rust: plain letters, else numbers of characters; U+FFFD for what is none."""
+    shown = "".join(
+        one
+        if one.isascii() and (one.isalnum() or one in " .,-_()")
+        else f"\\u{{{0xFFFD if 0xD800 <= ord(one) < 0xE000 else ord(one):x}}}"
+        for one in text
+    )
+    return f'"{shown}"'

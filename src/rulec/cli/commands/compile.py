@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
+from typing import Literal
 
 import click
 
@@ -42,21 +43,21 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
 )
 @shared.choice_option(
     "--emit",
-    ["automata", "c"],
-    "What is written: automata and the compiled rulebook, or a monitor in C.",
+    ["automata", "c", "rust"],
+    "What is written: automata and the compiled rulebook, or a monitor in C or in Rust.",
 )
 @click.option(
     "--objects",
     metavar="TYPE=N",
     multiple=True,
     callback=_bounds,
-    help="How many objects of a type a monitor in C watches at a time; several times.  [default: "
+    help="How many objects of a type a monitor watches at a time; several times.  [default: "
     "16 of each type that is below no other]",
 )
 @click.option(
     "--prove",
     is_flag=True,
-    help="Compile the monitor in C, hold it against its tables and write a report of that, too.",
+    help="Compile the monitor, hold it against its tables and write a report of that, too.",
 )
 @shared.at_option
 def command(
@@ -74,13 +75,13 @@ def command(
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
     RULEBOOK.json, which every other command takes in place of the source and which runs without
     Spot. With `--emit c` it writes header, source, Makefile and CMakeLists.txt of a monitor in C99
-    instead. Each file appears whole or not at all.
+    instead, with `--emit rust` a crate. Each file appears whole or not at all.
     """
-    if (objects or prove) and emit != "c":
+    if (objects or prove) and emit == "automata":
         name = "--objects" if objects else "--prove"
-        raise click.UsageError(f"{name} is about monitors in C: add `--emit c`")
-    if emit == "c" and len(steps_s) > 1:
-        raise click.UsageError("a monitor in C is for one step: give --step once")
+        raise click.UsageError(f"{name} is about monitors in C and Rust: add `--emit c`")
+    if emit != "automata" and len(steps_s) > 1:
+        raise click.UsageError("a monitor in C or Rust is for one step: give --step once")
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     refuse_standard_output(output)
@@ -89,9 +90,10 @@ def command(
         refuse_overwriting([Output(str(Path(output, Path(rulebook).name)), "")], [rulebook])
     session = open_session(at)
     compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
-    if emit == "c":
-        paths = session.write_monitor(compiled, output, objects, prove=prove)
-    else:
+    if emit == "automata":
         paths = session.write_compiled(compiled, output)
+    else:
+        language: Literal["c", "rust"] = "rust" if emit == "rust" else "c"
+        paths = session.write_monitor(compiled, output, objects, prove=prove, language=language)
     for path in paths:
         print_line(f"wrote {path}")

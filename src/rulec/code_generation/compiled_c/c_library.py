@@ -39,7 +39,21 @@ def compiler() -> list[str]:
     return command
 
 
-def _first_line_of(command: list[str]) -> str:
+def run_compiler(command: list[str], folder: Path) -> str:
+    """Run a compiler in a folder; its command line. Raises RulecError R0752."""
+    line = shlex.join(command)
+    try:
+        done = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, timeout=300, check=False
+        )
+    except (OSError, subprocess.TimeoutExpired) as problem:
+        raise compiler_failed(line, str(problem)) from None
+    if done.returncode:
+        raise compiler_failed(line, done.stderr)
+    return line
+
+
+def first_line_of(command: list[str]) -> str:
     """What a program says of itself; empty if it says nothing."""
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
@@ -55,6 +69,8 @@ class CLibrary:
 
     Raises RulecError R0751 if there is no compiler, R0752 if it fails.
     """
+
+    language = "C"
 
     def __init__(
         self, layout: MonitorLayout, source: str | None = None, *, optimised: bool = True
@@ -75,20 +91,10 @@ class CLibrary:
         text = (c_source(layout) if source is None else source) + harness
         (folder / f"{name}.h").write_text(c_header(layout), "utf-8")
         (folder / f"{name}.c").write_text(text, "utf-8")
-        library = folder / f"{name}.so"
-        flags = [*FLAGS, self._level, "-fPIC", "-shared", f"{name}.c", "-o", library.name]
-        command = [*compiler(), *flags]
-        self.command = shlex.join(command)
-        self.compiler_version = _first_line_of([*compiler(), "--version"])
-        try:
-            done = subprocess.run(
-                command, cwd=folder, capture_output=True, text=True, timeout=300, check=False
-            )
-        except (OSError, subprocess.TimeoutExpired) as problem:
-            raise compiler_failed(shlex.join(command), str(problem)) from None
-        if done.returncode:
-            raise compiler_failed(shlex.join(command), done.stderr)
-        return library
+        flags = [*FLAGS, self._level, "-fPIC", "-shared", f"{name}.c", "-o", f"{name}.so"]
+        self.compiler_version = first_line_of([*compiler(), "--version"])
+        self.command = run_compiler([*compiler(), *flags], folder)
+        return folder / f"{name}.so"
 
     def call(self, name: str) -> Any:
         """A function of the library."""

@@ -20,7 +20,12 @@ import numpy as np
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.code_generation.code_messages import differs
 from rulec.code_generation.compiled_c.c_library import CLibrary, CMonitor, CSaid
-from rulec.code_generation.monitor_layout import VERDICTS, MonitorLayout, RuleLayout
+from rulec.code_generation.monitor_layout import (
+    MOST_VARIABLES,
+    VERDICTS,
+    MonitorLayout,
+    RuleLayout,
+)
 from rulec.code_generation.proof.probing_inputs import ReadingProbe, drives, probes, weighs
 from rulec.diagnostics import RulecError
 from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
@@ -43,18 +48,18 @@ class ProofPart:
     differs: tuple[str, ...]
 
 
-def proof_report(layout: MonitorLayout, n_states: int = 200) -> str:
+def proof_report(library: CLibrary, n_states: int = 200) -> str:
     """What has been compared of a monitor, and how often, line by line.
 
-    Raises RulecError R0751 or R0752 if it cannot be compiled, R0753 if something differs.
+    Raises RulecError R0753 if something differs.
     """
-    library = CLibrary(layout)
+    layout = library.layout
     parts = list(proof_of(library, n_states))
     if wrong := [text for part in parts for text in part.differs]:
         raise differs(wrong)
     book = layout.rulebook
     lines = [
-        f"monitor in C of {book.name}, by rulec {book.rulec}",
+        f"monitor in {library.language} of {book.name}, by rulec {book.rulec}",
         *[f"source: {source.name}, SHA-256 {source.sha256}" for source in book.sources],
         f"compiled by: {library.command}, {library.compiler_version}",
         *[f"{part.n:>9} {part.what}: 0 differ" for part in parts],
@@ -154,7 +159,7 @@ def _input(library: CLibrary, probe: ReadingProbe) -> tuple[ctypes.Structure, An
     given = library.input_of(probe.state, probe.objects, {})
     names = list(probe.objects)
     who = [names.index(item) for item in probe.binding]
-    return given, (ctypes.c_size_t * max(1, len(who)))(*who)
+    return given, (ctypes.c_size_t * MOST_VARIABLES)(*who)
 
 
 def _runs(library: CLibrary, n_states: int, share_unknown: float) -> Iterator[str]:

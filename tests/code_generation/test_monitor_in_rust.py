@@ -1,0 +1,140 @@
+"""The same monitor as a crate of Rust: the same proof, and what cargo says."""
+
+import re
+import shutil
+import subprocess
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import Phase, given, settings
+
+import rulec
+from rulec.cli.main import main
+from rulec.code_generation.compiled_c.rust_library import RustLibrary
+from rulec.code_generation.monitor_layout import monitor_layout
+from rulec.code_generation.proof.monitor_proof import proof_of
+from rulec.code_generation.rust_files import crate_texts, rust_source
+from rulec.code_generation.rust_reading_code import RustReadingCode
+from rulec.code_generation.written_names import rust_string
+from rulec.rulebook.rulebook_model import SourceFile
+from support.builders.rulebooks import compile_here
+from support.generators.random_rulebooks import rulebook
+from support.generators.seeds import seeds
+
+needs_rust = pytest.mark.skipif(shutil.which("rustc") is None, reason="there is no Rust compiler")
+needs_cargo = pytest.mark.skipif(shutil.which("cargo") is None, reason="there is no cargo")
+PAGE = Path(__file__).parents[2] / "docs" / "onboard.md"
+HOSTILE = [
+    "*/ fn main() { panic!() } /*",
+    "ends in a backslash \\",
+    "trigraph ??/",
+    "lines\nbroken\r\nand\u2028again\u0085and\x0bso",
+    "turned \u202e round \u2066 \u200f \u05d0",
+    '"# ; panic!("',
+    "zero\0and\x1b[31m",
+    "#![allow(unsafe_code)] // rulec_step",
+    "lone \udcff",
+]
+
+
+def layout_of(compiled):
+    return monitor_layout(compiled, {}, RustReadingCode)
+
+
+@pytest.fixture(scope="module")
+def esterle():
+    return rulec.compile_rulebook("esterle2019", step_s=1)
+
+
+def differs(library, n_states):
+    return [text for part in proof_of(library, n_states) for text in part.differs]
+
+
+@needs_rust
+@given(seeds)
+@settings(phases=[Phase.generate], max_examples=max(1, settings().max_examples // 100))
+def test_random_rulebooks_are_proved(chance):
+    step_s = Fraction(1)
+    compiled = compile_here(rulebook(chance, step_s), step_s)
+    assert differs(RustLibrary(layout_of(compiled), optimised=False), 60) == []
+
+
+@needs_rust
+@pytest.mark.long
+@pytest.mark.parametrize("book", ["de", "gb", "un-r157", "us-ca"])
+def test_shipped_rulebooks_are_proved(book):
+    compiled = rulec.compile_rulebook(book, step_s=1)
+    assert differs(RustLibrary(layout_of(compiled)), 60) == []
+
+
+@needs_rust
+def test_a_planted_fault_is_found(esterle):
+    layout = layout_of(esterle)
+    source = rust_source(layout)
+    faulty, n = re.subn(r"(entries: &\[)(\d+)", lambda m: f"{m[1]}{int(m[2]) ^ 1}", source, count=1)
+    assert n == 1
+    assert differs(RustLibrary(layout, faulty, optimised=False), 20)
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_a_literal_has_its_text(text):
+    written = rust_string(text)
+    assert re.fullmatch(r'"([ .,\-_()a-zA-Z0-9]|\\u\{[0-9a-f]+\})*"', written)
+    found = re.sub(r"\\u\{([0-9a-f]+)\}", lambda x: chr(int(x[1], 16)), written[1:-1])
+    assert found == text.encode("utf-8", "replace").decode() or "\udcff" in text
+
+
+def test_a_hostile_rulebook_has_the_same_code(esterle):
+    evil = " ".join(HOSTILE)
+    rules = tuple(replace(rule, cite=evil, says=evil) for rule in esterle.rules)
+    sources = (SourceFile(evil, evil),) * len(esterle.sources)
+    book = replace(esterle, rules=rules, title=evil, law=evil, as_of=evil, sources=sources)
+    codes = []
+    for one in (esterle, book):
+        source = re.sub(r"//[^\n]*", "", rust_source(layout_of(one)))
+        codes.append(re.sub(r"\s+", " ", re.sub(r'"[^"]*"', '""', source)))
+    assert codes[0] == codes[1]
+
+
+@needs_rust
+def test_the_page_leads_to_a_monitor_in_rust(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["compile", "esterle2019", "--emit", "rust", "-o", "esterle2019"]) == 0
+    page = PAGE.read_text(encoding="utf-8")
+    (program,) = re.findall(r"^```rust\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    Path("watch.rs").write_text(program, encoding="utf-8")
+    crate = ["--crate-type", "rlib", "--crate-name", "esterle2019", "esterle2019/src/lib.rs"]
+    for arguments in (crate, ["watch.rs", "--extern", "esterle2019=libesterle2019.rlib"]):
+        subprocess.run(["rustc", "--edition", "2021", "-D", "warnings", *arguments], check=True)
+    done = subprocess.run(["./watch"], check=True, capture_output=True, text=True)
+    assert done.stdout.splitlines() == ["false", "false", "true"]
+
+
+@needs_cargo
+@pytest.mark.long
+def test_cargo_has_nothing_to_say(tmp_path):
+    for book in ("esterle2019", "de"):
+        rulec.write_monitor(book, tmp_path / book, language="rust")
+        clippy = ["clippy", "--offline", "--quiet", "--", "-D", "warnings"]
+        for arguments in (["test", "--offline", "--quiet"], clippy):
+            done = subprocess.run(["cargo", *arguments], cwd=tmp_path / book, capture_output=True)
+            assert done.returncode == 0, done.stderr.decode()
+
+
+def test_the_report_stands_beside_it(tmp_path):
+    if shutil.which("rustc") is None:
+        pytest.skip("there is no Rust compiler")
+    arguments = ["compile", "esterle2019", "--emit", "rust", "--prove", "-o", str(tmp_path)]
+    assert main(arguments) == 0
+    report = (tmp_path / "esterle2019_proof.txt").read_text()
+    assert report.startswith("monitor in Rust of esterle2019")
+    assert report.count(": 0 differ\n") == 5
+    assert (tmp_path / "src" / "lib.rs").exists()
+
+
+def test_a_crate_needs_nothing(esterle):
+    texts = crate_texts(layout_of(esterle))
+    assert "dependencies" not in texts["Cargo.toml"]
+    assert "#![no_std]\n#![forbid(unsafe_code)]\n" in texts["src/lib.rs"]
