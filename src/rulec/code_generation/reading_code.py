@@ -86,18 +86,16 @@ class ReadingCode:
             left, right = places[same.left], places[same.right]
             return self._word("YES") if left == right else self._is_same(left, right)
 
-        return fold(
-            formula,
-            Algebra[str](
-                proposition=lambda proposition: self._proposition(proposition, places),
-                constant=lambda value: self._word("YES" if value else "NO"),
-                identity=identity,
-                negation=partial(self._call, "not"),
-                conjunction=partial(self._call, "and"),
-                disjunction=partial(self._call, "or"),
-                equivalence=partial(self._call, "same"),
-            ),
+        algebra: Algebra[str] = Algebra(
+            proposition=lambda proposition: self._proposition(proposition, places),
+            constant=lambda value: self._word("YES" if value else "NO"),
+            identity=identity,
+            negation=partial(self._call, "not"),
+            conjunction=partial(self._call, "and"),
+            disjunction=partial(self._call, "or"),
+            equivalence=partial(self._call, "same"),
         )
+        return fold(formula, algebra)
 
     def _proposition(self, proposition: ltl.Proposition, places: Places) -> str:
         if isinstance(proposition, ltl.Atom):
