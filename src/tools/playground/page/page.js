@@ -94,7 +94,7 @@ function outdated() {
   const panel = byId(tab);
   if (tab === "compare") return;
   panel.querySelector(".summary").textContent =
-    isSound === false ? "Once there is no error in the rulebook." : "…";
+    isSound === false ? "This waits for a rulebook without errors." : "…";
   panel.querySelector(".result").replaceChildren();
   delete asked[tab];
 }
