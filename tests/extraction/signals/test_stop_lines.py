@@ -58,6 +58,21 @@ def test_a_line_before_the_lanelet_s_end(xs, crosses):
     assert found.world["crosses_stop_line"].tolist() == crosses
 
 
+@pytest.mark.parametrize(
+    ("xs", "unknown"),
+    [
+        ((92, 94, 96, 98.2), True),  # its front is at 100.2 m when the drive ends
+        ((92, 94, 96, 98), False),
+        ((98.2, 98.2, 98.2, 98.2), False),  # it stands
+    ],
+)
+def test_a_drive_that_ends_where_the_line_may_be(xs, unknown):
+    """It is somewhere between 100 and 100.3 m."""
+    found = junction_signals(context(road(None, ["STOP"]), *xs))
+    assert not found.world["crosses_stop_line"].any()
+    assert found.unknown["crosses_stop_line"].tolist() == [False, False, False, unknown]
+
+
 def test_signs_hold_up_to_the_drawn_line():
     # By where the front was one state before, so that they hold while it crosses
     signs = ["STOP", "GREEN_ARROW", "NO_TURN_ON_RED"]

@@ -71,7 +71,8 @@ def _turns(context: DriveContext) -> SignalColumns:
 def _stop_signs(context: DriveContext) -> SignalColumns:
     if not ("STOP" in context.recording.complete or STOP_SIGNS & map_contents(context).signs):
         return SignalColumns()
-    return SignalColumns({"crosses_stop_line": _crosses_stop_line(context)})
+    crosses, may_cross = _crosses_stop_line(context)
+    return SignalColumns({"crosses_stop_line": crosses}, unknown={"crosses_stop_line": may_cross})
 
 
 def _traffic_lights(context: DriveContext) -> SignalColumns:
@@ -167,16 +168,22 @@ def _passes(front: Floats, line: float) -> Flags:
     return np.append(False, beyond[1:] & ~beyond[:-1])
 
 
-def _crosses_stop_line(context: DriveContext) -> Flags:
-    """Flags of ego crossing the line of a lanelet with a stop sign."""
-    crosses, front = np.zeros(context.states, dtype=bool), context.ego_extents.s_max[0]
+def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of ego crossing the line of a lanelet with a stop sign, and of where it may have.
+
+    It may if its drive ends while it moves between the places where the line may be.
+    """
+    crosses, may_cross = np.zeros((2, context.states), dtype=bool)
+    front, moves = context.ego_extents.s_max[0], context.ego.speed[0] * KMH
     for piece in range(len(context.road.rows)):
         if any(row and STOP_SIGNS & row.signs for row in context.road.rows[piece]):
             for lane in distinct(context.ego_lane).tolist():
                 if STOP_SIGNS & context.road.lanelet(piece, lane).signs:
-                    _, line = stop_line(context, piece, lane)
-                    crosses |= _passes(front, line) & (context.ego_lane == lane)
-    return crosses
+                    first, last = stop_line(context, piece, lane)
+                    crosses |= _passes(front, last) & (context.ego_lane == lane)
+                    ends_on_it = first < front[-1] <= last and context.ego_lane[-1] == lane
+                    may_cross[-1] |= ends_on_it and moves[-1] >= context.thresholds.standing_kmh
+    return crosses, may_cross
 
 
 def turn_at(context: DriveContext, start: float, end: float) -> str:
