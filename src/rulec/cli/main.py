@@ -31,6 +31,7 @@ VERBS = {
     "fmt": "Format rulebooks and vocabularies.",
     "formats": "List the formats of recorded traffic and of maps, and what each can tell.",
     "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",
+    "lsp": "Answer an editor: diagnostics, completion, renaming and the like.",
     "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
     "monitor": "Judge a running trace by a rulebook, state by state.",
     "new": "Write a rulebook to start from.",

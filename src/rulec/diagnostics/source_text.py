@@ -45,9 +45,8 @@ class Source:
     def _lines(self) -> list[int]:
         if not self._line_starts:
             starts = [0]
-            for offset, character in enumerate(self.text):
-                if character == "\n":
-                    starts.append(offset + 1)
+            while (end := self.text.find("\n", starts[-1])) >= 0:
+                starts.append(end + 1)
             self._line_starts.extend(starts)
         return self._line_starts
 

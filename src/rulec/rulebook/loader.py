@@ -110,7 +110,7 @@ def parse_all(file: RulebookFile) -> Trees:
     if parsed.kind == "vocabulary" and parsed.name is not None:
         expected = "expected `rulebook NAME`"
         raise RulecError(vocabulary_for_rulebook(parsed.name, expected=expected))
-    return _with_bases(file, parsed, mistakes)
+    return trees_of(file, parsed, mistakes)
 
 
 def with_book(trees: Trees, source: Source, search_path: Sequence[Path] = ()) -> Trees:
@@ -175,14 +175,15 @@ def diagnose(
         file, mistakes = parse(source)
         if file.kind == "rulebook":
             text = RulebookFile(source, data, path, tuple(search_path))
-            return _resolved(_with_bases(text, file, mistakes), at)[1]
+            return _resolved(trees_of(text, file, mistakes), at)[1]
         _, meanings = resolve_vocabulary(file)
     except RulecError as error:
         return Diagnosis(error.diagnostics)
-    return Diagnosis(_in_order(name, [*mistakes, *meanings]))
+    return Diagnosis(in_order(name, [*mistakes, *meanings]))
 
 
-def _with_bases(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagnostic]) -> Trees:
+def trees_of(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagnostic]) -> Trees:
+    """The trees of a rulebook that has been parsed, and of its bases and vocabularies."""
     files = ReferencedFiles(file.search_path)
     itself = Book(parsed, file.path)
     books = (*files.bases(itself), itself)
@@ -197,17 +198,22 @@ def _with_bases(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagno
     )
 
 
-def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | None, Diagnosis]:
+def day_of(trees: Trees, at: str = "") -> str:
+    """The day (ISO) whose law a rulebook is: what is asked for, that of its law, or today."""
     law = trees.books[-1].law
+    return at or (law.as_of if law else "") or date.today().isoformat()  # noqa: DTZ011
+
+
+def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | None, Diagnosis]:
     rulebook, meanings = resolve(
         trees.books,
         trees.vocabularies,
         sources=trees.sources,
         opaque=trees.dependencies is None,
-        at=at or (law.as_of if law else "") or date.today().isoformat(),  # noqa: DTZ011
+        at=day_of(trees, at),
         traffic=traffic,
     )
-    findings = _in_order(trees.name, [*trees.mistakes, *meanings])
+    findings = in_order(trees.name, [*trees.mistakes, *meanings])
     diagnosis = Diagnosis(findings, trees.dependencies)
     if rulebook is None or any(finding.severity == "error" for finding in findings):
         return None, diagnosis
@@ -221,7 +227,9 @@ def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
     return list(first.values())
 
 
-def _in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+def in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Mistakes by their places, those in the file ``main`` first."""
+
     def rank(diagnostic: Diagnostic) -> tuple[bool, str, tuple[int, int]]:
         place = diagnostic.place or SourceLocation("")
         return place.file != main, place.file, place.start

@@ -2,23 +2,111 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.rulebook.elaborate import rule_messages
 from rulec.rulebook.elaborate.constant_checks import check_constants_and_macros
 from rulec.rulebook.names.constant_and_presumed import mark_constant_and_presumed
 from rulec.rulebook.names.referenced_names import names_used
-from rulec.rulebook.names.symbol_table import symbol_table
+from rulec.rulebook.names.symbol_table import SymbolTable, symbol_table
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.overlay.priorities import pre_order
-from rulec.rulebook.overlay.rulebook_overlay import Overlay, in_force, overlay, own_law
-from rulec.rulebook.rulebook_model import Provision, Rule, Rulebook, SourceFile, Topic, Traffic
+from rulec.rulebook.overlay.rulebook_overlay import Overlay, RuleEntry, in_force, overlay, own_law
+from rulec.rulebook.rulebook_model import (
+    Axiom,
+    Provision,
+    Rule,
+    Rulebook,
+    SourceFile,
+    Topic,
+    Traffic,
+)
 from rulec.rulebook.rules.axioms import axioms_of, contradicted
 from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.rulebook.rules.rule_elaboration import translate_rule
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class BookNames:
+    """What the formulas of a rulebook can speak of on a day, and what is wrong with that.
+
+    ``known_levels`` are the levels that a rule may name; None if they are not known for sure.
+    """
+
+    symbols: SymbolTable
+    constants: ConstantsAndMacros
+    levels: tuple[str, ...]
+    priorities: frozenset[tuple[str, str]]
+    known_levels: tuple[str, ...] | None
+    axioms: tuple[Axiom, ...]
+    vocabulary: Vocabulary
+    mistakes: tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TranslatedRule:
+    """A rule as meant, None if it has mistakes, which are then among its ``mistakes``.
+
+    ``contradictions`` are the states of its examples that facts rule out.
+    """
+
+    rule: Rule | None
+    mistakes: tuple[Diagnostic, ...]
+    contradictions: tuple[Diagnostic, ...] = ()
+
+
+Translate = Callable[[RuleEntry, BookNames, bool], TranslatedRule]
+"""From a rule's entry, what it can speak of, and whether it is the rulebook's own law."""
+
+
+def translated(entry: RuleEntry, names: BookNames, confirmed: bool) -> TranslatedRule:
+    """A rule as meant, with everything that is wrong with it."""
+    rule, mistakes = translate_rule(
+        entry, names.symbols, names.constants, names.known_levels, confirmed=confirmed
+    )
+    if rule is None or names.symbols.mistakes:
+        return TranslatedRule(rule, tuple(mistakes))
+    against = contradicted(rule, names.axioms, names.vocabulary)
+    return TranslatedRule(rule, tuple(mistakes), tuple(against))
+
+
+def names_of(
+    books: Sequence[tree.File],
+    vocabularies: Sequence[tree.File] = (),
+    *,
+    opaque: bool = False,
+    at: str,
+    traffic: Traffic = "",
+) -> BookNames:
+    """What the formulas of a rulebook can speak of; the arguments are those of ``resolve``."""
+    file, files = books[-1], (*vocabularies, *books)
+    symbols = symbol_table(files, opaque=opaque)
+    mark_constant_and_presumed(symbols, files)
+    unsure = opaque or not all(book.complete for book in books)
+    laid = overlay(books, {**symbols.type_spans, **symbols.spans}, unsure=unsure)
+    sides: list[Traffic] = ["", *(book.traffic.side for book in books if book.traffic)]
+    constants = ConstantsAndMacros(laid, at, traffic or sides[-1])
+    levels, priorities, mistakes = pre_order([line for book in books for line in book.priorities])
+    known_levels = None if unsure else (*levels, *_levels_of_broken_lines(books))
+    mistakes = [*symbols.mistakes, *laid.mistakes, *mistakes]
+    mistakes += check_constants_and_macros(symbols, constants)
+    axioms, wrong_facts = axioms_of(files, symbols, constants)
+    mistakes += wrong_facts
+    vocabulary = symbols.vocabulary(file.name.text if file.name else "")
+    return BookNames(
+        symbols,
+        constants,
+        levels=levels,
+        priorities=priorities,
+        known_levels=known_levels,
+        axioms=axioms,
+        vocabulary=with_implied(vocabulary, [axiom.formula for axiom in axioms]),
+        mistakes=tuple(mistakes),
+    )
 
 
 def resolve(
@@ -42,38 +130,37 @@ def resolve(
         at: the day (ISO) whose law it is.
         traffic: the side on which traffic drives, whatever the trees say; if empty, what they say.
     """
-    file, files = books[-1], (*vocabularies, *books)
-    symbols = symbol_table(files, opaque=opaque)
-    mark_constant_and_presumed(symbols, files)
-    unsure = opaque or not all(book.complete for book in books)
-    laid = overlay(books, {**symbols.type_spans, **symbols.spans}, unsure=unsure)
-    sides: list[Traffic] = ["", *(book.traffic.side for book in books if book.traffic)]
-    constants = ConstantsAndMacros(laid, at, traffic or sides[-1])
-    levels, priorities, mistakes = pre_order([line for book in books for line in book.priorities])
-    known_levels = None if unsure else (*levels, *_levels_of_broken_lines(books))
-    mistakes = [*symbols.mistakes, *laid.mistakes, *mistakes]
-    mistakes += check_constants_and_macros(symbols, constants)
-    axioms, wrong_facts = axioms_of(files, symbols, constants)
-    mistakes += wrong_facts
-    rules: list[Rule | None] = []
+    names = names_of(books, vocabularies, opaque=opaque, at=at, traffic=traffic)
+    whole = not opaque and all(map(is_whole, (*vocabularies, *books)))
+    return with_rules(books, names, sources, whole=whole)
+
+
+def with_rules(
+    books: Sequence[tree.File],
+    names: BookNames,
+    sources: tuple[SourceFile, ...] = (),
+    translate: Translate = translated,
+    *,
+    whole: bool,
+) -> tuple[Rulebook | None, tuple[Diagnostic, ...]]:
+    """The rulebook of trees whose names are known, and everything that is wrong.
+
+    ``whole``: all files could be read, with all that is in them.
+    """
+    file, laid, at = books[-1], names.constants.overlay, names.constants.at
+    mistakes = list(names.mistakes)
     own = own_law(books)
+    rules: list[Rule | None] = []
+    contradictions: list[Diagnostic] = []
     for entry in laid.rules.values():
-        confirmed = any(entry.law is book for book in own)
-        rule, diagnostics = translate_rule(
-            entry, symbols, constants, known_levels, confirmed=confirmed
-        )
-        mistakes += diagnostics
+        one = translate(entry, names, any(entry.law is book for book in own))
+        mistakes += one.mistakes
         if in_force(entry.item.in_force, at):
-            rules.append(rule)
+            rules.append(one.rule)
+            contradictions += one.contradictions
     good = [rule for rule in rules if rule is not None]
-    vocabulary = symbols.vocabulary(file.name.text if file.name else "")
-    vocabulary = with_implied(vocabulary, [axiom.formula for axiom in axioms])
-    if not symbols.mistakes:
-        for rule in good:
-            mistakes += contradicted(rule, axioms, vocabulary)
-    mistakes = _once(mistakes)
+    mistakes = _once([*mistakes, *contradictions])
     wrong = any(mistake.severity == "error" for mistake in mistakes)
-    whole = not opaque and all(map(_is_whole, files))
     # A rulebook without rules is there to be extended.
     if whole and not wrong and laid.rules:
         mistakes += _unused(books)
@@ -82,20 +169,20 @@ def resolve(
     semantics = [book.semantics.kind for book in books if book.semantics]
     rulebook = Rulebook(
         name=file.name.text,
-        vocabulary=vocabulary,
+        vocabulary=names.vocabulary,
         rules=tuple(good),
         title=file.title.text.value if file.title else "",
         law=file.law.text.value if file.law else "",
         as_of=file.law.as_of if file.law else "",
         sources=sources,
         semantics=semantics[-1] if semantics else "stutter",
-        traffic=constants.traffic,
+        traffic=names.constants.traffic,
         extends=tuple(base.name.text for base in reversed(books[:-1]) if base.name),
-        levels=levels,
-        priorities=priorities,
+        levels=names.levels,
+        priorities=names.priorities,
         remarks=tuple(laid.remarks),
         at=at,
-        axioms=axioms,
+        axioms=names.axioms,
         topics=tuple(Topic(name, entry.title.value) for name, entry in laid.topics.items()),
         provisions=tuple(
             Provision(
@@ -139,7 +226,8 @@ def _once(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
     return list(first.values())
 
 
-def _is_whole(file: tree.File) -> bool:
+def is_whole(file: tree.File) -> bool:
+    """Tell whether all of a file could be read."""
     broken = any(
         isinstance(item, tree.BrokenItem) or (isinstance(item, tree.RuleItem) and not item.complete)
         for item in file.items

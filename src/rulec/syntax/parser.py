@@ -27,7 +27,7 @@ MAX_PIECE = 10_000
 _BEHIND_NAME = ("is", "in", "default", "(", "=", ":")
 _NAMING_PROVISIONS = ("option", "param", "define")
 
-_NOTHING = tree.File("rulebook", None, complete=False)
+NOTHING_READ = tree.File("rulebook", None, complete=False)
 """The tree of a file that cannot be read at all."""
 
 _Built = TypeVar("_Built")
@@ -43,10 +43,10 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
         own = checked(source)
         if is_foreign(own.text):
             # Another program's file, or a secret behind a link: nothing of it is repeated.
-            return _NOTHING, (structure.no_beginning(own),)
+            return NOTHING_READ, (structure.no_beginning(own),)
         tokens = scan(own)
     except RulecError as error:
-        return _NOTHING, error.diagnostics
+        return NOTHING_READ, error.diagnostics
     if not tokens:
         empty = structure.EMPTY_FILE.at(
             Span(source, 0, 0),
@@ -54,17 +54,14 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
             expected=structure.EXPECTED_BEGINNING,
             help=structure.HOW_TO_BEGIN,
         )
-        return _NOTHING, (empty,)
-    reader = _Reader(source, tokens)
+        return NOTHING_READ, (empty,)
+    reader = PieceReader(source, tokens)
     splitter = FileSplitter(source, tokens)
-    parts = [
-        reader.rule(part) if isinstance(part, RulePieces) else reader.item(part)
-        for part in splitter.split()
-    ]
+    parts = [reader.part(part) for part in splitter.split()]
     file, order_mistakes = assemble_file(source, parts)
     hidden = hidden_meaning(source, tokens)
     mistakes = (*splitter.mistakes, *reader.mistakes, *order_mistakes, *hidden)
-    return file, tuple(sorted(mistakes, key=_position))
+    return file, tuple(sorted(mistakes, key=by_place))
 
 
 def parse_head(source: Source) -> tree.File:
@@ -73,13 +70,13 @@ def parse_head(source: Source) -> tree.File:
     Raises RulecError: the file is no text.
     """
     tokens = scan(checked(source))
-    reader = _Reader(source, tokens)
+    reader = PieceReader(source, tokens)
     lines = [
         reader.item(piece)
         for piece in FileSplitter(source, tokens).split()
         if isinstance(piece, Piece) and tokens[piece.first].text in HEADER_WORDS
     ]
-    return assemble_file(source, lines)[0] if lines else _NOTHING
+    return assemble_file(source, lines)[0] if lines else NOTHING_READ
 
 
 def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
@@ -89,14 +86,15 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
     """
     source = checked(Source(name, text))
     tokens = scan(source)
-    reader = _Reader(source, tokens)
+    reader = PieceReader(source, tokens)
     formula = reader.read("formula", Piece("formula", 0, len(tokens)), formulas.formula)
     if formula is None:
         raise RulecError(reader.mistakes)
     return formula
 
 
-def _position(diagnostic: Diagnostic) -> tuple[int, int]:
+def by_place(diagnostic: Diagnostic) -> tuple[int, int]:
+    """A sort key: where something is wrong."""
     return (0, 0) if diagnostic.place is None else diagnostic.place.start
 
 
@@ -108,7 +106,7 @@ def _messages() -> ModuleType:
 
 
 @dataclass(frozen=True, slots=True)
-class _Reader:
+class PieceReader:
     """Parser of pieces; None stands for one with a reported mistake."""
 
     source: Source
@@ -145,7 +143,12 @@ class _Reader:
         token = self.tokens[piece.first]
         return Span(self.source, token.start, token.end)
 
+    def part(self, part: Piece | RulePieces) -> Part:
+        """A header line, an item or a rule."""
+        return self.rule(part) if isinstance(part, RulePieces) else self.item(part)
+
     def item(self, piece: Piece) -> Part:
+        """A header line, a declaration or the like; broken if it has a mistake."""
         return self.read("item", piece, items.item) or self._broken(piece)
 
     def _broken(self, piece: Piece) -> tree.BrokenItem:
@@ -158,6 +161,7 @@ class _Reader:
         return tree.BrokenItem(frozenset(names), first, nameless, span=span)
 
     def rule(self, pieces: RulePieces) -> tree.RuleItem | tree.BrokenItem:
+        """A rule; broken if its head has a mistake."""
         span = span_of(self.source, self.tokens, pieces)
         head_span = span_of(self.source, self.tokens, pieces.head)
         head = self.read("rule_head", pieces.head, items.rule_head)

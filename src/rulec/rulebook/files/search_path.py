@@ -12,6 +12,7 @@ from typing import Literal
 from rulec.diagnostics import Label, RulecError, Span, did_you_mean, named
 from rulec.files import MAX_SOURCE_BYTES, opened
 from rulec.resources import rulebooks_folder
+from rulec.rulebook.files.open_documents import open_text
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.files.source_walk import SUFFIX, rules_files
 from rulec.source_detection import LEAD_BYTES, beginning_of, first_word_at
@@ -151,6 +152,9 @@ def read_bytes(path: Path, use: Span | None = None) -> bytes:
     ``use`` is the line that asks for the file.
     """
     labels = (Label(use.place, "it is used here"),) if use else ()
+    shown = open_text(path)
+    if shown is not None:
+        return shown
     refuse_no_source(path, labels)
     with opened(path, labels=labels) as stream:
         return stream.read(MAX_SOURCE_BYTES + 1)
@@ -165,14 +169,15 @@ def _vocabulary_folders(user: Path | None, search_path: Sequence[Path]) -> list[
 
 
 def _is_file(path: Path) -> bool:
-    return os.path.isfile(path)  # noqa: PTH113 - Path raises on a null character
+    # A file that an editor has not saved yet is there, too.
+    return os.path.isfile(path) or open_text(path) is not None  # noqa: PTH113 - Path raises on a null character
 
 
 def is_same_file(path: Path, other: Path) -> bool:
     """Tell whether two paths lead to the same file."""
     with suppress(OSError):
         return path.samefile(other)
-    return False
+    return open_text(path) is not None and os.path.realpath(path) == os.path.realpath(other)
 
 
 def _lead(path: Path) -> str:

@@ -61,7 +61,8 @@ def looks_like(place: Span, other: str, first: Span | None) -> Diagnostic:
     )
 
 
-_SUSPECT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+HIDES = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+"""Characters that hide or reorder what is around them, if they stand in a comment."""
 MOST = 20
 """So many places of a kind are named."""
 
@@ -69,7 +70,7 @@ MOST = 20
 def hidden_meaning(source: Source, tokens: Sequence[Token]) -> list[Diagnostic]:
     """Mistakes for what drives or reorders a line of a comment, warnings for names alike."""
     found = []
-    if _SUSPECT.search(source.text):
+    if HIDES.search(source.text):
         found += [hidden_in_comment(place) for place in _hidden(source, tokens)]
     if not source.text.isascii():
         found += _alike(source, tokens)

@@ -1,0 +1,25 @@
+"""``rulec lsp``: the language server, for editors."""
+
+from __future__ import annotations
+
+import click
+
+
+@click.command()
+@click.option("--stdio", is_flag=True, hidden=True)
+def command(*, stdio: bool) -> None:  # noqa: ARG001 - what editors say, and what it does anyway
+    """Answer an editor: diagnostics, completion, renaming and the like.
+
+    Editors start it themselves and speak the Language Server Protocol with it, over standard input
+    and output; docs/editors.md says how each is told. Takes `pip install 'rulec[lsp]'`.
+    """
+    # The server and the protocol's types, 200 ms: not for --help.
+    from rulec.language_server.language_server_messages import no_pygls
+
+    try:
+        from rulec.language_server.server import serve
+    except ModuleNotFoundError as problem:
+        if (problem.name or "").partition(".")[0] not in ("pygls", "lsprotocol", "cattrs"):
+            raise
+        raise no_pygls() from None
+    serve()

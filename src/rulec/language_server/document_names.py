@@ -1,0 +1,68 @@
+"""The names of a checked document, and where in a text each of them stands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rulec.diagnostics import Span
+from rulec.language_server.editor_workspace import CheckedDocument
+from rulec.language_server.name_occurrences import NamesOfChain, Occurrence, occurrences
+from rulec.syntax import tree
+
+
+@dataclass(frozen=True, slots=True)
+class DocumentNames:
+    """A checked document and everything that is named in its chain of rulebooks."""
+
+    checked: CheckedDocument
+    chain: NamesOfChain
+
+    @property
+    def file(self) -> tree.File:
+        """The tree of the document itself."""
+        return self.chain.books[-1]
+
+    def bounds(self, span: Span) -> tuple[int, int]:
+        """Where a span stands: characters of the document's text, or of its own file's."""
+        if span.source is self.checked.parsed.source:
+            start = self.checked.parsed.offset(span.start)
+            return start, start + span.end - span.start
+        return span.start, span.end
+
+    def text_of(self, span: Span) -> str:
+        """The text of the file in which a span stands."""
+        own = span.source is self.checked.parsed.source
+        return self.checked.text if own else span.source.text
+
+    def all(self) -> Iterator[Occurrence]:
+        """All names of the document that mean something."""
+        return occurrences(self.file, self.chain)
+
+    def at(self, offset: int) -> Occurrence | None:
+        """The name with a character, or that ends before it; the narrowest if there are several."""
+        here = [
+            (end - start, number, one)
+            for number, one in enumerate(self.all())
+            for start, end in [self.bounds(one.span)]
+            if start <= offset <= end
+        ]
+        return min(here)[2] if here else None
+
+
+def names_in_document(checked: CheckedDocument) -> DocumentNames | None:
+    """The names of a document; None if it could not be read at all."""
+    resolved = checked.resolved
+    if resolved is None:
+        return None
+    trees = resolved.trees
+    return DocumentNames(checked, NamesOfChain(resolved.names, trees.books, trees.vocabularies))
+
+
+def item_at(names: DocumentNames, offset: int) -> tree.Item | None:
+    """The item of the document with a character."""
+    for item in names.file.items:
+        start, end = names.bounds(item.span)
+        if start <= offset <= end:
+            return item
+    return None

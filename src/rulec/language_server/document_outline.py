@@ -1,0 +1,115 @@
+"""The parts of a document: its outline, and what can be folded away."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lsprotocol import types as lsp
+
+from rulec.diagnostics import Span
+from rulec.language_server.document_names import DocumentNames
+from rulec.language_server.text_positions import TextPositions
+from rulec.syntax import tree
+from rulec.syntax.tree_printer import print_formula
+
+_KINDS = {
+    tree.RuleItem: lsp.SymbolKind.Method,
+    tree.DefineItem: lsp.SymbolKind.Function,
+    tree.ParamItem: lsp.SymbolKind.Constant,
+    tree.SetItem: lsp.SymbolKind.Constant,
+    tree.OptionItem: lsp.SymbolKind.Boolean,
+    tree.TypeItem: lsp.SymbolKind.Class,
+    tree.EnumerationItem: lsp.SymbolKind.Enum,
+    tree.QuantityItem: lsp.SymbolKind.Number,
+    tree.DropItem: lsp.SymbolKind.Event,
+    tree.SoftenItem: lsp.SymbolKind.Event,
+    tree.SilentItem: lsp.SymbolKind.Event,
+}
+
+
+def outline(names: DocumentNames, positions: TextPositions) -> list[lsp.DocumentSymbol]:
+    """The items of a document by name; a rule has its examples below it."""
+    return [symbol for item in names.file.items for symbol in _symbols(item, names, positions)]
+
+
+def _symbols(
+    item: tree.Item, names: DocumentNames, positions: TextPositions
+) -> Iterator[lsp.DocumentSymbol]:
+    def symbol(
+        name: tree.Name, kind: lsp.SymbolKind, span: Span, detail: str = ""
+    ) -> lsp.DocumentSymbol:
+        return lsp.DocumentSymbol(
+            name=name.text,
+            kind=kind,
+            range=positions.range(*names.bounds(span)),
+            selection_range=positions.range(*names.bounds(name.span)),
+            detail=detail or None,
+        )
+
+    match item:
+        case tree.RuleItem():
+            rule = symbol(item.name, _KINDS[tree.RuleItem], item.span, _detail(item))
+            rule.children = [
+                lsp.DocumentSymbol(
+                    name=f"{'accept' if one.accepts else 'reject'} {one.label or number}",
+                    kind=lsp.SymbolKind.Event,
+                    range=positions.range(*names.bounds(one.span)),
+                    selection_range=positions.range(*names.bounds(one.span)),
+                )
+                for number, one in enumerate(item.examples, 1)
+            ]
+            yield rule
+        case tree.SignalItem(signals):
+            for head in signals:
+                yield symbol(head.name, lsp.SymbolKind.Variable, item.span, "signal")
+        case tree.ParamItem(name, _, value) | tree.SetItem(name, value):
+            text = print_formula(value) if not isinstance(value, bool) else "on" if value else "off"
+            yield symbol(name, _KINDS[type(item)], item.span, f"= {text}")
+        case (
+            tree.DefineItem(name)
+            | tree.OptionItem(name)
+            | tree.TypeItem(name)
+            | tree.EnumerationItem(name)
+            | tree.QuantityItem(name)
+            | tree.DropItem(name)
+            | tree.SoftenItem(name)
+            | tree.SilentItem(name)
+        ):
+            yield symbol(name, _KINDS[type(item)], item.span)
+        case tree.TopicsItem(entries):
+            for entry in entries:
+                yield symbol(entry.name, lsp.SymbolKind.Namespace, entry.span, entry.title.value)
+
+
+def _detail(rule: tree.RuleItem) -> str:
+    deed = "confirm" if rule.confirm else "override" if rule.override else ""
+    words = (deed, rule.strength or "", rule.cite.value if rule.cite else "")
+    return " ".join(filter(None, words))
+
+
+def folds(names: DocumentNames, positions: TextPositions) -> list[lsp.FoldingRange]:
+    """Items and examples of several lines, and comments of several lines."""
+    spans: list[Span] = []
+    for item in names.file.items:
+        spans.append(item.span)
+        if isinstance(item, tree.RuleItem):
+            spans += (example.span for example in item.examples)
+    found = [
+        lsp.FoldingRange(start_line=whole.start.line, end_line=whole.end.line)
+        for whole in (positions.range(*names.bounds(span)) for span in spans)
+        if whole.end.line > whole.start.line
+    ]
+    return [*found, *_comment_folds(positions.text)]
+
+
+def _comment_folds(text: str) -> Iterator[lsp.FoldingRange]:
+    first: int | None = None
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    for number, line in enumerate([*lines, ""]):
+        if line.lstrip().startswith("#"):
+            first = number if first is None else first
+        elif first is not None:
+            if number - first > 1:
+                kind = lsp.FoldingRangeKind.Comment
+                yield lsp.FoldingRange(start_line=first, end_line=number - 1, kind=kind)
+            first = None

@@ -1,0 +1,187 @@
+"""The folders and documents of an editor, each document checked as it is typed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from lsprotocol import types as lsp
+from pygls import uris
+
+from rulec.diagnostics import Diagnostic, RulecError, Source
+from rulec.language_server.text_positions import TextPositions
+from rulec.resources import rulebooks_folder
+from rulec.rulebook.files.open_documents import shown
+from rulec.rulebook.files.search_path import read_bytes
+from rulec.rulebook.files.source_walk import sources_below
+from rulec.rulebook.loader import RulebookFile, Trees, in_order, trees_of
+from rulec.rulebook.resolution_memory import ResolutionMemory, ResolvedTrees
+from rulec.rulebook.resolve import names_of, resolve_vocabulary
+from rulec.settings import search_path
+from rulec.syntax import decode
+from rulec.syntax.incremental.parsed_text import ParsedText, parsed_text
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedDocument:
+    """A document with what it was read as; what is found is in places of its text.
+
+    ``resolved`` has its trees and names; None if the text could not be read at all.
+    """
+
+    name: str
+    path: Path | None
+    parsed: ParsedText
+    resolved: ResolvedTrees | None
+    findings: tuple[Diagnostic, ...]
+
+    @property
+    def text(self) -> str:
+        """The text that was checked."""
+        return self.parsed.text
+
+
+@dataclass(slots=True)
+class Document:
+    """A source that is open in the editor, or one of the workspace's files."""
+
+    uri: str
+    text: str
+    version: int | None = None
+    parsed: ParsedText | None = None
+    memory: ResolutionMemory = field(default_factory=ResolutionMemory)
+
+    @property
+    def path(self) -> Path | None:
+        """Its file, which may not be there yet; None for a document without one."""
+        return path_of(self.uri)
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return str(self.path or self.uri)
+
+
+def path_of(uri: str) -> Path | None:
+    """The file of an address; None if it has none."""
+    if not uri.startswith("file:"):
+        return None
+    found = uris.to_fs_path(uri)
+    return Path(found) if found and "\0" not in found else None
+
+
+def uri_of(file: str | Path) -> str:
+    """The address of a file, or of a document that has none and is called so."""
+    text = str(file)
+    if "://" in text or text.startswith("untitled:"):
+        return text
+    return uris.from_fs_path(os.path.abspath(text)) or text  # noqa: PTH100 - keeps what links say
+
+
+@dataclass(slots=True)
+class EditorWorkspace:
+    """What is open in an editor; it hides the files of the same paths."""
+
+    folders: tuple[Path, ...] = ()
+    encoding: lsp.PositionEncodingKind | str = lsp.PositionEncodingKind.Utf16
+    documents: dict[str, Document] = field(default_factory=dict)
+    _files: dict[str, Document] = field(default_factory=dict)
+
+    def open(self, uri: str, text: str, version: int | None = None) -> Document:
+        """Open a document, or have another text shown in it."""
+        known = self.documents.get(uri)
+        if known is None:
+            known = self.documents[uri] = self._files.pop(uri, Document(uri, text))
+        known.text, known.version = text, version
+        return known
+
+    def close(self, uri: str) -> None:
+        """Forget a document; its file counts again."""
+        self.documents.pop(uri, None)
+
+    def document(self, uri: str) -> Document | None:
+        """A document that is open, or a file that can be read."""
+        known = self.documents.get(uri)
+        if known is not None:
+            return known
+        path = path_of(uri)
+        if path is None:
+            return None
+        try:
+            text = decode(str(path), read_bytes(path)).text
+        except RulecError:
+            return None
+        file = self._files.setdefault(uri, Document(uri, text))
+        file.text = text
+        return file
+
+    @contextmanager
+    def as_shown(self) -> Iterator[None]:
+        """Read files as they are in the editor."""
+        texts = {
+            os.path.realpath(document.path): document.text.encode("utf-8", "surrogatepass")
+            for document in self.documents.values()
+            if document.path is not None
+        }
+        with shown(texts):
+            yield
+
+    def check(self, document: Document) -> CheckedDocument:
+        """Check a document, of which only what was edited is read anew.
+
+        What is found is what ``rulec check`` finds. Raises RulecError for wrong settings.
+        """
+        path, name = document.path, document.name
+        source = Source(name, document.text)
+        document.parsed = parsed = parsed_text(source, document.parsed)
+        with self.as_shown():
+            folders = search_path(None if path is None else path.parent)
+            if parsed.file.kind == "vocabulary":
+                return _checked_vocabulary(name, path, parsed)
+            data = document.text.encode("utf-8", "surrogatepass")
+            try:
+                trees = trees_of(RulebookFile(source, data, path, folders), parsed.file, ())
+            except RulecError as error:
+                return CheckedDocument(name, path, parsed, None, error.diagnostics)
+            resolved = document.memory.resolved(trees)
+        found = [*parsed.mistakes, *map(parsed.in_text, resolved.findings)]
+        return CheckedDocument(name, path, parsed, resolved, in_order(name, found))
+
+    def positions(self, text: str) -> TextPositions:
+        """The positions of a text as this editor counts them."""
+        return TextPositions(text, self.encoding)
+
+    def sources(self) -> list[str]:
+        """The addresses of all sources in the workspace's folders, and of what is open."""
+        found = dict.fromkeys(self.documents)
+        known = {os.path.realpath(one.path) for one in self.documents.values() if one.path}
+        for folder in self.folders:
+            for path in sources_below(str(folder)).paths:
+                real = os.path.realpath(path)
+                if real not in known:
+                    known.add(real)
+                    found[uri_of(path)] = None
+        return list(found)
+
+    def is_read_only(self, file: str | Path) -> bool:
+        """Tell whether a file is not the author's: outside of the workspace, or rulec's own."""
+        path = Path(os.path.realpath(file))
+        if any(path == Path(os.path.realpath(one)) for one in self._open_paths()):
+            return path.is_relative_to(os.path.realpath(rulebooks_folder())) and not any(
+                path.is_relative_to(os.path.realpath(folder)) for folder in self.folders
+            )
+        return not any(path.is_relative_to(os.path.realpath(folder)) for folder in self.folders)
+
+    def _open_paths(self) -> Iterable[Path]:
+        return [one.path for one in self.documents.values() if one.path is not None]
+
+
+def _checked_vocabulary(name: str, path: Path | None, parsed: ParsedText) -> CheckedDocument:
+    _, meanings = resolve_vocabulary(parsed.file)
+    trees = Trees(name, (parsed.file,), (), (), (), ())
+    findings = in_order(name, [*parsed.mistakes, *meanings])
+    names = names_of((parsed.file,), at="")
+    return CheckedDocument(name, path, parsed, ResolvedTrees(trees, names, None, ()), findings)

@@ -1,0 +1,304 @@
+"""What a name means, in Markdown, for who points at it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rulec.diagnostics import Span
+from rulec.language_server.document_names import DocumentNames
+from rulec.language_server.name_occurrences import NamedThing, Occurrence
+from rulec.logic.printing import formula_text
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
+from rulec.rulebook.names.doc_comments import description
+from rulec.rulebook.names.referenced_names import parts_of
+from rulec.rulebook.overlay.rulebook_overlay import Value, in_force
+from rulec.syntax import tree
+from rulec.syntax.tree_printer import print_formula
+from rulec.vocabulary import Enumeration, Quantity, Signal
+
+SUPPLIERS = {
+    "Scene": "the scene: ego's own motion, and what is measured of others",
+    "Map": "the map: the road, its marks and signs",
+    "Interpretation": "whoever interprets the scene: what others are about to do, what traffic is "
+    "like",
+}
+"""Who supplies a word of the shared vocabulary, by the first word of its comment."""
+
+
+def hover_text(names: DocumentNames, one: Occurrence) -> str:
+    """What is known of a name."""
+    return "\n\n".join(filter(None, _parts(names, one.thing)))
+
+
+def _parts(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
+    laid, symbols = names.chain.names.constants.overlay, names.chain.names.symbols
+    match thing.kind:
+        case "rule":
+            yield from _rule(names, thing.name)
+        case "signal" | "quantity" | "enumeration" | "value":
+            yield from _word(names, thing)
+        case "type":
+            above = symbols.ancestors(thing.name)[1:]
+            yield _code(f"type {thing.name}" + (f" is {above[0]}" if above else ""))
+            yield from _described(thing.span)
+            if above:
+                yield f"Every {thing.name} is also: {', '.join(above)}."
+        case "option":
+            yield _code(f"option {thing.name} = {'on' if laid.options[thing.name] else 'off'}")
+            yield from _described(thing.span)
+            changed = laid.changed_at.get(thing.name)
+            if changed is not None:
+                yield f"Set in {_file(names, changed.span)}."
+        case "parameter":
+            yield from _parameter(names, thing)
+        case "definition":
+            item = laid.definitions[thing.name]
+            yield _code(f"{_head(item)} =\n  {print_formula(item.body, 'written')}")
+            yield from _described(item.span)
+        case "variable":
+            kind = _type_of(names, thing)
+            yield _code(f"{thing.name}: {kind}" if kind else thing.name)
+            known = names.chain.type(kind) if kind else None
+            if known is not None:
+                yield from _described(known.span)
+        case "level":
+            yield f"Priority level `{thing.name}`"
+            higher, lower = _around(names, thing.name)
+            yield "; ".join(
+                text
+                for text in (
+                    f"below {', '.join(higher)}" if higher else "",
+                    f"above {', '.join(lower)}" if lower else "",
+                )
+                if text
+            )
+        case "topic":
+            yield f"Topic: {laid.topics[thing.name].title.value}"
+        case "file":
+            yield from _book(names, thing)
+    if thing.span.source is not names.checked.parsed.source:
+        yield f"*from {_file(names, thing.span)}*"
+
+
+def _code(text: str) -> str:
+    return f"```rulec\n{text}\n```"
+
+
+def _file(names: DocumentNames, span: Span) -> str:
+    for file in (*names.chain.books, *names.chain.vocabularies):
+        if file.span.source is span.source and file.name is not None:
+            return f"{file.kind} `{file.name.text}`"
+    return span.source.name
+
+
+def _described(span: Span) -> Iterator[str]:
+    """The comment on a declaration, and who supplies what it declares."""
+    said = description(span)
+    first, colon, rest = said.partition(": ")
+    if colon and first in SUPPLIERS:
+        yield rest[:1].upper() + rest[1:]
+        yield f"Supplied by {SUPPLIERS[first]}."
+    elif said:
+        yield said
+
+
+def _word(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
+    symbols = names.chain.names.symbols
+    item = symbols.items.get(thing.name) or symbols.value_of[thing.name]
+    about = f"({', '.join(item.parameters)})" if item.parameters else ""
+    match item:
+        case Signal():
+            yield _code(f"signal {item.name}{about}{_default(item.default)}")
+        case Quantity():
+            yield _code(f"quantity {item.name}{about} in {item.unit}{_default(item.default)}")
+        case Enumeration():
+            values = ", ".join(item.values)
+            yield _code(f"{item.name}{about} is one of {values}{_default(item.default)}")
+            if thing.name != item.name:
+                yield f"`{thing.name}` is one of its values."
+    yield from _described(symbols.spans[item.name])
+    remarks = [
+        "it stays the same as long as a trace goes on" if item.constant else "",
+        "where no source tells it, its default holds" if item.presumed else "",
+    ]
+    if any(remarks):
+        said = "; ".join(filter(None, remarks))
+        yield f"{said[0].upper()}{said[1:]}."
+    yield _tellers(item.name, names)
+
+
+def _default(value: float | str | bool | None) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return f" default {'true' if value else 'false'}"
+    return f" default {value:g}" if isinstance(value, float) else f" default {value}"
+
+
+def _tellers(name: str, names: DocumentNames) -> str:
+    if not any(
+        file.name is not None and file.name.text == "road" for file in names.chain.vocabularies
+    ):
+        return ""
+    # What recordings tell, 100 ms: for who points at a word.
+    from rulec.extraction.tellable_words import TELLABLE_WORDS
+
+    formats = sorted(form for form, words in TELLABLE_WORDS.items() if name in words)
+    if not formats:
+        return "No format of recordings tells it."
+    if len(formats) == len(TELLABLE_WORDS):
+        return "Recordings of every format can tell it."
+    return f"Recordings that can tell it: {', '.join(formats)}."
+
+
+def _rule(names: DocumentNames, name: str) -> Iterator[str]:
+    laid = names.chain.names.constants.overlay
+    entry = laid.rules.get(name)
+    if entry is None:
+        yield f"Rule `{name}`, which is no rule of this rulebook any more."
+        return
+    item = entry.item
+    heads = ", ".join(
+        f"{one.name.text}: {one.type.text}" for one in item.variables if one.type is not None
+    )
+    level = f" in {item.level.text}" if item.level else ""
+    weight = f" weight {item.weight.text}" if item.weight else ""
+    about = f"({heads})" if heads else ""
+    yield _code(f"{item.strength or 'hard'} rule {name}{about}{level}{weight}")
+    if item.says:
+        yield item.says.value
+    law = entry.law
+    whose = law.name.text if law.name is not None else ""
+    if item.cite:
+        heading = _heading(names, item.cite.value)
+        yield f"**{item.cite.value}**{f', {heading}' if heading else ''}, law of `{whose}`"
+    if item.source:
+        yield f"<{item.source.value}>" if "://" in item.source.value else item.source.value
+    if item.in_force:
+        since, until = item.in_force.since, item.in_force.until
+        yield (
+            " ".join(
+                [
+                    "In force",
+                    *([f"from {since}"] if since else []),
+                    *([f"until {until}"] if until else []),
+                ]
+            )
+            + "."
+        )
+    if item.require is not None:
+        yield _code(f"require {print_formula(item.require, 'written')}")
+
+
+def _heading(names: DocumentNames, cite: str) -> str:
+    """The heading of the article that a provision begins with."""
+    best = ""
+    heading = ""
+    for _, item in names.chain.names.constants.overlay.provisions:
+        for entry in item.entries:
+            number = entry.number.value
+            behind = cite.removeprefix(number)[:1]
+            if cite.startswith(number) and not behind.isalnum() and len(number) > len(best):
+                best, heading = number, entry.heading.value
+    return heading
+
+
+def _parameter(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
+    constants = names.chain.names.constants
+    values = constants.overlay.parameters[thing.name]
+    for value in values:
+        item = value.item
+        if isinstance(item, tree.ParamItem):
+            kind = f" : {item.dimension.text}" if item.dimension else ""
+            yield _code(f"param {thing.name}{kind} = {print_formula(item.value, 'written')}")
+            break
+    yield from _described(values[0].item.span)
+    on_day = constants.numbers.get(thing.name)
+    if on_day is not None:
+        yield f"On {constants.at}: **{value_text(on_day)}**"
+    others = [value for value in values if not _holds(value, values, constants.at)]
+    for value in others:
+        yield f"Otherwise {_written(value)} ({_file(names, value.item.span)})"
+
+
+def _holds(value: Value, values: list[Value], day: str) -> bool:
+    good = [one for one in values if in_force(one.item.in_force, day)]
+    return value in good and value.level == max(one.level for one in good)
+
+
+def _written(value: Value) -> str:
+    item = value.item
+    assert not isinstance(item.value, bool), "only an option is on or off"
+    dates = item.in_force
+    when = ""
+    if dates is not None:
+        when = f" from {dates.since}" if dates.since else ""
+        when += f" until {dates.until}" if dates.until else ""
+    return f"`{print_formula(item.value, 'written')}`{when}"
+
+
+def value_text(number: NumberByCases) -> str:
+    """A parameter's value as text, case by case, in the units that it was written in."""
+    parts = []
+    for conditions, linear in number.cases:
+        when = " and ".join(map(formula_text, conditions))
+        parts.append(f"{linear.text} if {when}" if when else linear.text)
+    return "; ".join(parts)
+
+
+def _head(item: tree.DefineItem) -> str:
+    about = ", ".join(
+        one.name.text + (f": {one.type.text}" if one.type else "") for one in item.parameters
+    )
+    return f"define {item.name.text}{f'({about})' if about else ''}"
+
+
+def _type_of(names: DocumentNames, thing: NamedThing) -> str:
+    source, start = thing.span.source, thing.span.start
+    for item in (item for book in names.chain.books for item in book.items):
+        if item.span.source is source and item.span.start <= start < item.span.end:
+            for parameter in _parameters_in(item):
+                if parameter.name.span.start == start and parameter.type is not None:
+                    return parameter.type.text
+    return ""
+
+
+def _parameters_in(item: tree.Item) -> Iterator[tree.Parameter]:
+    match item:
+        case tree.RuleItem(variables=variables, examples=examples):
+            yield from variables
+            for example in examples:
+                yield from example.objects
+            for part in (item.require, item.when, *(one.formula for one in item.unless)):
+                if part is not None:
+                    yield from _counted(part)
+        case tree.DefineItem(parameters=parameters, body=body):
+            yield from parameters
+            yield from _counted(body)
+        case tree.FactItem(formula):
+            yield from _counted(formula)
+
+
+def _counted(formula: tree.Formula) -> Iterator[tree.Parameter]:
+    if isinstance(formula, tree.Aggregate):
+        yield formula.variable
+    for part in parts_of(formula):
+        yield from _counted(part)
+
+
+def _around(names: DocumentNames, level: str) -> tuple[list[str], list[str]]:
+    pairs = names.chain.names.priorities
+    equal = {high for high, low in pairs if low == level and (low, high) in pairs}
+    higher = sorted({high for high, low in pairs if low == level} - equal - {level})
+    lower = sorted({low for high, low in pairs if high == level} - equal - {level})
+    return higher, lower
+
+
+def _book(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
+    for file in (*names.chain.books, *names.chain.vocabularies):
+        if file.span.source is thing.span.source:
+            yield f"**{file.kind} {thing.name}**"
+            if file.title is not None:
+                yield file.title.text.value
+            if file.law is not None:
+                yield f"{file.law.text.value}, as of {file.law.as_of or 'no day'}"

@@ -1,0 +1,19 @@
+"""Messages of the language server."""
+
+from __future__ import annotations
+
+from rulec.diagnostics import RulecError
+from rulec.diagnostics.code import Code
+from rulec.diagnostics.missing_package import missing_package
+
+LANGUAGE_SERVER_UNAVAILABLE = Code(
+    "R0760",
+    title="the language server takes a package that is not installed",
+    why="What editors ask while a rulebook is written takes the package `pygls`, which is "
+    "installed on request: `pip install 'rulec[lsp]'`.",
+    kind="circumstance",
+)
+
+
+def no_pygls() -> RulecError:
+    return missing_package(LANGUAGE_SERVER_UNAVAILABLE, "the language server", "pygls", "lsp")

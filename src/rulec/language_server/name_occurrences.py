@@ -1,0 +1,280 @@
+"""Where names stand in a file, and what each of them means there."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from rulec.diagnostics import Span
+from rulec.rulebook.elaborate.scope import SIDES
+from rulec.rulebook.names.referenced_names import parts_of
+from rulec.rulebook.resolve import BookNames
+from rulec.syntax import tree
+from rulec.vocabulary import Quantity, Signal
+
+NameKind = Literal[
+    "rule",
+    "option",
+    "parameter",
+    "definition",
+    "type",
+    "signal",
+    "quantity",
+    "enumeration",
+    "value",
+    "level",
+    "topic",
+    "variable",
+    "file",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class NamedThing:
+    """What a name means; ``span`` is where it is declared.
+
+    Of a ``file`` the span is empty: it is the beginning of the rulebook or vocabulary.
+    """
+
+    kind: NameKind
+    name: str
+    span: Span
+
+    def is_same(self, other: NamedThing) -> bool:
+        """Tell whether two files mean the same thing."""
+        if (self.kind, self.name) != (other.kind, other.name):
+            return False
+        if os.path.realpath(self.span.source.name) != os.path.realpath(other.span.source.name):
+            return False
+        return self.kind != "variable" or self.span.start == other.span.start
+
+
+@dataclass(frozen=True, slots=True)
+class Occurrence:
+    """A name in a file, ``span``, and what it means."""
+
+    span: Span
+    thing: NamedThing
+    declares: bool = False
+
+
+Scope = Mapping[str, NamedThing]
+"""The variables of a rule, a definition or a count."""
+
+
+@dataclass(frozen=True, slots=True)
+class NamesOfChain:
+    """Everything that is named in a rulebook, those that it extends, and their vocabularies."""
+
+    names: BookNames
+    books: Sequence[tree.File]
+    vocabularies: Sequence[tree.File]
+
+    def thing(self, name: str) -> NamedThing | None:
+        """The option, parameter, definition or word of a name."""
+        laid, symbols = self.names.constants.overlay, self.names.symbols
+        if kind := laid.kind_of(name):
+            named: NameKind = "option" if kind == "option" else "definition"
+            named = "parameter" if kind == "parameter" else named
+            return NamedThing(named, name, laid.declared_at[name].span)
+        span = symbols.spans.get(name)
+        if span is None:
+            return None
+        item = symbols.items.get(name)
+        if item is None:
+            return NamedThing("value", name, span)
+        if isinstance(item, Signal):
+            return NamedThing("signal", name, span)
+        return NamedThing("quantity" if isinstance(item, Quantity) else "enumeration", name, span)
+
+    def type(self, name: str) -> NamedThing | None:
+        """The type of a name."""
+        span = self.names.symbols.type_spans.get(name)
+        return None if span is None else NamedThing("type", name, span)
+
+    def rule(self, name: str, until: tree.File | None = None) -> NamedThing | None:
+        """The rule of a name, where it was first written; not in books below ``until``."""
+        found: NamedThing | None = None
+        for book in self.books:
+            for item in book.items:
+                if isinstance(item, tree.RuleItem) and not item.override and item.name.text == name:
+                    found = NamedThing("rule", name, item.name.span)
+            if book is until:
+                break
+        return found
+
+    def level(self, name: str) -> NamedThing | None:
+        """The priority level of a name, where it is first placed."""
+        for book in self.books:
+            for line in book.priorities:
+                for level in line.levels:
+                    if level.text == name:
+                        return NamedThing("level", name, level.span)
+        return None
+
+    def topic(self, name: str) -> NamedThing | None:
+        """The topic of a name."""
+        entry = self.names.constants.overlay.topics.get(name)
+        return None if entry is None else NamedThing("topic", name, entry.name.span)
+
+    def file(self, name: str) -> NamedThing | None:
+        """The rulebook or vocabulary of a name."""
+        for file in (*self.books[:-1], *self.vocabularies):
+            if file.name is not None and file.name.text == name:
+                return NamedThing("file", name, Span(file.span.source, 0, 0))
+        return None
+
+
+def occurrences(file: tree.File, chain: NamesOfChain) -> Iterator[Occurrence]:
+    """All names of a file that mean something, in no particular order."""
+    for line in (*file.uses, *((file.extends,) if file.extends else ())):
+        yield from _at(line.name, chain.file(line.name.text))
+    for priority in file.priorities:
+        for level in priority.levels:
+            yield from _at(level, chain.level(level.text))
+    for item in file.items:
+        yield from _in_item(item, file, chain)
+
+
+def _at(name: tree.Name, thing: NamedThing | None) -> Iterator[Occurrence]:
+    if thing is not None:
+        same = thing.span.source is name.span.source and thing.span.start == name.span.start
+        yield Occurrence(name.span, thing, declares=same)
+
+
+def _in_item(item: tree.Item, file: tree.File, chain: NamesOfChain) -> Iterator[Occurrence]:
+    match item:
+        case tree.RuleItem():
+            yield from _at(item.name, chain.rule(item.name.text, file))
+            yield from _in_rule(item, chain)
+        case tree.DropItem(name) | tree.SoftenItem(name):
+            yield from _at(name, chain.rule(name.text, file))
+            if isinstance(item, tree.SoftenItem) and item.level is not None:
+                yield from _at(item.level, chain.level(item.level.text))
+        case tree.SilentItem(name):
+            yield from _at(name, chain.rule(name.text, file) or chain.topic(name.text))
+        case tree.TypeItem(name, parent):
+            yield from _at(name, chain.type(name.text))
+            if parent is not None:
+                yield from _at(parent, chain.type(parent.text))
+        case tree.EnumerationItem():
+            yield from _at(item.name, chain.thing(item.name.text))
+            yield from _types(item.parameters, chain)
+            for value in (*item.values, *((item.default,) if item.default else ())):
+                yield from _at(value, chain.thing(value.text))
+        case tree.SignalItem(signals):
+            for head in signals:
+                yield from _at(head.name, chain.thing(head.name.text))
+                yield from _types(head.parameters, chain)
+        case tree.QuantityItem(name, parameters):
+            yield from _at(name, chain.thing(name.text))
+            yield from _types(parameters, chain)
+        case tree.ConstantItem(names) | tree.PresumedItem(names):
+            for name in names:
+                yield from _at(name, chain.thing(name.text))
+        case tree.FactItem(formula):
+            yield from in_formula(formula, {}, chain)
+        case tree.OptionItem(name):
+            yield from _at(name, chain.thing(name.text))
+        case tree.ParamItem(name, _, value) | tree.SetItem(name, value):
+            yield from _at(name, chain.thing(name.text))
+            if not isinstance(value, bool):
+                yield from in_formula(value, {}, chain)
+        case tree.DefineItem(name, parameters, body):
+            yield from _at(name, chain.thing(name.text))
+            yield from _types(parameters, chain)
+            yield from _variables(parameters)
+            yield from in_formula(body, variables_of(parameters), chain)
+        case tree.TopicsItem(entries):
+            for entry in entries:
+                yield from _at(entry.name, chain.topic(entry.name.text))
+                for name in entry.rules:
+                    yield from _at(name, chain.rule(name.text))
+
+
+def _in_rule(rule: tree.RuleItem, chain: NamesOfChain) -> Iterator[Occurrence]:
+    scope: Scope = variables_of(rule.variables)
+    inherited = chain.names.constants.overlay.rules.get(rule.name.text)
+    if rule.override and not rule.variables and inherited is not None:
+        scope = variables_of(inherited.item.variables)
+    yield from _types(rule.variables, chain)
+    yield from _variables(rule.variables)
+    if rule.level is not None:
+        yield from _at(rule.level, chain.level(rule.level.text))
+    for topic in rule.topics:
+        yield from _at(topic, chain.topic(topic.text))
+    for formula in (rule.require, rule.when, *(one.formula for one in rule.unless)):
+        if formula is not None:
+            yield from in_formula(formula, scope, chain)
+    for example in rule.examples:
+        yield from _types(example.objects, chain)
+        yield from _variables(example.objects)
+        inside = {**scope, **variables_of(example.objects)}
+        for state in example.states:
+            for literal in state.literals:
+                yield from _use(literal.atom, inside, chain)
+
+
+def variables_of(parameters: Iterable[tree.Parameter]) -> dict[str, NamedThing]:
+    """What the names of parameters mean inside of their rule or definition."""
+    return {
+        one.name.text: NamedThing("variable", one.name.text, one.name.span) for one in parameters
+    }
+
+
+def _variables(parameters: Iterable[tree.Parameter]) -> Iterator[Occurrence]:
+    for one in parameters:
+        thing = NamedThing("variable", one.name.text, one.name.span)
+        yield Occurrence(one.name.span, thing, declares=True)
+
+
+def _types(parameters: Iterable[tree.Parameter], chain: NamesOfChain) -> Iterator[Occurrence]:
+    for one in parameters:
+        if one.type is not None:
+            yield from _at(one.type, chain.type(one.type.text))
+
+
+def in_formula(formula: tree.Formula, scope: Scope, chain: NamesOfChain) -> Iterator[Occurrence]:
+    """All names in a formula that mean something."""
+    match formula:
+        case tree.AtomUse():
+            yield from _use(formula, scope, chain)
+        case tree.Aggregate(variable=variable):
+            yield from _types([variable], chain)
+            yield from _variables([variable])
+            scope = {**scope, **variables_of([variable])}
+        case tree.Prefix(bound=bound) | tree.Infix(bound=bound) if bound is not None:
+            for side in (bound.low, bound.high if bound.high is not bound.low else None):
+                if isinstance(side, tree.AtomUse):
+                    yield from _use(side, scope, chain)
+    for part in parts_of(formula):
+        yield from in_formula(part, scope, chain)
+
+
+def _use(use: tree.AtomUse, scope: Scope, chain: NamesOfChain) -> Iterator[Occurrence]:
+    name = use.name.text
+    thing = scope.get(name) or chain.thing(name)
+    if thing is not None:
+        yield from _at(use.name, thing)
+    elif not use.arguments:
+        yield from _short_form(use.name, scope, chain)
+    for argument in use.arguments:
+        yield from _at(argument, scope.get(argument.text) or chain.thing(argument.text))
+
+
+def _short_form(name: tree.Name, scope: Scope, chain: NamesOfChain) -> Iterator[Occurrence]:
+    """``b_v``, which stands for ``b(v)``."""
+    for at, letter in enumerate(name.text):
+        head, variable = name.text[:at], name.text[at + 1 :]
+        thing = chain.thing(head) if letter == "_" and variable in scope else None
+        if thing is not None and thing.kind in ("signal", "quantity", "value"):
+            start, source = name.span.start, name.span.source
+            yield Occurrence(Span(source, start, start + at), thing)
+            yield Occurrence(Span(source, start + at + 1, name.span.end), scope[variable])
+
+
+def is_of_sides(name: str) -> bool:
+    """Tell whether a name is one of the sides that traffic decides about."""
+    return name in SIDES

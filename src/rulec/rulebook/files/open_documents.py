@@ -1,0 +1,32 @@
+"""Sources that are open in an editor and hide the files of their paths."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+from types import MappingProxyType
+
+_NONE: Mapping[str, bytes] = MappingProxyType({})
+_IN_FORCE: ContextVar[Mapping[str, bytes]] = ContextVar("open_documents", default=_NONE)
+
+
+@contextmanager
+def shown(documents: Mapping[str, bytes]) -> Iterator[None]:
+    """Have sources read as they are in an editor: real path -> what it shows."""
+    before = _IN_FORCE.set(documents)
+    try:
+        yield
+    finally:
+        _IN_FORCE.reset(before)
+
+
+def open_text(path: Path) -> bytes | None:
+    """What an editor shows of a file; None if it is not open."""
+    documents = _IN_FORCE.get()
+    try:
+        return documents.get(os.path.realpath(path)) if documents else None
+    except ValueError:  # a null character in it
+        return None

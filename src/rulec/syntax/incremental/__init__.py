@@ -1,0 +1,1 @@
+"""Parsing a text anew after an edit, by reading only what is near it."""

@@ -1,0 +1,161 @@
+"""Segments of a file: lines with the items that begin in them, and what they were read as."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from rulec.diagnostics import Diagnostic, Source, SourceLocation
+from rulec.syntax.assembly import Part
+from rulec.syntax.file_pieces import Piece, RulePieces
+from rulec.syntax.parser import PieceReader
+from rulec.syntax.scanner import Token, scan
+from rulec.syntax.split_file import FileSplitter
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """Whole lines of a file with the comments above them, and what was read there.
+
+    ``line`` and ``start`` are where they begin in the growing source, a line from 1 and a
+    character. ``split`` are mistakes about braces, ``read`` those within pieces; both may stand in
+    the lines around it as they were when it was read. ``closes``: its last part is a rule.
+    ``foreign``: it has words that are not ASCII.
+    """
+
+    text: str
+    line: int
+    start: int
+    parts: tuple[Part, ...] = ()
+    split: tuple[Diagnostic, ...] = ()
+    read: tuple[Diagnostic, ...] = ()
+    closes: bool = False
+    foreign: bool = False
+
+    @property
+    def is_clean(self) -> bool:
+        """Tell whether nothing is wrong with it, so that what is around it is read apart."""
+        return bool(self.parts) and not (self.split or self.read)
+
+    def lines(self) -> int:
+        """The number of line ends in it."""
+        return self.text.count("\n")
+
+    def reaches_before(self) -> bool:
+        """Tell whether a mistake of it is shown above its own lines."""
+        return any(
+            place.line is not None and place.line < self.line
+            for mistake in (*self.split, *self.read)
+            for place in places_of(mistake)
+        )
+
+
+def places_of(mistake: Diagnostic) -> Iterator[SourceLocation]:
+    """All places that a diagnostic shows."""
+    if mistake.place is not None:
+        yield mistake.place
+    yield from (label.place for label in mistake.labels)
+    if mistake.fix is not None:
+        yield mistake.fix.place
+
+
+def shifted(place: SourceLocation, lines: int) -> SourceLocation:
+    """A place some lines further down."""
+    if place.line is None or not lines:
+        return place
+    end = None if place.end_line is None else place.end_line + lines
+    return replace(place, line=place.line + lines, end_line=end)
+
+
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """Characters of a window from one item to the next that begins on a line of its own."""
+
+    begin: int
+    end: int
+    pieces: list[Piece | RulePieces]
+    mistakes: list[Diagnostic]
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """Lines of a file, from where an item begins or the file does; ``start`` is in ``source``.
+
+    ``above`` and ``below`` are segments at its beginning and its end that were there before. What
+    is clean of them is taken as it is, if it ends where it did.
+    """
+
+    source: Source
+    text: str
+    line: int
+    start: int
+    above: Sequence[Segment] = ()
+    below: Sequence[Segment] = ()
+
+
+def segments_of(window: Window) -> list[Segment]:
+    """The segments of a window. Raises RulecError: it has too many tokens."""
+    source, start = window.source, window.start
+    tokens = [
+        Token(token.kind, token.text, token.start + start, token.end + start, token.first)
+        for token in scan(Source(source.name, window.text))
+    ]
+    groups = _groups(FileSplitter(source, tokens), window)
+    kept: dict[int, Segment] = dict(enumerate(window.above))
+    kept.update((len(groups) - number, one) for number, one in enumerate(reversed(window.below), 1))
+    reader = PieceReader(source, tokens)
+    segments: list[Segment] = []
+    line = window.line
+    for number, group in enumerate(groups):
+        text = window.text[group.begin - start : group.end - start]
+        old = kept.get(number)
+        if old is None or old.text != text or not old.is_clean or group.mistakes:
+            told = len(reader.mistakes)
+            parts = tuple(reader.part(pieces) for pieces in group.pieces)
+            old = Segment(
+                text,
+                line=line,
+                start=group.begin,
+                parts=parts,
+                split=tuple(group.mistakes),
+                read=tuple(reader.mistakes[told:]),
+                closes=bool(group.pieces) and isinstance(group.pieces[-1], RulePieces),
+                foreign=not text.isascii() and _has_foreign_word(tokens, group),
+            )
+        segments.append(old)
+        line += old.lines()
+    return segments
+
+
+def _groups(splitter: FileSplitter, window: Window) -> list[_Group]:
+    tokens, end = splitter.tokens, window.start + len(window.text)
+    groups: list[_Group] = []
+    begin = window.start
+    pieces: list[Piece | RulePieces] = []
+    told = behind = 0
+    mistakes: list[Diagnostic] = []
+    for part in splitter.split():
+        if pieces:
+            behind = window.text.find("\n", behind - window.start) + 1 + window.start
+            if window.start < behind <= tokens[part.first].start:
+                groups.append(_Group(begin, behind, pieces, mistakes))
+                begin, pieces, mistakes = behind, [], []
+        pieces.append(part)
+        mistakes += splitter.mistakes[told:]
+        told = len(splitter.mistakes)
+        behind = tokens[part.last - 1].end
+    mistakes += splitter.mistakes[told:]
+    last = window.text.find("\n", max(0, behind - window.start)) + 1 + window.start
+    if not pieces or last == window.start:
+        last = end
+    groups.append(_Group(begin, last, pieces, mistakes))
+    if last < end:
+        groups.append(_Group(last, end, [], []))
+    return groups
+
+
+def _has_foreign_word(tokens: Sequence[Token], group: _Group) -> bool:
+    if not group.pieces:
+        return False
+    words = tokens[group.pieces[0].first : group.pieces[-1].last]
+    return any(token.kind == "word" and not token.text.isascii() for token in words)

@@ -1,0 +1,78 @@
+"""Whatever is edited, a document has the tree and the findings that its text has by itself."""
+
+from random import Random
+
+import pytest
+
+from rulec.diagnostics import Source
+from rulec.language_server.editor_workspace import EditorWorkspace
+from rulec.resources import rulebooks_folder
+from rulec.rulebook.loader import diagnose
+from rulec.syntax import parse
+from support.generators.random_edits import edited
+
+BOOK = """\
+# Above.
+rulebook small
+use paper
+title "Small"
+priority law > comfort
+
+param near : length = 5 m
+option strict = off
+signal fog, slow default false
+quantity wait in s default 0
+type thing
+signal at_thing(o: thing) default false
+define blind = fog and not slow
+
+# The first.
+hard rule first in law {
+  cite "Art. 1"
+  require always (fog implies slow)
+  unless strict at some point
+  accept "calm" { not fog }
+  reject { fog and not slow }
+}
+
+soft rule second(o: thing) in comfort weight 2 {
+  says "Wait at a thing."
+  require always (at_thing(o) and not blind implies wait > 3 s)
+}
+topics { ways "Ways" of first, second }
+hard rule third {
+  require never (at_thing_x and blind)
+}
+"""
+
+
+def differing_edits(name, text, number, seed, folder):
+    """Texts whose document, edited step by step, says something else than they do by themselves."""
+    random, original = Random(seed), text
+    path = folder / name
+    workspace = EditorWorkspace((folder,))
+    for _ in range(number):
+        document = workspace.open(path.as_uri(), text)
+        checked = workspace.check(document)
+        alone = diagnose(str(path), text.encode(), path)
+        tree, _ = parse(Source(str(path), text))
+        if checked.findings != alone.findings or checked.parsed.file != tree:
+            yield text
+        text = edited(text, original, random) or original
+
+
+def test_a_small_book(tmp_path):
+    assert next(differing_edits("small.rules", BOOK, 60, 1, tmp_path), None) is None
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(9))
+def test_a_small_book_and_a_thousand_edits(seed, tmp_path):
+    assert next(differing_edits("small.rules", BOOK, 1000, seed, tmp_path), None) is None
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("book", ["un-r157", "un-r79", "de", "schemas"])
+def test_books_that_ship(book, tmp_path):
+    text = (rulebooks_folder() / book / f"{book}.rules").read_text(encoding="utf-8")
+    assert next(differing_edits(f"{book}.rules", text, 250, 1, tmp_path), None) is None
