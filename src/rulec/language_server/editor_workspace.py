@@ -181,7 +181,7 @@ class EditorWorkspace:
 
 def _checked_vocabulary(name: str, path: Path | None, parsed: ParsedText) -> CheckedDocument:
     _, meanings = resolve_vocabulary(parsed.file)
-    trees = Trees(name, (parsed.file,), (), (), (), ())
+    trees = Trees(name, (parsed.file,), vocabularies=(), sources=(), mistakes=(), dependencies=())
     findings = in_order(name, [*parsed.mistakes, *meanings])
     names = names_of((parsed.file,), at="")
     return CheckedDocument(name, path, parsed, ResolvedTrees(trees, names, None, ()), findings)

@@ -144,7 +144,14 @@ def _assembled(source: GrowingSource, segments: Sequence[Segment], text: str) ->
     starts = (0, *accumulate(len(segment.text) for segment in segments))
     order = sorted(range(len(segments)), key=lambda number: segments[number].start)
     parsed = ParsedText(
-        text, file, (), source, tuple(segments), lines[:-1], starts[:-1], tuple(order)
+        text,
+        file,
+        (),
+        source,
+        segments=tuple(segments),
+        lines=lines[:-1],
+        starts=starts[:-1],
+        by_start=tuple(order),
     )
     mistakes = [
         *(parsed._moved(one, n) for n, segment in enumerate(segments) for one in segment.split),
