@@ -5,7 +5,7 @@ from random import Random
 import pytest
 
 from rulec.diagnostics import Source
-from rulec.language_server.editor_workspace import EditorWorkspace
+from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.loader import diagnose
 from rulec.syntax import parse

@@ -79,6 +79,7 @@ class Editor:
     def open(self, name, text):
         """Show a document, and wait for what is found in it."""
         uri = self.uri(name)
+        self.found.pop(uri, None)
         self.client.text_document_did_open(
             lsp.DidOpenTextDocumentParams(lsp.TextDocumentItem(uri, "rulec", 1, text))
         )
@@ -151,3 +152,14 @@ def shown(text, where):
         return sum(len(one) + 1 for one in lines[: position.line]) + column
 
     return text[offset(where.start) : offset(where.end)]
+
+
+def edited(text, edits):
+    """The text after edits, all of them in its ASCII lines."""
+    for edit in sorted(edits, key=lambda one: one.range.start, reverse=True):
+        old = shown(text, edit.range)
+        line = sum(len(one) + 1 for one in text.split("\n")[: edit.range.start.line])
+        start = line + edit.range.start.character
+        assert text[start : start + len(old)] == old
+        text = text[:start] + edit.new_text + text[start + len(old) :]
+    return text

@@ -2,103 +2,45 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import Iterable
 from pathlib import Path
 
 from lsprotocol import types as lsp
-from pygls.lsp.server import LanguageServer
+from pygls.exceptions import JsonRpcInvalidParams
 
-from rulec.diagnostics import Diagnostic, RulecError, Source
-from rulec.language_server import published_diagnostics as published
-from rulec.language_server.document_names import DocumentNames, names_in_document
+from rulec.diagnostics import RulecError, Source
 from rulec.language_server.document_outline import folds, outline
-from rulec.language_server.editor_workspace import (
-    CheckedDocument,
-    Document,
-    EditorWorkspace,
-    path_of,
+from rulec.language_server.editor_session import EditorSession
+from rulec.language_server.lens_commands import add_commands
+from rulec.language_server.lenses.code_lenses import code_lenses
+from rulec.language_server.lenses.inlay_hints import inlay_hints
+from rulec.language_server.names.hover_texts import hover_text
+from rulec.language_server.names.name_places import declaration_of, references_to
+from rulec.language_server.names.renaming import (
+    RefusedRenamingError,
+    placeholder,
+    renamed,
+    workspace_edit,
 )
-from rulec.language_server.hover_texts import hover_text
-from rulec.language_server.name_places import declaration_of, references_to
-from rulec.language_server.text_positions import TextPositions
+from rulec.language_server.workspace.editor_workspace import path_of
+from rulec.language_server.writing.quick_fixes import code_action, quick_fixes
+from rulec.language_server.writing.word_completion import completions, signature
 from rulec.syntax.formatting import format_source
-from rulec.version import __version__
-
-_IDLE_S = 0.3
-"""So long after the last edit the other open documents are checked, which may depend on it."""
 
 
-class RulecServer(LanguageServer):
-    """One editor's server."""
-
-    def __init__(self) -> None:
-        super().__init__("rulec", __version__, lsp.TextDocumentSyncKind.Full)
-        self.editor = EditorWorkspace()
-        self.found: dict[str, dict[str, list[Diagnostic]]] = {}
-        self.waiting: asyncio.TimerHandle | None = None
-
-    def check(self, document: Document) -> CheckedDocument | None:
-        """Check a document and publish what is found, in whatever file."""
-        uri = document.uri
-        try:
-            checked = self.editor.check(document)
-            findings: Iterable[Diagnostic] = checked.findings
-        except RulecError as error:  # the project's settings
-            checked, findings = None, error.diagnostics
-        before = self.found.get(uri, {})
-        self.found[uri] = published.by_file(findings, uri)
-        for file in dict.fromkeys((uri, *before, *self.found[uri])):
-            self.publish(file)
-        return checked
-
-    def publish(self, uri: str) -> None:
-        """Send everything that has been found in a file."""
-        document = self.editor.document(uri)
-        found = published.union(self.found, uri)
-        self.text_document_publish_diagnostics(
-            lsp.PublishDiagnosticsParams(
-                uri,
-                published.diagnostics_of(found, document.text if document else "", self.editor),
-                self.editor.documents[uri].version if uri in self.editor.documents else None,
-            )
-        )
-
-    def check_others(self, uri: str) -> None:
-        """Check what is open besides a document, now that nobody types."""
-        for document in list(self.editor.documents.values()):
-            if document.uri != uri:
-                self.check(document)
-
-    def check_others_later(self, uri: str) -> None:
-        """Check what is open besides a document, once nobody types any more."""
-        if self.waiting is not None:
-            self.waiting.cancel()
-        loop = asyncio.get_running_loop()
-        self.waiting = loop.call_later(_IDLE_S, self.check_others, uri)
-
-    def names(self, uri: str) -> tuple[DocumentNames, TextPositions] | None:
-        """The names of a document, and the positions of its text."""
-        document = self.editor.document(uri)
-        if document is None:
-            return None
-        try:
-            names = names_in_document(self.editor.check(document))
-        except RulecError:
-            return None
-        return None if names is None else (names, self.editor.positions(document.text))
-
-
-def language_server() -> RulecServer:
+def language_server() -> EditorSession:
     """A server with all that it can do."""
-    server = RulecServer()
+    server = EditorSession()
     _documents(server)
     _names(server)
+    _renaming(server)
+    _writing(server)
     _layout(server)
+    _between_the_lines(server)
+    add_commands(server)
     return server
 
 
-def _documents(server: RulecServer) -> None:
+def _documents(server: EditorSession) -> None:
     @server.feature(lsp.INITIALIZED)
     def initialized(_: lsp.InitializedParams) -> None:
         folders = [path_of(folder.uri) for folder in server.workspace.folders.values()]
@@ -141,7 +83,7 @@ def _documents(server: RulecServer) -> None:
         server.check_others("")
 
 
-def _names(server: RulecServer) -> None:
+def _names(server: EditorSession) -> None:
     @server.feature(lsp.TEXT_DOCUMENT_HOVER)
     def hover(params: lsp.HoverParams) -> lsp.Hover | None:
         known = server.names(params.text_document.uri)
@@ -179,7 +121,72 @@ def _names(server: RulecServer) -> None:
         ]
 
 
-def _layout(server: RulecServer) -> None:
+def _renaming(server: EditorSession) -> None:
+    @server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)
+    def prepare(params: lsp.PrepareRenameParams) -> lsp.PrepareRenamePlaceholder | None:
+        known = server.names(params.text_document.uri)
+        if known is None:
+            return None
+        names, positions = known
+        try:
+            thing, start, end = placeholder(names, positions.offset(params.position), server.editor)
+        except RefusedRenamingError as refused:
+            raise JsonRpcInvalidParams(str(refused)) from None
+        return lsp.PrepareRenamePlaceholder(positions.range(start, end), thing.name)
+
+    @server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
+    def rename(params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+        known = server.names(params.text_document.uri)
+        if known is None:
+            return None
+        names, positions = known
+        try:
+            thing, _, _ = placeholder(names, positions.offset(params.position), server.editor)
+            changes = renamed(thing, params.new_name, names, server.editor)
+        except RefusedRenamingError as refused:
+            raise JsonRpcInvalidParams(str(refused)) from None
+        return workspace_edit(changes, server.editor)
+
+
+def _writing(server: EditorSession) -> None:
+    @server.feature(
+        lsp.TEXT_DOCUMENT_COMPLETION, lsp.CompletionOptions(trigger_characters=["(", " ", ","])
+    )
+    def completion(params: lsp.CompletionParams) -> list[lsp.CompletionItem]:
+        known = server.names(params.text_document.uri)
+        if known is None:
+            return []
+        names, positions = known
+        return completions(names, positions.offset(params.position), positions, server.editor)
+
+    @server.feature(
+        lsp.TEXT_DOCUMENT_SIGNATURE_HELP, lsp.SignatureHelpOptions(trigger_characters=["(", ","])
+    )
+    def signature_help(params: lsp.SignatureHelpParams) -> lsp.SignatureHelp | None:
+        known = server.names(params.text_document.uri)
+        if known is None:
+            return None
+        names, positions = known
+        return signature(names, positions.offset(params.position))
+
+    @server.feature(
+        lsp.TEXT_DOCUMENT_CODE_ACTION,
+        lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix]),
+    )
+    def actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
+        uri = params.text_document.uri
+        document = server.editor.document(uri)
+        if document is None:
+            return []
+        try:
+            checked = server.editor.check(document)
+        except RulecError:
+            return []
+        fixes = quick_fixes(checked, document, params.range, server.editor)
+        return [code_action(fix, uri, checked.text, server.editor) for fix in fixes]
+
+
+def _layout(server: EditorSession) -> None:
     @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     def symbols(params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
         known = server.names(params.text_document.uri)
@@ -202,6 +209,19 @@ def _layout(server: RulecServer) -> None:
         if text == document.text:
             return []
         return [lsp.TextEdit(server.editor.positions(document.text).whole(), text)]
+
+
+def _between_the_lines(server: EditorSession) -> None:
+    @server.feature(lsp.TEXT_DOCUMENT_INLAY_HINT)
+    def hints(params: lsp.InlayHintParams) -> list[lsp.InlayHint]:
+        known = server.names(params.text_document.uri)
+        return [] if known is None else inlay_hints(*known, params.range)
+
+    @server.feature(lsp.TEXT_DOCUMENT_CODE_LENS)
+    def lenses(params: lsp.CodeLensParams) -> list[lsp.CodeLens]:
+        uri = params.text_document.uri
+        known = server.names(uri)
+        return [] if known is None else code_lenses(*known, uri, server.answers)
 
 
 def serve() -> None:

@@ -117,6 +117,14 @@ def tables_of(grammar: str) -> str:
     return parser_tables.to_text(parser_tables.stamp(grammar, lark.__version__), serialized)
 
 
+def accepted_after(start: Start, text: str) -> frozenset[str]:
+    """The terminals that can follow a piece's beginning; none if it cannot be read."""
+    try:
+        return _accepted(start, text)
+    except UnexpectedInput:
+        return frozenset()
+
+
 def _position(error: UnexpectedInput, end: int) -> int:
     if isinstance(error, UnexpectedToken) and error.token.type == "$END":
         return end

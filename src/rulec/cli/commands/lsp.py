@@ -13,10 +13,11 @@ def command(*, stdio: bool) -> None:  # noqa: ARG001 - what editors say, and wha
     Editors start it themselves and speak the Language Server Protocol with it, over standard input
     and output; docs/editors.md says how each is told. Takes `pip install 'rulec[lsp]'`.
     """
-    # The server and the protocol's types, 200 ms: not for --help.
+    # The message, 5 ms: not for --help.
     from rulec.language_server.language_server_messages import no_pygls
 
     try:
+        # The server and the protocol's types, 200 ms: not for --help.
         from rulec.language_server.server import serve
     except ModuleNotFoundError as problem:
         if (problem.name or "").partition(".")[0] not in ("pygls", "lsprotocol", "cattrs"):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rulec.diagnostics import Span
-from rulec.language_server.document_names import DocumentNames
-from rulec.language_server.name_occurrences import NamedThing, Occurrence
+from rulec.language_server.names.document_names import DocumentNames
+from rulec.language_server.names.name_occurrences import NamedThing, Occurrence
 from rulec.logic.printing import formula_text
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.names.doc_comments import description

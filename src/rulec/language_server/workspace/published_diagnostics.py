@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from lsprotocol import types as lsp
 
 from rulec.diagnostics import Diagnostic, SourceLocation
-from rulec.language_server.editor_workspace import EditorWorkspace, uri_of
+from rulec.language_server.workspace.editor_workspace import EditorWorkspace, uri_of
 
 SOURCE = "rulec"
 

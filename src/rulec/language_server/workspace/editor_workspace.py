@@ -12,7 +12,7 @@ from lsprotocol import types as lsp
 from pygls import uris
 
 from rulec.diagnostics import Diagnostic, RulecError, Source
-from rulec.language_server.text_positions import TextPositions
+from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.open_documents import shown
 from rulec.rulebook.files.search_path import read_bytes

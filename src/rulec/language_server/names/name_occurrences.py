@@ -42,22 +42,24 @@ class NamedThing:
     name: str
     span: Span
 
-    def is_same(self, other: NamedThing) -> bool:
-        """Tell whether two files mean the same thing."""
+    def is_alike(self, other: NamedThing) -> bool:
+        """Tell whether two files may mean the same thing; of variables there may be several."""
         if (self.kind, self.name) != (other.kind, other.name):
             return False
-        if os.path.realpath(self.span.source.name) != os.path.realpath(other.span.source.name):
-            return False
-        return self.kind != "variable" or self.span.start == other.span.start
+        return os.path.realpath(self.span.source.name) == os.path.realpath(other.span.source.name)
 
 
 @dataclass(frozen=True, slots=True)
 class Occurrence:
-    """A name in a file, ``span``, and what it means."""
+    """A name in a file, ``span``, and what it means.
+
+    ``listed``: it stands in a topic's list, which knows rules by the beginnings of their names.
+    """
 
     span: Span
     thing: NamedThing
     declares: bool = False
+    listed: bool = False
 
 
 Scope = Mapping[str, NamedThing]
@@ -191,7 +193,8 @@ def _in_item(item: tree.Item, file: tree.File, chain: NamesOfChain) -> Iterator[
             for entry in entries:
                 yield from _at(entry.name, chain.topic(entry.name.text))
                 for name in entry.rules:
-                    yield from _at(name, chain.rule(name.text))
+                    if (rule := chain.rule(name.text)) is not None:
+                        yield Occurrence(name.span, rule, listed=True)
 
 
 def _in_rule(rule: tree.RuleItem, chain: NamesOfChain) -> Iterator[Occurrence]:

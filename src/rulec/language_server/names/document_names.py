@@ -6,8 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rulec.diagnostics import Span
-from rulec.language_server.editor_workspace import CheckedDocument
-from rulec.language_server.name_occurrences import NamesOfChain, Occurrence, occurrences
+from rulec.language_server.names.name_occurrences import (
+    NamedThing,
+    NamesOfChain,
+    Occurrence,
+    occurrences,
+)
+from rulec.language_server.workspace.editor_workspace import CheckedDocument
 from rulec.syntax import tree
 
 
@@ -34,6 +39,12 @@ class DocumentNames:
         """The text of the file in which a span stands."""
         own = span.source is self.checked.parsed.source
         return self.checked.text if own else span.source.text
+
+    def is_same(self, thing: NamedThing, other: NamedThing, names: DocumentNames) -> bool:
+        """Tell whether something of this document is what another document, ``names``, means."""
+        if not thing.is_alike(other):
+            return False
+        return thing.kind != "variable" or self.bounds(thing.span) == names.bounds(other.span)
 
     def all(self) -> Iterator[Occurrence]:
         """All names of the document that mean something."""

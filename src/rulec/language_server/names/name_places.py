@@ -9,20 +9,22 @@ from dataclasses import dataclass
 from lsprotocol import types as lsp
 
 from rulec.diagnostics import RulecError
-from rulec.language_server.document_names import DocumentNames, names_in_document
-from rulec.language_server.editor_workspace import EditorWorkspace, uri_of
-from rulec.language_server.name_occurrences import NamedThing
+from rulec.language_server.names.document_names import DocumentNames, names_in_document
+from rulec.language_server.names.name_occurrences import NamedThing
+from rulec.language_server.workspace.editor_workspace import EditorWorkspace, uri_of
+from rulec.syntax import tree
 
 
 @dataclass(frozen=True, slots=True)
 class NamePlace:
-    """A name in some file, by characters of its text."""
+    """A name in some file, by characters of its text; ``listed`` among those of a topic."""
 
     uri: str
     start: int
     end: int
     location: lsp.Location
     declares: bool
+    listed: bool
 
 
 def declaration_of(
@@ -36,12 +38,10 @@ def declaration_of(
 def references_to(
     thing: NamedThing, names: DocumentNames, editor: EditorWorkspace
 ) -> list[NamePlace]:
-    """All places of a thing's name; of a variable those in its own document."""
-    if thing.kind == "variable":
-        return list(_in_document(thing, names, editor))
+    """All places of a thing's name."""
     found: dict[tuple[str, int], NamePlace] = {}
     for book in books_with(thing, names, editor):
-        for place in _in_document(thing, book, editor):
+        for place in _in_document(thing, names, book, editor):
             found.setdefault((place.uri, place.start), place)
     declared = uri_of(thing.span.source.name)
     return sorted(found.values(), key=lambda one: (one.uri != declared, one.uri, one.start))
@@ -50,9 +50,15 @@ def references_to(
 def books_with(
     thing: NamedThing, names: DocumentNames, editor: EditorWorkspace
 ) -> Iterator[DocumentNames]:
-    """The workspace's sources in which a name stands, and the files that the document reads."""
+    """The sources in which a name stands, of those of the workspace and what the document reads.
+
+    A variable stands where its rule does, which another book may override.
+    """
     yield names
-    word = re.compile(rf"(?<!\w){re.escape(thing.name)}(?![^\W_])")
+    name = thing.name if thing.kind != "variable" else _owner(thing, names)
+    if not name:
+        return
+    word = re.compile(rf"(?<!\w){re.escape(name)}(?![^\W_])")
     chain = (*names.chain.books[:-1], *names.chain.vocabularies)
     read = [uri_of(file.span.source.name) for file in chain]
     for uri in dict.fromkeys((*editor.sources(), *read)):
@@ -69,13 +75,23 @@ def books_with(
             yield other
 
 
+def _owner(variable: NamedThing, names: DocumentNames) -> str:
+    """The rule that a variable belongs to; empty for one of a definition."""
+    for item in (item for book in names.chain.books for item in book.items):
+        span = item.span
+        here = span.source is variable.span.source and span.start <= variable.span.start < span.end
+        if here and isinstance(item, tree.RuleItem):
+            return item.name.text
+    return ""
+
+
 def _in_document(
-    thing: NamedThing, names: DocumentNames, editor: EditorWorkspace
+    thing: NamedThing, origin: DocumentNames, names: DocumentNames, editor: EditorWorkspace
 ) -> Iterator[NamePlace]:
     uri = uri_of(names.checked.path or names.checked.name)
     positions = editor.positions(names.checked.text)
     for one in names.all():
-        if one.thing.is_same(thing):
+        if names.is_same(one.thing, thing, origin):
             start, end = names.bounds(one.span)
             location = lsp.Location(uri, positions.range(start, end))
-            yield NamePlace(uri, start, end, location, one.declares)
+            yield NamePlace(uri, start, end, location, declares=one.declares, listed=one.listed)

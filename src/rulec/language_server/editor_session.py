@@ -1,0 +1,85 @@
+"""One editor's session: its workspace, and what has been found and sent."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable
+
+from lsprotocol import types as lsp
+from pygls.lsp.server import LanguageServer
+
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.language_server.lenses.code_lenses import KnownAnswers
+from rulec.language_server.names.document_names import DocumentNames, names_in_document
+from rulec.language_server.workspace import published_diagnostics as published
+from rulec.language_server.workspace.editor_workspace import (
+    CheckedDocument,
+    Document,
+    EditorWorkspace,
+)
+from rulec.language_server.workspace.text_positions import TextPositions
+from rulec.version import __version__
+
+_IDLE_S = 0.3
+"""So long after the last edit the other open documents are checked, which may depend on it."""
+
+
+class EditorSession(LanguageServer):
+    """A server with what it knows of its editor."""
+
+    def __init__(self) -> None:
+        super().__init__("rulec", __version__, lsp.TextDocumentSyncKind.Full)
+        self.editor = EditorWorkspace()
+        self.found: dict[str, dict[str, list[Diagnostic]]] = {}
+        self.answers = KnownAnswers()
+        self.waiting: asyncio.TimerHandle | None = None
+
+    def check(self, document: Document) -> CheckedDocument | None:
+        """Check a document and publish what is found, in whatever file."""
+        uri = document.uri
+        try:
+            checked = self.editor.check(document)
+            findings: Iterable[Diagnostic] = checked.findings
+        except RulecError as error:  # the project's settings
+            checked, findings = None, error.diagnostics
+        before = self.found.get(uri, {})
+        self.found[uri] = published.by_file(findings, uri)
+        for file in dict.fromkeys((uri, *before, *self.found[uri])):
+            self.publish(file)
+        return checked
+
+    def publish(self, uri: str) -> None:
+        """Send everything that has been found in a file."""
+        document = self.editor.document(uri)
+        found = published.union(self.found, uri)
+        self.text_document_publish_diagnostics(
+            lsp.PublishDiagnosticsParams(
+                uri,
+                published.diagnostics_of(found, document.text if document else "", self.editor),
+                self.editor.documents[uri].version if uri in self.editor.documents else None,
+            )
+        )
+
+    def check_others(self, uri: str) -> None:
+        """Check what is open besides a document, now that nobody types."""
+        for document in list(self.editor.documents.values()):
+            if document.uri != uri:
+                self.check(document)
+
+    def check_others_later(self, uri: str) -> None:
+        """Check what is open besides a document, once nobody types any more."""
+        if self.waiting is not None:
+            self.waiting.cancel()
+        loop = asyncio.get_running_loop()
+        self.waiting = loop.call_later(_IDLE_S, self.check_others, uri)
+
+    def names(self, uri: str) -> tuple[DocumentNames, TextPositions] | None:
+        """The names of a document, and the positions of its text."""
+        document = self.editor.document(uri)
+        if document is None:
+            return None
+        try:
+            names = names_in_document(self.editor.check(document))
+        except RulecError:
+            return None
+        return None if names is None else (names, self.editor.positions(document.text))

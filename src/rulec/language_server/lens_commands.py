@@ -1,0 +1,114 @@
+"""What the lenses above rules do when they are clicked."""
+
+from __future__ import annotations
+
+import asyncio
+
+from lsprotocol import types as lsp
+
+from rulec.diagnostics import RulecError
+from rulec.language_server.editor_session import EditorSession
+from rulec.language_server.lenses import code_lenses as lenses
+from rulec.language_server.lenses.rule_answers import (
+    ExampleAnswer,
+    english,
+    example_answer,
+    parent_answer,
+)
+from rulec.language_server.names.document_names import DocumentNames
+from rulec.language_server.names.renaming import workspace_edit
+from rulec.rulebook.loader import read_rulebook
+from rulec.rulebook.rulebook_model import Rule, Rulebook
+
+
+def add_commands(server: EditorSession) -> None:
+    """Let a server answer the commands of lenses: each takes a document and a rule's name.
+
+    What takes a compiler is done beside, so that typing goes on. Answers are shown, and returned.
+    """
+
+    @server.command(lenses.RUN)
+    async def run(uri: str, rule: str) -> str:
+        asked = _asked(server, uri, rule)
+        if asked is None:
+            return _told(server, _NO_ANSWER)
+        answer = await _examples(server, asked)
+        return _told(server, answer if isinstance(answer, str) else answer.in_words(rule))
+
+    @server.command(lenses.ENGLISH)
+    async def in_english(uri: str, rule: str) -> str:
+        asked = _asked(server, uri, rule)
+        if asked is None:
+            return _told(server, _NO_ANSWER)
+        _, book, meant = asked
+        return _told(server, await asyncio.to_thread(english, book, meant))
+
+    @server.command(lenses.COMPARE)
+    async def compare(uri: str, rule: str) -> str:
+        asked = _asked(server, uri, rule)
+        if asked is None or len(asked[0].chain.books) < 2:
+            return _told(server, _NO_ANSWER)
+        names, book, meant = asked
+        above = names.chain.books[-2].span.source.name
+        try:
+            with server.editor.as_shown():
+                parent = read_rulebook(above, (), book.at, book.traffic).rulebook
+            answer = await asyncio.to_thread(parent_answer, book, parent, rule)
+        except RulecError as error:
+            return _told(server, str(error))
+        server.answers.keep_few()
+        server.answers.parents[lenses.parent_key(meant, names)] = answer
+        server.workspace_code_lens_refresh(None)
+        return _told(server, answer.text)
+
+    @server.command(lenses.INSERT)
+    async def insert(uri: str, rule: str) -> str:
+        asked = _asked(server, uri, rule)
+        if asked is None:
+            return _told(server, _NO_ANSWER)
+        answer = await _examples(server, asked)
+        if isinstance(answer, str):
+            return _told(server, answer)
+        names = asked[0]
+        missing = answer.missing[0] if answer.missing else ""
+        change = lenses.inserted_example(names, rule, missing) if missing else None
+        if change is None:
+            return _told(server, f"{rule}: every edge is tested")
+        edit = workspace_edit({uri: [change]}, server.editor)
+        await server.workspace_apply_edit_async(lsp.ApplyWorkspaceEditParams(edit))
+        return missing
+
+
+_NO_ANSWER = "the rulebook has mistakes, which have to be mended before"
+
+Asked = tuple[DocumentNames, Rulebook, Rule]
+
+
+def _asked(server: EditorSession, uri: str, name: str) -> Asked | None:
+    """A document, its rulebook and a rule of it; None if it has mistakes."""
+    known = server.names(uri)
+    if known is None:
+        return None
+    names, _ = known
+    rule = lenses.rule_of(names, name)
+    resolved = names.checked.resolved
+    if rule is None or resolved is None or resolved.rulebook is None:
+        return None
+    return names, resolved.rulebook, rule
+
+
+async def _examples(server: EditorSession, asked: Asked) -> ExampleAnswer | str:
+    _, book, rule = asked
+    try:
+        answer = await asyncio.to_thread(example_answer, book, rule)
+    except RulecError as error:
+        return str(error)
+    server.answers.keep_few()
+    server.answers.examples[rule.formula] = rule.examples, answer
+    server.workspace_code_lens_refresh(None)
+    return answer
+
+
+def _told(server: EditorSession, text: str) -> str:
+    server.window_show_message(lsp.ShowMessageParams(lsp.MessageType.Info, text))
+    return text

@@ -1,0 +1,132 @@
+"""What a text means and does not say: shown between its words, not written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lsprotocol import types as lsp
+
+from rulec.language_server.names.document_names import DocumentNames
+from rulec.language_server.names.hover_texts import value_text
+from rulec.language_server.workspace.text_positions import TextPositions
+from rulec.rulebook.names.referenced_names import atoms_in, parts_of
+from rulec.syntax import tree
+from rulec.syntax.keywords import BINDS_NARROWLY, JOINS_ALIKE
+from rulec.vocabulary import Quantity
+
+
+def inlay_hints(
+    names: DocumentNames, positions: TextPositions, where: lsp.Range
+) -> list[lsp.InlayHint]:
+    """The hints in a range of a document."""
+    first, last = positions.offset(where.start), positions.offset(where.end)
+    hints: list[lsp.InlayHint] = []
+    for item in names.file.items:
+        start, end = names.bounds(item.span)
+        if start <= last and first <= end:
+            for offset, label, tip in _in_item(item, names):
+                if first <= offset <= last:
+                    position = positions.position(offset)
+                    hints.append(lsp.InlayHint(position, label, tooltip=tip))
+    return hints
+
+
+Hint = tuple[int, str, str]
+"""A character of the text, what is shown there, and why."""
+
+
+def _in_item(item: tree.Item, names: DocumentNames) -> Iterator[Hint]:
+    match item:
+        case tree.RuleItem():
+            yield from _inherited(item, names)
+            for formula in (item.require, item.when, *(one.formula for one in item.unless)):
+                if formula is not None:
+                    yield from _in_formula(formula, names)
+        case tree.DefineItem(body=formula) | tree.FactItem(formula) | tree.ParamItem(value=formula):
+            yield from _in_formula(formula, names)
+        case tree.SetItem(value=value) if not isinstance(value, bool):
+            yield from _in_formula(value, names)
+
+
+def _inherited(rule: tree.RuleItem, names: DocumentNames) -> Iterator[Hint]:
+    """The strength and the level of a rule that another book has given them."""
+    entry = names.chain.names.constants.overlay.rules.get(rule.name.text)
+    if not rule.override or entry is None:
+        return
+    start = names.bounds(rule.span)[0]
+    if rule.strength is None and entry.item.strength is not None:
+        deed = "confirm" if rule.confirm else "override"
+        yield start + len(deed), f" {entry.item.strength}", "inherited: nothing else is said here"
+    end = names.bounds(rule.name.span)[1]
+    if rule.level is None and entry.item.level is not None and not rule.variables:
+        yield end, f" in {entry.item.level.text}", "inherited level"
+
+
+def _in_formula(formula: tree.Formula, names: DocumentNames) -> Iterator[Hint]:
+    if isinstance(formula, tree.Infix) and formula.operator not in JOINS_ALIKE | {"then"}:
+        yield from _narrow(formula.left, formula.operator, names)
+    elif isinstance(formula, tree.Infix):
+        yield from _narrow(formula.left, formula.operator, names, unless=formula.right)
+    if isinstance(formula, tree.Compare | tree.Arithmetic):
+        yield from _units(formula, names)
+    for use in atoms_in(formula) if not parts_of(formula) else ():
+        yield from _value(use, names)
+    for part in parts_of(formula):
+        yield from _in_formula(part, names)
+
+
+def _narrow(
+    left: tree.Formula, follows: str, names: DocumentNames, unless: tree.Formula | None = None
+) -> Iterator[Hint]:
+    """Parentheses that show how little an operator of time speaks of: ``(never a) and b``."""
+    while isinstance(left, tree.Infix) and not left.grouped:
+        left = left.right
+    alike = isinstance(unless, tree.Prefix) and unless.operator in BINDS_NARROWLY
+    if isinstance(left, tree.Prefix) and left.operator in BINDS_NARROWLY and not left.grouped:
+        if alike:
+            return
+        start, end = names.bounds(left.span)
+        why = f"`{left.operator}` binds tighter than `{follows}`: it speaks of this alone"
+        yield start, "(", why
+        yield end, ")", why
+
+
+def _units(formula: tree.Compare | tree.Arithmetic, names: DocumentNames) -> Iterator[Hint]:
+    """The unit of a bare 0, and what a number is in the unit of the quantity beside it."""
+    sides = (formula.left, formula.right)
+    for number, other in (sides, sides[::-1]):
+        if not isinstance(number, tree.NumberLiteral) or not isinstance(other, tree.AtomUse):
+            continue
+        unit = _unit_of(other, names)
+        if not unit or unit == number.unit:
+            continue
+        end = names.bounds(number.span)[1]
+        if not number.unit:
+            if number.text.strip("0.") == "":
+                yield end, f" {unit}", f"the unit of `{other.name.text}`"
+            continue
+        symbols = names.chain.names.symbols
+        theirs, own = symbols.unit(unit), symbols.unit(number.unit)
+        if theirs is not None and own is not None and theirs.dimension == own.dimension:
+            amount = float(number.text) * float(own.factor / theirs.factor)
+            yield end, f" = {amount:.6g} {unit}", f"in the unit of `{other.name.text}`"
+
+
+def _unit_of(use: tree.AtomUse, names: DocumentNames) -> str:
+    items, name = names.chain.names.symbols.items, use.name.text
+    for head in (name, *(name[:at] for at, letter in enumerate(name) if letter == "_")):
+        item = items.get(head)
+        if isinstance(item, Quantity):
+            return item.unit
+    return ""
+
+
+def _value(use: tree.AtomUse, names: DocumentNames) -> Iterator[Hint]:
+    """The value of a parameter on the day whose law it is."""
+    constants = names.chain.names.constants
+    number = constants.numbers.get(use.name.text)
+    if number is None or use.name.text not in constants.overlay.parameters:
+        return
+    text = value_text(number)
+    if len(text) <= 40:
+        yield names.bounds(use.name.span)[1], f" = {text}", f"on {constants.at}"

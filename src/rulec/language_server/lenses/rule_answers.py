@@ -1,0 +1,96 @@
+"""What can be asked of one rule that takes a compiler: its examples, its sentence, its parent."""
+
+# Imports within functions: compilers, automata and reports take 400 ms, and are for who asks.
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rulec.rulebook.rulebook_model import Rule, Rulebook
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+
+COMMONROAD = "commonroad"
+
+
+@dataclass(frozen=True, slots=True)
+class ExampleAnswer:
+    """How a rule's examples come out, and examples that are missing.
+
+    ``lacking`` are the words for want of which CommonRoad's recordings cannot judge the rule.
+    """
+
+    passed: int
+    failing: tuple[str, ...]
+    missing: tuple[str, ...]
+    lacking: tuple[str, ...]
+
+    def in_words(self, rule: str) -> str:
+        """One sentence each on examples, edges and recordings."""
+        total = self.passed + len(self.failing)
+        said = [f"{rule}: {self.passed} of {total} examples come out as they say"]
+        if self.failing:
+            said.append(f"otherwise come out: {', '.join(self.failing)}")
+        if self.missing:
+            said.append(f"untested edges: {len(self.missing)}, the first one by\n{self.missing[0]}")
+        if self.lacking:
+            said.append(f"not judgeable from CommonRoad, which lacks {', '.join(self.lacking)}")
+        return "\n".join(said)
+
+
+@dataclass(frozen=True, slots=True)
+class ParentAnswer:
+    """A rule beside that of the rulebook that this one extends, with a witness in words."""
+
+    relation: str
+    parent: str
+    text: str
+
+
+def _compiled(book: Rulebook, rule: Rule) -> CompiledRulebook:
+    from rulec.api.rulebook_compilation import compile_rulebook
+
+    return compile_rulebook(replace(book, rules=(rule,)))
+
+
+def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
+    """Run the examples of a rule, and see what they leave unseen. Raises RulecError."""
+    from rulec.analysis.audit.source_audit import audit_source
+    from rulec.book_tests.example_coverage import coverage
+    from rulec.book_tests.example_runs import run_rulebook_examples
+    from rulec.extraction.tellable_words import TELLABLE_WORDS
+    from rulec.report.tests.example_text import missing_example
+
+    compiled = _compiled(book, rule)
+    run = run_rulebook_examples(replace(book, rules=(rule,)), compiled)
+    seen = coverage(run) if rule.examples else ()
+    audited = audit_source(compiled, COMMONROAD, TELLABLE_WORDS[COMMONROAD])
+    return ExampleAnswer(
+        sum(outcome.passed for outcome in run.outcomes),
+        tuple(outcome.name for outcome in run.outcomes if not outcome.passed),
+        tuple(
+            missing_example(edge, compiled.vocabulary) for one in seen for edge in one.missing_edges
+        ),
+        audited.rules[0].lacking,
+    )
+
+
+def english(book: Rulebook, rule: Rule) -> str:
+    """A rule in plain English."""
+    from rulec.report.rulebooks.rule_page import summary
+    from rulec.report.rulebooks.spoken_rules import spoken_book
+
+    (spoken,) = spoken_book(replace(book, rules=(rule,))).rules
+    return summary(spoken, book.name, book.vocabulary, 100)
+
+
+def parent_answer(book: Rulebook, parent: Rulebook, rule: str) -> ParentAnswer:
+    """Whether a rule is stricter or laxer than its parent. Raises RulecError."""
+    from rulec.analysis.diff.rulebook_comparison import diff_rulebooks
+    from rulec.report.rulebooks.diff_text import as_text
+
+    diff = diff_rulebooks(first=book, second=parent, patterns=(rule,))
+    relation = diff.pairs[0].comparison.relation if diff.pairs else "of its own"
+    return ParentAnswer(relation, parent.name, as_text(diff))

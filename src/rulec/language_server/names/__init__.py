@@ -1,0 +1,1 @@
+"""What names mean in a document, and where they stand in all of them."""

@@ -1,0 +1,262 @@
+"""Giving a thing another name in all rulebooks of the workspace, or saying why not."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from lsprotocol import types as lsp
+
+from rulec.diagnostics import Diagnostic, RulecError
+from rulec.language_server.names.document_names import DocumentNames
+from rulec.language_server.names.name_occurrences import NamedThing
+from rulec.language_server.names.name_places import books_with, references_to
+from rulec.language_server.workspace.editor_workspace import (
+    CheckedDocument,
+    Document,
+    EditorWorkspace,
+    path_of,
+    uri_of,
+)
+from rulec.rulebook.rulebook_model import Rule
+from rulec.syntax import tree
+from rulec.syntax.keywords import RESERVED
+
+_NAME = re.compile(r"[^\W\d]\w*")
+_WORDS = ("type", "signal", "quantity", "enumeration", "value", "variable")
+"""Kinds of names that formulas as meant still speak of."""
+
+
+class RefusedRenamingError(Exception):
+    """Why a thing keeps its name, in words for its author."""
+
+
+@dataclass(frozen=True, slots=True)
+class TextChange:
+    """Characters ``start`` to ``end`` of a document, which become ``text``."""
+
+    start: int
+    end: int
+    text: str
+
+
+Changes = Mapping[str, Sequence[TextChange]]
+"""Address of a document -> what becomes of its text, in order."""
+
+
+def renamed(thing: NamedThing, name: str, names: DocumentNames, editor: EditorWorkspace) -> Changes:
+    """The changes that rename a thing. Raises RefusedRenamingError.
+
+    Every rulebook that is changed, or in which the new name stands, is checked as it would be: it
+    has the same findings and the same rules, but for the name.
+    """
+    refuse_in_general(thing, editor)
+    if name == thing.name:
+        return {}
+    if not _NAME.fullmatch(name):
+        raise RefusedRenamingError(f"`{name}` is no name: letters, digits and `_`, no digit first")
+    if name in RESERVED:
+        raise RefusedRenamingError(f"`{name}` is a word of the language")
+    changes: dict[str, list[TextChange]] = {}
+    for place in references_to(thing, names, editor):
+        if place.listed:
+            continue
+        changes.setdefault(place.uri, []).append(TextChange(place.start, place.end, name))
+    if thing.kind == "rule":
+        for uri, change in _in_topics(thing, name, names, editor):
+            changes.setdefault(uri, []).append(change)
+    for uri, parts in changes.items():
+        parts.sort(key=lambda change: change.start)
+        path = path_of(uri)
+        if path is not None and editor.is_read_only(path):
+            raise RefusedRenamingError(f"`{thing.name}` stands in {path}, {_NOT_YOURS}")
+    _refuse_other_meaning(changes, thing, name, names, editor)
+    return changes
+
+
+_NOT_YOURS = "which is outside of the editor's folders and stays as it is"
+
+
+def refuse_in_general(thing: NamedThing, editor: EditorWorkspace) -> None:
+    """Raise RefusedRenamingError if a thing cannot be renamed, whatever its new name."""
+    if thing.kind == "file":
+        raise RefusedRenamingError(
+            f"`{thing.name}` is called as its file: rename that, and what stands behind `rulebook`"
+        )
+    declared = thing.span.source.name
+    if path_of(uri_of(declared)) is not None and editor.is_read_only(declared):
+        raise RefusedRenamingError(f"`{thing.name}` is declared in {declared}, {_NOT_YOURS}")
+
+
+def changed_text(text: str, changes: Sequence[TextChange]) -> str:
+    """A text with changes made, which do not overlap."""
+    parts: list[str] = []
+    at = 0
+    for change in changes:
+        parts += (text[at : change.start], change.text)
+        at = change.end
+    return "".join((*parts, text[at:]))
+
+
+def _in_topics(
+    thing: NamedThing, name: str, names: DocumentNames, editor: EditorWorkspace
+) -> Iterator[tuple[str, TextChange]]:
+    """Topics list rules by the beginnings of their names, also rules of books upon them."""
+    heads = re.compile(r"\brule\s+([^\W\d]\w*)")
+    texts = [one.text for one in map(editor.document, editor.sources()) if one is not None]
+    others = Counter(match[1] for text in texts for match in heads.finditer(text))
+    others[thing.name] -= sum(
+        1
+        for book in books_with(thing, names, editor)
+        for one in book.all()
+        if book.is_same(one.thing, thing, names) and not one.listed
+        if _heads_a_rule(book, one.span.start, one.span.end)
+    )
+    done: set[tuple[str, int]] = set()
+    for book in books_with(thing, names, editor):
+        for file in book.chain.books:
+            uri = uri_of(file.span.source.name)
+            path = path_of(uri)
+            if path is not None and editor.is_read_only(path):
+                continue
+            for entry in _topic_entries(file):
+                change = _in_topic(entry, thing.name, name, book, others)
+                if change is not None and (uri, change.start) not in done:
+                    done.add((uri, change.start))
+                    yield uri, change
+
+
+def _heads_a_rule(book: DocumentNames, start: int, end: int) -> bool:
+    before = book.checked.parsed.source.text[:start].rstrip()
+    return end > start and before.endswith("rule")
+
+
+def _topic_entries(file: tree.File) -> Iterator[tree.TopicEntry]:
+    for item in file.items:
+        if isinstance(item, tree.TopicsItem):
+            yield from item.entries
+
+
+def _in_topic(
+    entry: tree.TopicEntry, old: str, new: str, book: DocumentNames, others: Mapping[str, int]
+) -> TextChange | None:
+    """What becomes of a topic's rules: the name is replaced, or put behind the last."""
+
+    def is_of(rule: str, listed: tree.Name) -> bool:
+        return f"{rule}_".startswith(f"{listed.text}_")
+
+    listed = [one for one in entry.rules if is_of(old, one)]
+    if not listed or any(is_of(new, one) for one in entry.rules):
+        return None
+    longest = max(listed, key=lambda one: len(one.text))
+    start, end = book.bounds(longest.span)
+    still = any(count > 0 and is_of(rule, longest) for rule, count in others.items())
+    if longest.text == old and not still:
+        return TextChange(start, end, new)
+    return TextChange(end, end, f", {new}")
+
+
+def _refuse_other_meaning(
+    changes: Changes, thing: NamedThing, name: str, names: DocumentNames, editor: EditorWorkspace
+) -> None:
+    """Raise RefusedRenamingError unless all books mean the same afterwards."""
+    trial = EditorWorkspace(editor.folders, editor.encoding)
+    for uri, shown in editor.documents.items():
+        trial.documents[uri] = Document(uri, shown.text, shown.version, shown.parsed)
+    before: dict[str, CheckedDocument] = {}
+    for uri in _affected(changes, thing, name, names, editor):
+        document = editor.document(uri)
+        assert document is not None, "it has been read before"
+        before[uri] = _checked(editor, document)
+        text = changed_text(document.text, changes.get(uri, ()))
+        trial.documents[uri] = Document(uri, text, parsed=document.parsed)
+    for uri, was in before.items():
+        now = _checked(trial, trial.documents[uri])
+        file = was.path or was.name
+        if any(one.severity == "error" for one in was.findings):
+            raise RefusedRenamingError(f"{file} has mistakes: mend them first")
+        new = _first_new(was.findings, now.findings)
+        if new is not None:
+            raise RefusedRenamingError(f"with `{name}` there would be a mistake: {new.message}")
+        if thing.kind not in _WORDS and _meaning(was, thing, name) != _meaning(now, thing, name):
+            raise RefusedRenamingError(
+                f"with `{name}` the rules in {file} would mean another thing"
+            )
+
+
+def _affected(
+    changes: Changes, thing: NamedThing, name: str, names: DocumentNames, editor: EditorWorkspace
+) -> list[str]:
+    """The documents that are changed, and all others upon them with the old name or the new one."""
+    found = dict.fromkeys(changes)
+    declared = os.path.realpath(thing.span.source.name)
+    for one in (thing, replace(thing, name=name)):
+        for other in books_with(one, names, editor):
+            files = (*other.chain.books, *other.chain.vocabularies)
+            if any(os.path.realpath(file.span.source.name) == declared for file in files):
+                found[uri_of(other.checked.path or other.checked.name)] = None
+    return list(found)
+
+
+def _checked(editor: EditorWorkspace, document: Document) -> CheckedDocument:
+    try:
+        return editor.check(document)
+    except RulecError as error:
+        raise RefusedRenamingError(error.diagnostics[0].message) from error
+
+
+def _first_new(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> Diagnostic | None:
+    known = Counter(one.code for one in before)
+    for one in after:
+        known[one.code] -= 1
+        if known[one.code] < 0:
+            return one
+    return None
+
+
+def _meaning(
+    checked: CheckedDocument, thing: NamedThing, name: str
+) -> tuple[dict[str, Rule], object] | None:
+    """The rules and their order, with the new name for the old one."""
+    book = None if checked.resolved is None else checked.resolved.rulebook
+    if book is None:
+        return None
+
+    def called(text: str, kind: str) -> str:
+        return name if kind == thing.kind and text == thing.name else text
+
+    rules = {
+        called(rule.name, "rule"): replace(
+            rule,
+            name=called(rule.name, "rule"),
+            level=called(rule.level, "level"),
+            topics=tuple(called(topic, "topic") for topic in rule.topics),
+        )
+        for rule in book.rules
+    }
+    order = {(called(high, "level"), called(low, "level")) for high, low in book.priorities}
+    return rules, (order, book.axioms, book.vocabulary.declarations)
+
+
+def workspace_edit(changes: Changes, editor: EditorWorkspace) -> lsp.WorkspaceEdit:
+    """Changes as the editor makes them."""
+    edits: dict[str, list[lsp.TextEdit]] = {}
+    for uri, parts in changes.items():
+        document = editor.document(uri)
+        positions = editor.positions(document.text if document else "")
+        edits[uri] = [lsp.TextEdit(positions.range(one.start, one.end), one.text) for one in parts]
+    return lsp.WorkspaceEdit(changes=edits)
+
+
+def placeholder(
+    names: DocumentNames, offset: int, editor: EditorWorkspace
+) -> tuple[NamedThing, int, int]:
+    """What would be renamed at a character, and where. Raises RefusedRenamingError."""
+    one = names.at(offset)
+    if one is None:
+        raise RefusedRenamingError("there is no name here that could be another one")
+    refuse_in_general(one.thing, editor)
+    return one.thing, *names.bounds(one.span)

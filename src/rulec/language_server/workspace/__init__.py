@@ -1,0 +1,1 @@
+"""The folders and documents of an editor, and positions in them."""

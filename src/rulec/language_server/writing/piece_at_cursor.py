@@ -1,0 +1,144 @@
+"""The piece of a text that somebody is writing, up to the cursor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rulec.diagnostics import RulecError, Source
+from rulec.language_server.names.document_names import DocumentNames
+from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces
+from rulec.syntax.grammar import Start, accepted_after
+from rulec.syntax.scanner import Token, scan
+from rulec.syntax.split_file import FileSplitter
+
+
+@dataclass(frozen=True, slots=True)
+class PieceAtCursor:
+    """What stands before the name at the cursor.
+
+    ``begun`` is the part of that name which is there, from character ``start`` of the text on.
+    ``tokens`` are those of the piece, ``kind`` is what it is; ``accepted`` are the grammar's
+    terminals that can follow. ``in_rule`` and ``in_vocabulary``: it stands between their braces.
+    """
+
+    begun: str
+    start: int
+    kind: Start | None
+    tokens: tuple[Token, ...]
+    accepted: frozenset[str]
+    in_rule: bool
+    in_vocabulary: bool
+
+    def text(self, back: int = 1) -> str:
+        """The text of a token, counted back from the cursor; empty before the piece."""
+        return self.tokens[-back].text if back <= len(self.tokens) else ""
+
+    @property
+    def first(self) -> str:
+        """The piece's first word."""
+        return self.tokens[0].text if self.tokens else ""
+
+
+def piece_at(names: DocumentNames, offset: int) -> PieceAtCursor | None:
+    """The piece with a character of the document; None in a comment or in a text."""
+    text = names.checked.text
+    start = offset
+    while start > 0 and (text[start - 1].isalnum() or text[start - 1] == "_"):
+        start -= 1
+    begin = _begin(names, start)
+    before = text[begin:start]
+    line = before[before.rfind("\n") + 1 :]
+    if "#" in line and line.count('"', 0, line.index("#")) % 2 == 0:
+        return None
+    try:
+        tokens = scan(Source("", before))
+    except RulecError:
+        return None
+    if tokens and tokens[-1].kind in ("unterminated", "quoted"):
+        return None
+    begun = text[start:offset]
+    in_vocabulary = names.file.kind == "vocabulary" and bool(tokens)
+    parts = list(FileSplitter(Source("", before), tokens).split()) if tokens else []
+    last = parts[-1] if parts else None
+    if isinstance(last, RulePieces):
+        closed = last.body or tokens[last.last - 1].text in ("{", "}")
+        if tokens[last.last - 1].text == "}" and _is_balanced(tokens[last.first : last.last]):
+            return _none_yet((begun, start), in_vocabulary=in_vocabulary)
+        if not closed:
+            return _of("rule_head", last.head, (begun, start), (before, tokens))
+        return _in_rule(last, (begun, start), (before, tokens))
+    if last is None or tokens[-1].text == "{":
+        return _none_yet((begun, start), in_vocabulary=in_vocabulary)
+    return _of("item", last, (begun, start), (before, tokens), in_vocabulary=in_vocabulary)
+
+
+def _begin(names: DocumentNames, start: int) -> int:
+    """Where the segment with a character begins, so that no more than that is read."""
+    parsed = names.checked.parsed
+    before = [at for at in parsed.starts if at <= start]
+    # Nothing may be written yet behind the last item but one.
+    return before[-2] if len(before) > 1 else 0
+
+
+def _is_balanced(tokens: list[Token]) -> bool:
+    signs = [token.text for token in tokens if token.kind == "symbol"]
+    return signs.count("{") == signs.count("}")
+
+
+def _in_rule(
+    rule: RulePieces, name: tuple[str, int], read: tuple[str, list[Token]]
+) -> PieceAtCursor:
+    part = rule.body[-1] if rule.body else None
+    ended = read[1][-1].text == "}"
+    if part is None or (ended and _is_balanced(_tokens_of(part, read[1]))):
+        return _none_yet(name, "clause", in_rule=True)
+    if isinstance(part, ExamplePieces):
+        if part.states:
+            return _of("state", part.states[-1], name, read, in_rule=True)
+        return _of("example_head", part.head, name, read, in_rule=True)
+    return _of("clause", part, name, read, in_rule=True)
+
+
+def _none_yet(
+    name: tuple[str, int],
+    kind: Start | None = None,
+    *,
+    in_rule: bool = False,
+    in_vocabulary: bool = False,
+) -> PieceAtCursor:
+    """Where a piece may begin, of which nothing is written but perhaps its first word."""
+    return PieceAtCursor(
+        *name,
+        kind,
+        tokens=(),
+        accepted=frozenset(),
+        in_rule=in_rule,
+        in_vocabulary=in_vocabulary,
+    )
+
+
+def _tokens_of(part: Piece | ExamplePieces, tokens: list[Token]) -> list[Token]:
+    first = part.head.first if isinstance(part, ExamplePieces) else part.first
+    return tokens[first : part.last]
+
+
+def _of(
+    kind: Start,
+    piece: Piece,
+    name: tuple[str, int],
+    read: tuple[str, list[Token]],
+    *,
+    in_rule: bool = False,
+    in_vocabulary: bool = False,
+) -> PieceAtCursor:
+    before, tokens = read
+    inside = tuple(tokens[piece.first : piece.last])
+    text = before[inside[0].start :] if inside else ""
+    return PieceAtCursor(
+        *name,
+        kind,
+        tokens=inside,
+        accepted=accepted_after(kind, text),
+        in_rule=in_rule,
+        in_vocabulary=in_vocabulary,
+    )

@@ -1,0 +1,185 @@
+"""Edits that do what a message's help says, each tried before it is offered."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from lsprotocol import types as lsp
+
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, nearest_name
+from rulec.language_server.names.renaming import TextChange, changed_text
+from rulec.language_server.workspace.editor_workspace import (
+    CheckedDocument,
+    Document,
+    EditorWorkspace,
+)
+from rulec.language_server.workspace.published_diagnostics import diagnostics_of
+from rulec.language_server.workspace.text_positions import TextPositions
+from rulec.syntax.keywords import DECLARATION_WORDS
+
+_WORD = re.compile(r"[^\W\d]\w*")
+_QUOTED = re.compile(r"`([^`…]+)`")
+_MOST_TRIED = 8
+"""So many edits are tried for one message: each is checked as if it had been typed."""
+
+_DELETING = ("delete", "leave", "keep one", "exchange")
+
+
+@dataclass(frozen=True, slots=True)
+class QuickFix:
+    """An edit that mends what a diagnostic is about."""
+
+    title: str
+    finding: Diagnostic
+    changes: tuple[TextChange, ...]
+
+
+def quick_fixes(
+    checked: CheckedDocument,
+    document: Document,
+    where: lsp.Range,
+    editor: EditorWorkspace,
+) -> list[QuickFix]:
+    """The edits for the findings in a range of a document."""
+    positions = editor.positions(checked.text)
+    found: list[QuickFix] = []
+    trial = _Trial(document, editor, len(_errors(checked.findings)), len(checked.findings))
+    for finding in checked.findings:
+        place = finding.place
+        if place is None or place.file != checked.name:
+            continue
+        shown = positions.place(place)
+        if shown.end < where.start or where.end < shown.start:
+            continue
+        found += _for(finding, place, positions, trial)
+    return found
+
+
+def _for(
+    finding: Diagnostic, place: SourceLocation, positions: TextPositions, trial: _Trial
+) -> Iterator[QuickFix]:
+    if finding.fix is not None and finding.fix.place.file == place.file:
+        change = TextChange(*_bounds(finding.fix.place, positions), finding.fix.text)
+        yield QuickFix(f"Write `{_short(finding.fix.text)}`", finding, (change,))
+        return
+    for title, change in list(_candidates(finding, place, positions))[:_MOST_TRIED]:
+        if trial.mends(change):
+            yield QuickFix(title, finding, (change,))
+            return
+
+
+def _bounds(place: SourceLocation, positions: TextPositions) -> tuple[int, int]:
+    start = positions.offset_of(place.line, place.column)
+    end = positions.offset_of(place.end_line or place.line, place.end_column or place.column)
+    return start, max(start, end)
+
+
+def _short(text: str) -> str:
+    line = " ".join(text.split())
+    return line if len(line) <= 50 else f"{line[:49]}…"
+
+
+def _candidates(
+    finding: Diagnostic, place: SourceLocation, positions: TextPositions
+) -> Iterator[tuple[str, TextChange]]:
+    """Edits that the help may mean, the most likely first."""
+    text, (start, end) = positions.text, _bounds(place, positions)
+    asked = [*_QUOTED.findall(finding.help), *_QUOTED.findall(finding.expected)]
+    if finding.help.startswith(_DELETING):
+        yield from _deletions(text, start, end)
+    if finding.help.startswith("did you mean") and asked:
+        yield from _misspelt(asked[0], text, start)
+    for word in asked:
+        if word == text[start:end]:
+            continue
+        declares = word.split(" ", 1)[0] in DECLARATION_WORDS and " " in word
+        if declares:
+            line = _line_of_item(text, start)
+            yield f"Declare `{_short(word)}`", TextChange(line, line, f"{word}\n")
+            continue
+        if word == "}":
+            first = text.rfind("\n", 0, start) + 1
+            blank = not text[first:start].strip()
+            put = f"{word}\n" if blank and first else f"\n{word}\n"
+            yield f"Put `{word}` here", TextChange(*((first, first) if blank else (end, end)), put)
+        yield f"Write `{_short(word)}`", TextChange(start, end, word)
+        if start == end or finding.expected.startswith("expected"):
+            yield f"Put `{_short(word)}` before it", TextChange(start, start, f"{word} ")
+            yield f"Put `{_short(word)}` behind it", TextChange(end, end, f" {word}")
+    if "leave" in finding.help or "delete" in finding.help:
+        yield from _deletions(text, start, end)
+
+
+def _misspelt(word: str, text: str, start: int) -> Iterator[tuple[str, TextChange]]:
+    """The word of the line that is most like what was meant, and stands before the place."""
+    line = text.rfind("\n", 0, start) + 1
+    words = {match[0]: match.span() for match in _WORD.finditer(text, line, start)}
+    near = nearest_name(word, words)
+    if near is not None and near != word:
+        yield f"Write `{word}`", TextChange(*words[near], word)
+
+
+def _deletions(text: str, start: int, end: int) -> Iterator[tuple[str, TextChange]]:
+    behind = re.compile(r"\s*,\s*").match(text, end)
+    before = re.search(r"\s*,\s*$", text[:start])
+    shown = _short(text[start:end])
+    if before:
+        yield f"Leave out `{shown}`", TextChange(before.start(), end, "")
+    elif behind:
+        yield f"Leave out `{shown}`", TextChange(start, behind.end(), "")
+    yield f"Leave out `{shown}`", TextChange(start, end, "")
+    first = text.rfind("\n", 0, start) + 1
+    last = text.find("\n", end) + 1 or len(text)
+    yield f"Leave out the line of `{shown}`", TextChange(first, last, "")
+
+
+def _line_of_item(text: str, offset: int) -> int:
+    """The beginning of the item with a character, above its comments."""
+    start = text.rfind("\n", 0, offset) + 1
+    while start > 0 and (text[start] in " \t}" or text[start] == "\n"):
+        start = text.rfind("\n", 0, start - 1) + 1
+    while start > 0:
+        above = text.rfind("\n", 0, start - 1) + 1
+        if not text.startswith("#", above):
+            break
+        start = above
+    return start
+
+
+@dataclass(frozen=True, slots=True)
+class _Trial:
+    """A document in which edits are tried, with what is wrong in it now."""
+
+    document: Document
+    editor: EditorWorkspace
+    errors: int
+    findings: int
+
+    def mends(self, change: TextChange) -> bool:
+        """Tell whether there is less wrong after a change, and nothing worse."""
+        text = changed_text(self.document.text, [change])
+        tried = Document(self.document.uri, text, parsed=self.document.parsed)
+        try:
+            found = self.editor.check(tried).findings
+        except RulecError:
+            return False
+        errors = len(_errors(found))
+        return errors < self.errors or (errors == self.errors and len(found) < self.findings)
+
+
+def _errors(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
+    return [one for one in findings if one.severity == "error"]
+
+
+def code_action(fix: QuickFix, uri: str, text: str, editor: EditorWorkspace) -> lsp.CodeAction:
+    """A quick fix as the editor offers it."""
+    positions = editor.positions(text)
+    edits = [lsp.TextEdit(positions.range(one.start, one.end), one.text) for one in fix.changes]
+    return lsp.CodeAction(
+        fix.title,
+        kind=lsp.CodeActionKind.QuickFix,
+        diagnostics=diagnostics_of([fix.finding], text, editor),
+        edit=lsp.WorkspaceEdit(changes={uri: edits}),
+    )
