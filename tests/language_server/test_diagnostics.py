@@ -72,7 +72,8 @@ def test_wrong_settings_are_told_where_they_are(editor):
     folder.mkdir()
     (folder / "rulec.toml").write_text("search_path = 1\n")
     editor.open("settings/a.rules", TOWN)
-    found = editor.found[(folder / "rulec.toml").as_uri()].diagnostics
+    uri = (folder / "rulec.toml").as_uri()
+    found = editor.until(lambda: editor.found.get(uri), bool).diagnostics
     assert [one.code for one in found] == ["R0704"]
 
 
