@@ -6,7 +6,7 @@ import click
 
 
 @click.command()
-@click.option("--stdio", is_flag=True, hidden=True)
+@click.option("--stdio", is_flag=True, help="What some editors add, and what it does anyway.")
 def command(*, stdio: bool) -> None:  # noqa: ARG001 - what editors say, and what it does anyway
     """Answer an editor: diagnostics, completion, renaming and the like.
 
