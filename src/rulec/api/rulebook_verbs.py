@@ -100,11 +100,11 @@ class RulebookVerbs(SessionSettings):
         objects: Mapping[str, int] | None = None,
         *,
         prove: bool = False,
-        language: Literal["c", "rust"] = "c",
+        language: Literal["c", "rust", "ros2"] = "c",
     ) -> tuple[Path, ...]:
         """Write a monitor in C99: header, source, Makefile, CMakeLists.txt; the paths.
 
-        In the other ``language`` it is a crate of Rust, without the standard library.
+        In another ``language`` it is a crate of Rust, or a package for ROS 2 around the C.
 
         ``objects`` are how many there may be at a time, by type; without it 16 of each type that is
         below no other. If it is to ``prove`` it is compiled and held against its tables before it

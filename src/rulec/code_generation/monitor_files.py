@@ -10,13 +10,15 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.code_generation.c_files import c_header, c_source, cpp_header
 from rulec.code_generation.monitor_layout import MonitorLayout, monitor_layout
 from rulec.code_generation.reading_code import ReadingCode
+from rulec.code_generation.ros2_files import ros2_texts
 from rulec.code_generation.rust_files import crate_texts
 from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.code_generation.written_names import prefix_of
 from rulec.file_sets import write_together
 from rulec.files import make_folder
 
-Language: TypeAlias = Literal["c", "rust"]
+Language: TypeAlias = Literal["c", "rust", "ros2"]
+"""What is written: C for C and C++, a crate of Rust, a package for ROS 2 around the C."""
 
 _MAKE = """\
 # A library of the monitor; it takes a compiler for C99 and nothing else.
@@ -70,16 +72,17 @@ def write_monitor(
     ``bounds`` are how many objects there may be at a time, by type. If it is to ``prove`` there is
     a report, too. Raises RulecError R0702, R0750, and to prove R0751 to R0753.
     """
-    code = ReadingCode if language == "c" else RustReadingCode
+    code = RustReadingCode if language == "rust" else ReadingCode
     layout = monitor_layout(rulebook, bounds, code)
-    texts = monitor_texts(layout) if language == "c" else crate_texts(layout)
+    written = {"c": monitor_texts, "rust": crate_texts, "ros2": ros2_texts}
+    texts = written[language](layout)
     if prove:
         # numpy, and all that judges
         from rulec.code_generation.compiled_c.c_library import CLibrary
         from rulec.code_generation.compiled_c.rust_library import RustLibrary
         from rulec.code_generation.proof.monitor_proof import proof_report
 
-        library = CLibrary(layout) if language == "c" else RustLibrary(layout)
+        library = RustLibrary(layout) if language == "rust" else CLibrary(layout)
         texts[f"{prefix_of(rulebook.name)}_proof.txt"] = proof_report(library)
     for inner in dict.fromkeys(Path(name).parent for name in texts):
         own = {Path(name).name: text for name, text in texts.items() if Path(name).parent == inner}

@@ -43,8 +43,8 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
 )
 @shared.choice_option(
     "--emit",
-    ["automata", "c", "rust"],
-    "What is written: automata and the compiled rulebook, or a monitor in C or in Rust.",
+    ["automata", "c", "rust", "ros2"],
+    "What is written: automata and the compiled rulebook, or a monitor in C, Rust, or for ROS 2.",
 )
 @click.option(
     "--objects",
@@ -65,7 +65,7 @@ def command(
     *,
     output: str,
     steps_s: Sequence[Fraction],
-    emit: str,
+    emit: Literal["automata", "c", "rust", "ros2"],
     objects: Mapping[str, int],
     prove: bool,
     at: str,
@@ -75,7 +75,8 @@ def command(
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
     RULEBOOK.json, which every other command takes in place of the source and which runs without
     Spot. With `--emit c` it writes header, source, Makefile and CMakeLists.txt of a monitor in C99
-    instead, with `--emit rust` a crate. Each file appears whole or not at all.
+    instead, with `--emit rust` a crate, with `--emit ros2` a package around the C. Each file
+    appears whole or not at all.
     """
     if (objects or prove) and emit == "automata":
         name = "--objects" if objects else "--prove"
@@ -93,7 +94,6 @@ def command(
     if emit == "automata":
         paths = session.write_compiled(compiled, output)
     else:
-        language: Literal["c", "rust"] = "rust" if emit == "rust" else "c"
-        paths = session.write_monitor(compiled, output, objects, prove=prove, language=language)
+        paths = session.write_monitor(compiled, output, objects, prove=prove, language=emit)
     for path in paths:
         print_line(f"wrote {path}")

@@ -1,0 +1,56 @@
+"""Watch a drive over UDP: each datagram is a state in JSON, and is answered by its verdict."""
+
+import json
+import socket
+import threading
+
+import rulec
+
+PASSING_ON_THE_RIGHT = [
+    {"state": {"position": {"v1": place}}, "objects": {"v1": "vehicle"}} for place in "brf"
+]
+
+
+def serve(server: socket.socket, rules: rulec.CompiledRulebook, n_states: int) -> None:
+    """Answer so many states; what cannot be judged is answered by its error, and has not been."""
+    monitor = rulec.Monitor(rules)
+    for _ in range(n_states):
+        data, sender = server.recvfrom(65_507)
+        try:
+            said = json.loads(data)
+            now = monitor.step(said["state"], said.get("objects", {}))
+            answer = {"number": now.state, "verdict": str(now.verdict)}
+        except (rulec.RulecError, ValueError, LookupError, TypeError) as error:
+            answer = {"error": str(error)}
+        server.sendto(json.dumps(answer).encode(), sender)
+
+
+def main() -> None:
+    """Send three states to the server, and print what it says of each."""
+    rules = rulec.compile_rulebook("esterle2019")
+    with (
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as server,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as vehicle,
+    ):
+        server.bind(("127.0.0.1", 0))
+        given = [json.dumps(state).encode() for state in PASSING_ON_THE_RIGHT]
+        given.append(b"no state")
+        watch = threading.Thread(target=serve, args=(server, rules, len(given)), daemon=True)
+        watch.start()
+        vehicle.settimeout(30)
+        answers = []
+        for data in given:
+            vehicle.sendto(data, server.getsockname())
+            answers.append(json.loads(vehicle.recv(65_507)))
+            print(answers[-1])
+        watch.join()
+    assert [one.get("verdict") for one in answers] == [
+        "holds so far",
+        "holds so far",
+        "violated",
+        None,
+    ]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+"""Watch a drive over zenoh: states in JSON under one key, their verdicts under another.
+
+It takes `pip install eclipse-zenoh`, and no router: what it publishes comes back to it.
+"""
+
+import json
+import queue
+
+import rulec
+
+try:
+    import zenoh
+except ImportError:
+    zenoh = None
+
+STATES, VERDICTS = "vehicle/ego/state", "vehicle/ego/verdict"
+PASSING_ON_THE_RIGHT = [
+    {"state": {"position": {"v1": place}}, "objects": {"v1": "vehicle"}} for place in "brf"
+]
+
+
+def main() -> None:
+    """Publish three states, and print the verdicts that are published of them."""
+    rules = rulec.compile_rulebook("esterle2019")
+    monitor = rulec.Monitor(rules)
+    said = queue.Queue()
+    # Nobody else is looked for: no router, no multicast.
+    settings = zenoh.Config.from_json5(
+        '{mode: "peer", scouting: {multicast: {enabled: false}}, listen: {endpoints: []}}'
+    )
+    with zenoh.open(settings) as session:
+        verdicts = session.declare_publisher(VERDICTS)
+
+        def watch(sample) -> None:
+            given = json.loads(sample.payload.to_bytes())
+            now = monitor.step(given["state"], given.get("objects", {}))
+            verdicts.put(json.dumps({"number": now.state, "verdict": str(now.verdict)}))
+
+        def hear(sample) -> None:
+            said.put(json.loads(sample.payload.to_bytes()))
+
+        session.declare_subscriber(VERDICTS, hear)
+        session.declare_subscriber(STATES, watch)
+        states = session.declare_publisher(STATES)
+        answers = []
+        for state in PASSING_ON_THE_RIGHT:
+            states.put(json.dumps(state))
+            answers.append(said.get(timeout=30))
+            print(answers[-1])
+    assert answers[-1] == {"number": 2, "verdict": "violated"}
+
+
+if __name__ == "__main__":
+    if zenoh is None:
+        print("it takes eclipse-zenoh: pip install eclipse-zenoh")
+    else:
+        main()
