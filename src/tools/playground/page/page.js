@@ -34,7 +34,7 @@ const asker = new Asker(stateChanged);
 function stateChanged(state, about) {
   clearTimeout(patience);
   byId("stop").hidden = true;
-  if (state === "starting") say("Python is starting: some 14 MB, the first time");
+  if (state === "starting") say("Python is starting: some 16 MB, the first time");
   else if (state === "ready") say("Ready");
   else if (state === "broken") say(`Python does not start: ${about}`);
   else {
