@@ -1,0 +1,1 @@
+[(rule) (example) (topics_item) (provisions_item) (vocabulary_file)] @fold

@@ -1,0 +1,41 @@
+// Starts rulec's language server for the rulebooks that are open. All that it knows is in `rulec lsp`.
+"use strict";
+
+const vscode = require("vscode");
+const { LanguageClient } = require("vscode-languageclient/node");
+
+let client;
+
+function start() {
+  const command = vscode.workspace.getConfiguration("rulec").get("command");
+  const [program, ...before] = command;
+  client = new LanguageClient(
+    "rulec",
+    "rulec",
+    { command: program, args: [...before, "lsp"] },
+    { documentSelector: [{ language: "rulec" }] },
+  );
+  return client.start().catch(() =>
+    vscode.window.showErrorMessage(
+      `rulec: \`${command.join(" ")} lsp\` does not start. ` +
+        "`pip install 'rulec[lsp]'` installs it; the setting `rulec.command` says where it is.",
+    ),
+  );
+}
+
+async function stop() {
+  const running = client;
+  client = undefined;
+  if (running?.isRunning()) await running.stop();
+}
+
+exports.activate = (context) => {
+  const restart = async () => {
+    await stop();
+    await start();
+  };
+  context.subscriptions.push(vscode.commands.registerCommand("rulec.restart", restart));
+  return start();
+};
+
+exports.deactivate = stop;

@@ -1,0 +1,88 @@
+"""The extension for Visual Studio Code: packed, unpacked, and run without the editor."""
+
+import json
+import re
+import shutil
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import rulec
+from rulec.syntax.keywords import RESERVED
+
+ROOT = Path(__file__).resolve().parents[2]
+CONTENT = {
+    "extension.vsixmanifest",
+    "[Content_Types].xml",
+    "extension/package.json",
+    "extension/language-configuration.json",
+    "extension/readme.md",
+    "extension/LICENSE.txt",
+    "extension/dist/extension.js",
+    "extension/syntaxes/rulec.tmLanguage.json",
+}
+
+
+def test_the_manifest_tells_how_a_rulebook_begins(editors):
+    manifest = json.loads((editors / "vscode" / "package.json").read_text(encoding="utf-8"))
+    assert manifest["version"] == rulec.__version__
+    (language,) = manifest["contributes"]["languages"]
+    begins = re.compile(language["firstLine"])
+    assert begins.match("rulebook de")
+    assert begins.match("  vocabulary road {")
+    assert not begins.match("rulebooks of the world")
+
+
+def test_the_configuration_knows_brackets_and_when_to_indent(editors):
+    text = (editors / "vscode" / "language-configuration.json").read_text(encoding="utf-8")
+    configuration = json.loads(text)
+    assert configuration["brackets"] == [["{", "}"], ["[", "]"], ["(", ")"]]
+    deeper = re.compile(configuration["indentationRules"]["increaseIndentPattern"])
+    assert deeper.match("hard rule passing (v: vehicle) {")
+    assert not deeper.match('  accept "stays" { b(v); b(v) }')
+    assert not deeper.match("# as in {")
+    assert re.match(configuration["indentationRules"]["decreaseIndentPattern"], "  }")
+
+
+@pytest.fixture(scope="module")
+def packed(tmp_path_factory):
+    """A folder with the extension, copied as it lies in the checkout, for npm to work in."""
+    root = tmp_path_factory.mktemp("checkout")
+    unwanted = shutil.ignore_patterns("node_modules", "dist", "*.vsix", "LICENSE")
+    shutil.copytree(ROOT / "src/editors/vscode", root / "src/editors/vscode", ignore=unwanted)
+    shutil.copy(ROOT / "LICENSE", root)
+    return root / "src/editors/vscode"
+
+
+@pytest.mark.long
+def test_the_extension_is_packed_by_one_command_and_starts_the_server(
+    packed, program, done, tmp_path
+):
+    done(program("npm"), "--prefix", packed, "run", "package")
+    (archive,) = packed.glob("*.vsix")
+    assert archive.name == f"rulec-{rulec.__version__}.vsix"
+    with zipfile.ZipFile(archive) as vsix:
+        assert set(vsix.namelist()) == CONTENT
+        vsix.extractall(tmp_path)
+    folder = tmp_path / "extension"
+    manifest = json.loads((folder / "package.json").read_text(encoding="utf-8"))
+    assert (folder / manifest["main"]).is_file()
+    (grammar,) = manifest["contributes"]["grammars"]
+    highlighted = (folder / grammar["path"]).read_text(encoding="utf-8")
+    assert all(word in highlighted for word in RESERVED)
+    assert (folder / "LICENSE.txt").read_bytes() == (ROOT / "LICENSE").read_bytes()
+
+    server = tmp_path / "rulec"
+    server.write_text(
+        f'#!/bin/sh\necho "$@" > "{tmp_path}/asked"\nhead -n 3 > "{tmp_path}/heard"\n'
+    )
+    server.chmod(0o755)
+    activate = Path(__file__).with_name("activate_extension.js")
+    done(program("node"), activate, folder / manifest["main"], server, timeout=60)
+    assert (tmp_path / "asked").read_text() == "lsp\n"
+    assert '"method":"initialize"' in (tmp_path / "heard").read_text()
+
+    nowhere = tmp_path / "nowhere"
+    said = done(program("node"), activate, folder / manifest["main"], nowhere, timeout=60)
+    assert "pip install 'rulec[lsp]'" in said
