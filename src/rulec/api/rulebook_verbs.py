@@ -117,6 +117,22 @@ class RulebookVerbs(SessionSettings):
         paths = write_monitor(compiled, Path(folder), objects or {}, prove=prove, language=language)
         return tuple(paths)
 
+    def write_ltl(
+        self, reference: str | Path, folder: str | Path, step_s: float | Fraction | None = None
+    ) -> tuple[Path, ...]:
+        """Write a rulebook's formulas in LTL, for Spot, PRISM and nuXmv; the paths.
+
+        ``step_s`` are the seconds between two states; None for the step of each rule's examples.
+        Raises RulecError R0407 for bounds that are no multiple of it, and R0754.
+        """
+        from rulec.automata.compiler import lower
+        from rulec.automata.thresholds import exact_step
+        from rulec.ltl_export.ltl_files import write_ltl
+
+        step = None if step_s is None else exact_step(step_s)
+        rulebook = self.load_rulebook(reference)
+        return tuple(write_ltl(rulebook, lower(rulebook, step), Path(folder)))
+
     def verify_compiled(self, path: str | Path) -> tuple[RuleProof, ...]:
         """Hold the tables of a compiled rulebook's file against its formulas, without Spot.
 

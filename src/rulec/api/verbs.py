@@ -89,6 +89,7 @@ verify_compiled = _USUAL.verify_compiled
 verify_many = _USUAL.verify_many
 verify_recording = _USUAL.verify_recording
 write_compiled = _USUAL.write_compiled
+write_ltl = _USUAL.write_ltl
 write_monitor = _USUAL.write_monitor
 write_traces = _USUAL.write_traces
 compile = compile_rulebook

@@ -75,12 +75,12 @@ class WithoutPast:
     memories: tuple[Memory, ...]
 
 
-def eliminate_past(formula: ltl.Formula) -> WithoutPast:
-    """Eliminate operators of the past from a formula.
+def eliminate_past(formula: ltl.Formula, *, registers: bool = True) -> WithoutPast:
+    """Eliminate operators of the past from a formula, without ``registers`` by memories alone.
 
     Its bounds are in steps. Raises ValueError if not.
     """
-    result = _Found()
+    result = _Found(registers)
     present = _present(formula, result)
     fresh: list[Register | Memory] = [*result.registers.values(), *result.memories.values()]
     needed: list[Register | Memory] = []
@@ -117,6 +117,7 @@ def definition(memory: Memory) -> ltl.Formula:
 class _Found:
     """The registers and memories of a formula so far, by content."""
 
+    with_registers: bool
     registers: dict[tuple[ltl.Formula, ltl.Formula, Range], Register] = field(default_factory=dict)
     memories: dict[ltl.Formula, Memory] = field(default_factory=dict)
     sinces: dict[tuple[ltl.Formula, ltl.Formula, Range], ltl.Formula] = field(default_factory=dict)
@@ -129,7 +130,9 @@ class _Found:
         return atom
 
     def is_settled(self, formula: ltl.Formula) -> bool:
-        """True if the word up to an instant decides the formula."""
+        """True if a register may rest on it: the word up to an instant decides the formula."""
+        if not self.with_registers:
+            return False
         unsettled = {memory.atom for memory in self.memories.values()}
         return _is_present(formula) and unsettled.isdisjoint(ltl.atoms_of(formula))
 

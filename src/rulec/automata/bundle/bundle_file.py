@@ -238,13 +238,25 @@ def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
         rulebook = replace(rulebook, prefixes=stored(rulebook))
     make_folder(folder)
     texts = {
-        folder / f"{rule.name}{_step_in_name(rule, several)}.hoa": rule.hoa
+        folder / f"{rule.name}{_step_in_name(rule, several)}.hoa": _with_sources(rule.hoa, book)
         for book in (several.books if several else (rulebook,))
         for rule in book.rules
     }
     texts[folder / f"{rulebook.name}.json"] = to_json(rulebook)
     write_together(folder, {path.name: text.encode() for path, text in texts.items()})
     return list(texts)
+
+
+def _with_sources(hoa: str, rulebook: CompiledRulebook) -> str:
+    """The automaton with what it was made from, as comments below its first line."""
+    first, rest = hoa.split("\n", 1)
+    sources = [f"/* sha256 {one.sha256} {_spelt(one.name)} */" for one in rulebook.sources]
+    return "\n".join([first, *sources, rest])
+
+
+def _spelt(name: str) -> str:
+    """A file's name that ends no comment, and no line."""
+    return "".join(sign if sign.isalnum() or sign in "._-" else "_" for sign in name)
 
 
 def _step_in_name(rule: CompiledRule, several: StoredSteps | None) -> str:

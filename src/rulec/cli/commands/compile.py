@@ -43,8 +43,9 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
 )
 @shared.choice_option(
     "--emit",
-    ["automata", "c", "rust", "ros2"],
-    "What is written: automata and the compiled rulebook, or a monitor in C, Rust, or for ROS 2.",
+    ["automata", "c", "rust", "ros2", "ltl"],
+    "What is written: automata and the compiled rulebook, a monitor in C, Rust, or for ROS 2, or "
+    "formulas in linear temporal logic for other tools.",
 )
 @click.option(
     "--objects",
@@ -65,7 +66,7 @@ def command(
     *,
     output: str,
     steps_s: Sequence[Fraction],
-    emit: Literal["automata", "c", "rust", "ros2"],
+    emit: Literal["automata", "c", "rust", "ros2", "ltl"],
     objects: Mapping[str, int],
     prove: bool,
     at: str,
@@ -75,14 +76,16 @@ def command(
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
     RULEBOOK.json, which every other command takes in place of the source and which runs without
     Spot. With `--emit c` it writes header, source, Makefile and CMakeLists.txt of a monitor in C99
-    instead, with `--emit rust` a crate, with `--emit ros2` a package around the C. Each file
-    appears whole or not at all.
+    instead, with `--emit rust` a crate, with `--emit ros2` a package around the C;
+    with `--emit ltl` all formulas for Spot, PRISM and nuXmv, and what their propositions mean. Each
+    file appears whole or not at all.
     """
-    if (objects or prove) and emit == "automata":
+    if (objects or prove) and emit in ("automata", "ltl"):
         name = "--objects" if objects else "--prove"
         raise click.UsageError(f"{name} is about monitors in C and Rust: add `--emit c`")
     if emit != "automata" and len(steps_s) > 1:
-        raise click.UsageError("a monitor in C or Rust is for one step: give --step once")
+        what = "LTL" if emit == "ltl" else "a monitor in C or Rust"
+        raise click.UsageError(f"{what} is for one step: give --step once")
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     refuse_standard_output(output)
@@ -90,10 +93,13 @@ def command(
         # What is written is called after rules, which are not known yet.
         refuse_overwriting([Output(str(Path(output, Path(rulebook).name)), "")], [rulebook])
     session = open_session(at)
-    compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
-    if emit == "automata":
+    if emit == "ltl":
+        paths = session.write_ltl(rulebook, output, steps_s[0] if steps_s else None)
+    elif emit == "automata":
+        compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
         paths = session.write_compiled(compiled, output)
     else:
+        compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
         paths = session.write_monitor(compiled, output, objects, prove=prove, language=emit)
     for path in paths:
         print_line(f"wrote {path}")

@@ -1,0 +1,1 @@
+"""Rules as text in linear temporal logic, for other tools."""

@@ -1,0 +1,128 @@
+"""A rulebook's rules as files of other tools: Spot, PRISM and nuXmv, and what their words mean."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from rulec.automata.compiler import RulebookFormulas
+from rulec.diagnostics import RulecError
+from rulec.file_sets import write_together
+from rulec.files import make_folder
+from rulec.ltl_export.ltl_terms import NUXMV, PRISM, SPOT, TRUE, Term, text_of
+from rulec.ltl_export.rule_terms import Proposition, RuleTerms, fresh_identifier, rule_terms
+from rulec.rulebook.rulebook_model import Rulebook
+from rulec.rulebook.vocabulary_phrases import phrases_of
+from rulec.version import __version__
+
+
+def write_ltl(rulebook: Rulebook, lowered: RulebookFormulas, folder: Path) -> list[Path]:
+    """Write ``R.csv``, ``R.props``, ``R.smv`` and ``R.propositions.json`` of a rulebook R.
+
+    All files or none; the paths. Raises RulecError R0702, R0754, and R0407 for bounds that do not
+    fit the step.
+    """
+    if lowered.problems:
+        raise RulecError(lowered.problems)
+    phrases = phrases_of(rulebook)
+    rules = [rule_terms(rulebook, one, phrases) for one in lowered.rules]
+    texts = {
+        f"{rulebook.name}.csv": spot_table(rules),
+        f"{rulebook.name}.props": prism_properties(rulebook, rules),
+        f"{rulebook.name}.smv": nuxmv_modules(rulebook, rules),
+        f"{rulebook.name}.propositions.json": meanings(rulebook, rules),
+    }
+    make_folder(folder)
+    write_together(folder, {name: text.encode() for name, text in texts.items()})
+    return [folder / name for name in texts]
+
+
+def spot_table(rules: Sequence[RuleTerms]) -> str:
+    """One row a rule, which Spot's tools read with ``-F R.csv/-2``: the second column.
+
+    Columns: rule, formula, facts, history.
+    """
+    table = io.StringIO()
+    rows = csv.writer(table, lineterminator="\n")
+    rows.writerow(["rule", "formula", "facts", "history"])
+    for one in rules:
+        texts = (text_of(term, SPOT) for term in (one.formula, one.facts, one.history))
+        rows.writerow([one.rule.name, *texts])
+    return table.getvalue()
+
+
+def prism_properties(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
+    """Three properties a rule; the labels are the model's."""
+    lines = [
+        *_head(rulebook, "//"),
+        f"// Labels are what {rulebook.name}.propositions.json says; the model defines them, so",
+        "// that facts and history are certain: else a label is not what it stands for.",
+    ]
+    for one in rules:
+        name = fresh_identifier(one.rule.name, set())
+        lines += ["", f"// {one.rule.strength} rule"]
+        lines.append(f'"{name}": P=? [ {text_of(one.formula, PRISM)} ];')
+        for title, term in (("facts", one.facts), ("history", one.history)):
+            if term != TRUE:
+                lines.append(f'"{name}_{title}": P=? [ {text_of(term, PRISM)} ];')
+    return "\n".join(lines) + "\n"
+
+
+def nuxmv_modules(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
+    """A module a rule, its propositions as parameters, and a main one in which they are free."""
+    finite = rulebook.semantics == "finite"
+    lines = [*_head(rulebook, "--")]
+    main: list[str] = ["MODULE main", "VAR"]
+    for one in rules:
+        name = fresh_identifier(f"rule {one.rule.name}", set())
+        own = [each.name for each in one.propositions] + ["alive"] * finite
+        lines += ["", f"-- {one.rule.strength} rule", f"MODULE {name}({', '.join(own)})"]
+        if one.past:
+            lines += ["VAR", *(f"  {each.name} : boolean;" for each in one.past)]
+        assumed = [term for term in (one.facts, one.history) if term != TRUE]
+        said = one.formula
+        for term in reversed(assumed):
+            said = Term("->", (term, said))
+        lines.append(f"LTLSPEC NAME {name}_is_kept := {text_of(said, NUXMV)};")
+        given = [f"{name}_{each}" for each in own]
+        main += [f"  {each} : boolean;" for each in given]
+        main.append(f"  {name}_here : {name}({', '.join(given)});")
+    free = (
+        "-- All propositions are free here, and what rules forbid happens: put a model in its place"
+    )
+    return "\n".join([*lines, "", free, *main, ""])
+
+
+def meanings(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
+    """What each proposition stands for, with where it is all from."""
+    document = {
+        "version": 1,
+        "rulebook": rulebook.name,
+        "rulec": __version__,
+        "sources": [{"name": one.name, "sha256": one.sha256} for one in rulebook.sources],
+        "semantics": rulebook.semantics,
+        "rules": {
+            one.rule.name: {
+                "strength": one.rule.strength,
+                "cite": one.rule.cite,
+                "step_s": None if one.step_s is None else str(one.step_s),
+                "propositions": {each.name: _meaning(each) for each in one.propositions},
+                "an_instant_ago": {each.name: each.formula for each in one.past},
+            }
+            for one in rules
+        },
+    }
+    return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
+
+
+def _meaning(one: Proposition) -> dict[str, str]:
+    return {"formula": one.formula, "says": one.says}
+
+
+def _head(rulebook: Rulebook, sign: str) -> list[str]:
+    sources = ", ".join(one.sha256[:16] for one in rulebook.sources)
+    written = f"{sign} Rulebook {rulebook.name}, written by rulec {__version__}"
+    return [f"{written}; SHA-256 of its sources begin with {sources}."]

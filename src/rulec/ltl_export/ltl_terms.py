@@ -1,0 +1,203 @@
+"""Formulas in the operators that every tool for linear temporal logic has, and as text in each.
+
+Bounds are unfolded, weak until and strong release said by until and release. A finite word ends
+where a proposition turns false (De Giacomo, Vardi, "Linear temporal logic and linear dynamic logic
+on finite traces", 2013).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import NamedTuple
+
+from rulec.logic import formula as ltl
+from rulec.logic.bounds import Range
+from rulec.logic.fold import Algebra, fold, temporal_operation
+
+
+class Term(NamedTuple):
+    """An operator and what it joins; or a proposition, or ``true``.
+
+    Operators are ``!``, ``&``, ``|``, ``->``, ``<->``, ``X``, ``F``, ``G``, ``U`` and ``R``.
+    """
+
+    sign: str
+    operands: tuple[Term, ...] = ()
+
+
+TRUE = Term("true")
+FALSE = Term("!", (TRUE,))
+
+
+@dataclass(frozen=True, slots=True)
+class Syntax:
+    """How a tool writes what is not as everywhere: operators, ``true``, and propositions.
+
+    Not every tool ``has_implication`` and equivalence between formulas of time.
+    """
+
+    signs: Mapping[str, str]
+    proposition: str = "{}"
+    has_implication: bool = True
+
+
+SPOT = Syntax({})
+PRISM = Syntax({}, '"{}"', has_implication=False)
+NUXMV = Syntax({"R": "V", "true": "TRUE"})
+
+
+def conjunction(terms: Sequence[Term]) -> Term:
+    """All of them that say something; true if there are none."""
+    said = [term for term in terms if term != TRUE]
+    return reduce(lambda left, right: Term("&", (left, right)), said) if said else TRUE
+
+
+class Terms:
+    """Formulas without past as terms, each part once.
+
+    ``names`` are those of propositions; ``alive`` is that of the one which is true as long as a
+    finite word lasts, None where words go on for ever.
+    """
+
+    def __init__(self, names: Mapping[ltl.Proposition, str], alive: str | None) -> None:
+        self._alive = None if alive is None else Term(alive)
+        self._known: dict[ltl.Formula, Term] = {}
+        self._algebra = Algebra(
+            proposition=lambda proposition: Term(names[proposition]),
+            constant=lambda value: TRUE if value else FALSE,
+            negation=_not,
+            conjunction=lambda left, right: Term("&", (left, right)),
+            disjunction=lambda left, right: Term("|", (left, right)),
+            implication=lambda left, right: Term("->", (left, right)),
+            equivalence=lambda left, right: Term("<->", (left, right)),
+            operation=temporal_operation(
+                _not,
+                until=self._until,
+                release=self._release,
+                weak_until=self._weak_until,
+                strong_release=self._strong_release,
+            ),
+        )
+
+    def term_of(self, formula: ltl.Formula) -> Term:
+        """The formula, its bounds in steps; raises ValueError for an operator of the past."""
+        return fold(formula, self._algebra, self._known)
+
+    def always(self, fact: ltl.Formula) -> Term:
+        """What holds in every state."""
+        return self._release(None, self.term_of(fact), Range(0, None))
+
+    @property
+    def lasting(self) -> Term:
+        """What is said of the end of a finite word: there is one, behind its first state."""
+        if self._alive is None:
+            return TRUE
+        ended = Term("G", (_not(self._alive),))
+        return Term("&", (self._alive, Term("U", (self._alive, ended))))
+
+    def _there(self, term: Term) -> Term:
+        """The term, in a state of the word."""
+        return term if self._alive is None else Term("&", (self._alive, term))
+
+    def _if_there(self, term: Term) -> Term:
+        return term if self._alive is None else Term("|", (_not(self._alive), term))
+
+    def _until(self, left: Term | None, right: Term, span: Range) -> Term:
+        low, high = span
+        if high is not None and high < low:
+            return FALSE
+        now = right
+        if high is None:
+            meets = self._there(right)
+            now = Term("F", (meets,)) if left is None else Term("U", (left, meets))
+        for _ in range(0 if high is None else high - low):
+            now = Term("|", (right, _and_later(left, Term("X", (self._there(now),)))))
+        for _ in range(low):
+            now = _and_later(left, Term("X", (self._there(now),)))
+        return now
+
+    def _release(self, left: Term | None, right: Term, span: Range) -> Term:
+        low, high = span
+        if high is not None and high < low:
+            return TRUE
+        now = right
+        if high is None:
+            keeps = self._if_there(right)
+            now = Term("G", (keeps,)) if left is None else Term("R", (left, keeps))
+        for _ in range(0 if high is None else high - low):
+            now = Term("&", (right, _or_later(left, Term("X", (self._if_there(now),)))))
+        for _ in range(low):
+            now = _or_later(left, Term("X", (self._if_there(now),)))
+        return now
+
+    def _weak_until(self, left: Term, right: Term, span: Range) -> Term:
+        lasting = self._release(None, left, Range(0, span.high))
+        return Term("|", (self._until(left, right, span), lasting))
+
+    def _strong_release(self, left: Term, right: Term, span: Range) -> Term:
+        reached = self._until(None, left, Range(0, span.high))
+        return Term("&", (self._release(left, right, span), reached))
+
+
+def _not(term: Term) -> Term:
+    return Term("!", (term,))
+
+
+def _and_later(left: Term | None, later: Term) -> Term:
+    return later if left is None else Term("&", (left, later))
+
+
+def _or_later(left: Term | None, later: Term) -> Term:
+    return later if left is None else Term("|", (left, later))
+
+
+def text_of(term: Term, syntax: Syntax) -> str:
+    """The term as a tool reads it."""
+    parts: list[str] = []
+    # With a stack of its own: bounds of hundreds of steps are as deep.
+    left: list[Term | str] = [term]
+    while left:
+        one = left.pop()
+        if isinstance(one, str):
+            parts.append(one)
+            continue
+        if not syntax.has_implication:
+            one = _by_negation(one)
+        sign = syntax.signs.get(one.sign, one.sign)
+        match one.operands:
+            case ():
+                parts.append(sign if one == TRUE else syntax.proposition.format(sign))
+            case (inner,):
+                # A binary operand brings its own parentheses.
+                left += [inner, sign if one.sign == "!" else f"{sign} "]
+            case (first, second):
+                left += [")", second, f" {sign} ", first, "("]
+    return "".join(parts)
+
+
+def _by_negation(term: Term) -> Term:
+    """An implication or equivalence by ``!``, ``&`` and ``|``."""
+    match term:
+        case Term("->", (left, right)):
+            return Term("|", (_not(left), right))
+        case Term("<->", (left, right)):
+            there, back = Term("|", (_not(left), right)), Term("|", (left, _not(right)))
+            return Term("&", (there, back))
+    return term
+
+
+def size_of(term: Term) -> int:
+    """How many signs the term's text has, at most, without writing it."""
+    known: dict[int, int] = {}
+    stack = [term]
+    while stack:
+        one = stack[-1]
+        missing = [inner for inner in one.operands if id(inner) not in known]
+        if missing:
+            stack += missing
+            continue
+        stack.pop()
+        known[id(one)] = len(one.sign) + 6 + sum(known[id(inner)] for inner in one.operands)
+    return known[id(term)]

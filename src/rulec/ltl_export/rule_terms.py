@@ -1,0 +1,134 @@
+"""What a rule says, what is known of its propositions, and what its history means, as terms."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import count
+
+from rulec.automata.alphabet import knowledge, propositions_of, reads_of, subject_of
+from rulec.automata.axiom_instances import axiom_groups, axiom_instances
+from rulec.automata.compiler import RuleFormula
+from rulec.automata.compiler_jobs import MOST_STEPS_AHEAD
+from rulec.logic import formula as ltl
+from rulec.logic.bounds import total_bound
+from rulec.logic.fold import fold_constants
+from rulec.logic.past_registers import definition, eliminate_past
+from rulec.logic.printing import formula_text
+from rulec.logic.sentences.english import ENGLISH
+from rulec.logic.sentences.spoken_words import spoken_formula
+from rulec.logic.sentences.wording import atom_clause, comparison_clause
+from rulec.ltl_export.ltl_messages import too_long
+from rulec.ltl_export.ltl_terms import Term, Terms, conjunction, size_of
+from rulec.rulebook.rulebook_model import Rule, Rulebook
+
+MOST_SIGNS = 2_000_000
+"""Of one rule's text."""
+
+_SIGNS = {"<=": "le", ">=": "ge", "!=": "ne", "<": "lt", ">": "gt", "=": "eq", "+": "plus"}
+_KEYWORDS = """
+    true false TRUE FALSE xor xnor G F X U V W R M Y Z H O S T A E AG AF AX EG EF EX alive
+    in mod next init self union word abs max min count bool signed unsigned real integer boolean
+    array of case esac MODULE VAR DEFINE LTLSPEC NAME P filter func label const
+    """
+_RESERVED = frozenset(_KEYWORDS.split())
+"""Keywords of the tools, and their operators."""
+
+
+@dataclass(frozen=True, slots=True)
+class Proposition:
+    """What a tool's proposition stands for: as a rulebook writes it, and in English.
+
+    One of a history stands for what held an instant ago.
+    """
+
+    name: str
+    formula: str
+    says: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class RuleTerms:
+    """A rule for other tools.
+
+    ``facts`` hold in every word that can occur, ``history`` says what the propositions of the
+    ``past`` are: false at first, then what held an instant before. A word that can occur keeps the
+    rule if, with its one history, ``formula`` holds.
+    """
+
+    rule: Rule
+    step_s: Fraction | None
+    formula: Term
+    facts: Term
+    history: Term
+    propositions: tuple[Proposition, ...]
+    past: tuple[Proposition, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all its propositions, the rule's own first."""
+        return tuple(one.name for one in (*self.propositions, *self.past))
+
+
+def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, str]) -> RuleTerms:
+    """The terms of a rule. Raises RulecError R0754 if they would be too long."""
+    rule, formula = lowered.rule, lowered.formula
+    if total_bound(formula) > MOST_STEPS_AHEAD:
+        raise too_long(rule, f"one of its bounds has more than {MOST_STEPS_AHEAD:,} steps")
+    vocabulary = rulebook.vocabulary
+    own = propositions_of(formula)
+    groups = axiom_groups(
+        own, axiom_instances(rule.variables, rulebook.axioms, vocabulary), vocabulary
+    )
+    about = {subject_of(one) for one in own}
+    known = [knowledge(reads_of(formula, vocabulary), own), *(group.known for group in groups)]
+    # What facts say of other words alone is no business of the rule's.
+    facts = [
+        fold_constants(fact)
+        for fact in known
+        if any(subject_of(one) in about for one in propositions_of(fact))
+    ]
+    spoken_of = dict.fromkeys([*own, *(one for fact in facts for one in propositions_of(fact))])
+    # Past operators become propositions of what held an instant ago.
+    past = eliminate_past(formula, registers=False)
+    names: dict[ltl.Proposition, str] = {}
+    for one in [*spoken_of, *(memory.atom for memory in past.memories)]:
+        names[one] = fresh_identifier(str(one), set(names.values()))
+    terms = Terms(names, "alive" if rulebook.semantics == "finite" else None)
+    found = RuleTerms(
+        rule,
+        lowered.step_s,
+        terms.term_of(fold_constants(past.present)),
+        conjunction((terms.lasting, *(terms.always(fact) for fact in facts))),
+        conjunction(
+            tuple(terms.term_of(fold_constants(definition(memory))) for memory in past.memories)
+        ),
+        tuple(Proposition(names[one], str(one), _said(one, phrases)) for one in spoken_of),
+        tuple(
+            Proposition(names[memory.atom], formula_text(fold_constants(memory.formula)))
+            for memory in past.memories
+        ),
+    )
+    if sum(size_of(term) for term in (found.formula, found.facts, found.history)) > MOST_SIGNS:
+        raise too_long(rule, f"its text would have more than {MOST_SIGNS:,} signs")
+    return found
+
+
+def fresh_identifier(text: str, taken: set[str]) -> str:
+    """``beside(v)`` as ``beside_v``, ``speed <= 50 km/h`` as ``speed_le_50_km_h``."""
+    spelt = re.sub("|".join(map(re.escape, _SIGNS)), lambda sign: f" {_SIGNS[sign[0]]} ", text)
+    name = re.sub(r"[^A-Za-z0-9]+", "_", spelt.replace("_", " ")).strip("_")[:60].rstrip("_")
+    if not name or not name[0].isalpha() or name in _RESERVED:
+        name = f"p_{name}"
+    several = (f"{name}_{number}" for number in count(2))
+    return name if name not in taken else next(each for each in several if each not in taken)
+
+
+def _said(proposition: ltl.Proposition, phrases: Mapping[str, str]) -> str:
+    spoken = spoken_formula(proposition, phrases)
+    if isinstance(spoken, ltl.Comparison):
+        return comparison_clause(spoken, ENGLISH, holds=True)
+    assert isinstance(spoken, ltl.Atom)
+    return atom_clause(spoken, ENGLISH, holds=True)
