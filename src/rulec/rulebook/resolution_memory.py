@@ -39,7 +39,8 @@ class ResolvedTrees:
 class _Known:
     """A rule as it was translated, and the parts of trees that it was made of.
 
-    ``provisions`` are those that its formulas use, also through others.
+    ``provisions`` are those that its formulas use, also through others. ``certain``: all names were
+    known for sure, so that nothing was passed over for what could not be read.
     """
 
     own: tuple[object, ...]
@@ -47,6 +48,7 @@ class _Known:
     provisions: tuple[object, ...]
     names: BookNames
     result: TranslatedRule
+    certain: bool
 
 
 @dataclass(slots=True)
@@ -106,12 +108,14 @@ class ResolutionMemory:
         if known is not None and known.header == header and _same(known.own, own):
             result = known.result
             # What a mistake says may depend on every name that there is.
-            is_clean = result.rule is not None and not (result.mistakes or result.contradictions)
+            sound = not (result.mistakes or result.contradictions)
+            is_clean = known.certain and sound and result.rule is not None
             same_facts = known.names.axioms == names.axioms
             same_provisions = same_facts and _same(known.provisions, provisions)
             if known.names.symbols is names.symbols or (is_clean and same_provisions):
                 return replace(known, names=names)
-        return _Known(own, header, provisions, names, translated(entry, names, confirmed))
+        result = translated(entry, names, confirmed)
+        return _Known(own, header, provisions, names, result=result, certain=_is_certain(names))
 
     def _provisions(self, rule: tree.RuleItem, laid: Overlay) -> tuple[object, ...]:
         """The options, parameters and definitions that a rule uses, in a fixed order."""
@@ -134,6 +138,13 @@ class ResolutionMemory:
                 self._used.clear()
             known = self._used[id(item)] = (item, frozenset(names_used(item)))
         return known[1]
+
+
+def _is_certain(names: BookNames) -> bool:
+    """Tell whether no name may be missing because something could not be read."""
+    symbols, laid = names.symbols, names.constants.overlay
+    open_names = symbols.opaque or symbols.opaque_types or symbols.suspects
+    return not (laid.unsure or laid.unsure_rules or laid.suspects or open_names)
 
 
 def _items_behind(name: str, laid: Overlay) -> tuple[_Provision, ...]:
