@@ -63,7 +63,7 @@ def test_a_confined_process_writes_nothing_and_talks_to_nobody(tmp_path):
 
 
 def test_the_worker_says_that_it_is_confined():
-    with compiler._worker() as (process, spot):
+    with compiler._worker("") as (process, spot):
         assert spot
         status = Path(f"/proc/{process.pid}/status").read_text()
     assert "NoNewPrivs:\t1" in status

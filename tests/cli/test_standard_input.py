@@ -95,6 +95,7 @@ LAW = "# Act\n\n### Article 1 Keeping right\n\n(1) Keep right.\n"
         ("# no articles", ["audit", "./other.rules", "--law", "-"], "standard input 2.rules"),
         ("{}", ["verify-compiled", "-"], "standard input.json"),
         ("{}", ["maneuvers", "s1", "-r", "./other.rules", "--after", "-"], "standard input.json"),
+        ("", ["maneuvers", "s1", "-r", "./other.rules", "--after", "-"], "standard input\n"),
     ],
 )
 def test_other_files_may_come_by_it_too(data, arguments, says, given):

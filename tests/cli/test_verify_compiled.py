@@ -24,7 +24,14 @@ def test_what_is_proved(file, capsys):
     assert answer["version"] == 1
     assert of_file["file"] == str(file)
     assert of_file["rules"] == [
-        {"rule": "r", "step_s": None, "proved": True, "because": None, "states": []}
+        {
+            "rule": "r",
+            "step_s": None,
+            "proved": True,
+            "because": None,
+            "states": [],
+            "compilers_agree": True,
+        }
     ]
 
 

@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 from rulec.automata.alphabet import propositions_of, reads_of
-from rulec.automata.random_words import verdict
 from rulec.automata.spot_bridge import explore, translate
 from rulec.automata.tables import build_machine
+from rulec.automata.worker.random_words import verdict
 from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.formula import Binary, Constant, Unary
 from rulec.logic.semantics import holds

@@ -8,7 +8,9 @@ from pathlib import Path
 
 from rulec.automata import compiler
 from rulec.automata.compiler_jobs import Done, Failed, Job
+from rulec.automata.decision_diagrams import diagram_compiler
 from rulec.automata.worker import compiler_choice
+from rulec.automata.worker.job_answers import answer_to
 
 Answers = tuple[list[Done | Failed | None], str]
 
@@ -18,7 +20,8 @@ _SCRIPT, _WORKER, ASKED = compiler._WORKER, compiler._worker, compiler.answers_t
 def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
     """``compiler.answers_to``, but for what this process or one beside it has asked before.
 
-    They keep machines in ``folder``. Whatever fails is asked anew, and so is everything while a
+    They keep machines in ``folder``; those of the second compiler need no process, in which it
+    would have to be loaded each time. Whatever fails is asked anew, and so is everything while a
     test has put another worker in the place of Spot's, or is about how it is confined.
     """
 
@@ -26,10 +29,14 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
         compiler_asked = os.environ.get(compiler_choice.VARIABLE, "").encode()
         return folder / sha256(compiler_asked + pickle.dumps(job)).hexdigest()
 
-    def answers_to(jobs: Sequence[Job], *, more_will_come: bool = False) -> Answers:
+    def answers_to(
+        jobs: Sequence[Job], *, more_will_come: bool = False, choice: str | None = None
+    ) -> Answers:
         is_usual = compiler._WORKER is _SCRIPT and compiler._worker is _WORKER
         if not is_usual or compiler._REQUIRE_CONFINED in os.environ or not jobs:
-            return ASKED(jobs, more_will_come=more_will_come)
+            return ASKED(jobs, more_will_come=more_will_come, choice=choice)
+        if choice == compiler_choice.DIAGRAMS:
+            return [answer_to(job, diagram_compiler.COMPILER) for job in jobs], ""
         known = [file.read_bytes() if file.exists() else b"" for file in map(kept, jobs)]
         unknown = [job for job, found in zip(jobs, known, strict=True) if not found]
         asked, spot = ASKED(unknown) if unknown else ([], "")

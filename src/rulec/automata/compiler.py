@@ -35,7 +35,7 @@ from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_
 from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
 from rulec.rulebook.elaborate.rule_messages import no_multiple
-from rulec.rulebook.rulebook_model import Rule, Rulebook, parts_of
+from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, parts_of
 from rulec.rulebook.rules.exemptions import rule_trigger
 from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.version import __version__
@@ -152,20 +152,39 @@ def build_all(
     )
 
 
+def job_of(rule: CompiledRule, rulebook: CompiledRulebook) -> Job:
+    """The job that a compiled rule has come from, without remarks."""
+    formula = rule.formula if rule.step_s is None else in_steps(rule.formula, rule.step_s)
+    facts = [Axiom(axiom.variables, axiom.formula) for axiom in rulebook.axioms]
+    instances = axiom_instances(rule.variables, facts, rulebook.vocabulary)
+    return Job(
+        rule.name,
+        formula,
+        rule.machine.reads,
+        remarks=(),
+        semantics=rulebook.semantics,
+        groups=axiom_groups(propositions_of(formula), instances, rulebook.vocabulary),
+        cpu_s=CPU_LIMIT_S,
+    )
+
+
 def answers_to(
-    jobs: Sequence[Job], *, more_will_come: bool = False
+    jobs: Sequence[Job], *, more_will_come: bool = False, choice: str | None = None
 ) -> tuple[list[Done | Failed | None], str]:
     """The worker's answers, None to a job that was its end; and Spot's version, empty without it.
 
-    Raises RulecError R0403 if Spot is asked for and not installed.
+    ``choice`` is the compiler, None for the one that the environment chooses. Raises RulecError
+    R0403 if Spot is asked for and not installed.
     """
     if not HAS_PROCESSES:
         return [*answered_here(jobs)], ""
+    if choice is None:
+        choice = compiler_choice.choice()
     answers: list[Done | Failed | None] = []
     spot: str | None = None
     while len(answers) < len(jobs) or spot is None:
         # A worker lives until it is done or a job has killed it; the next one takes the rest.
-        with _worker(more_will_come=more_will_come) as (process, spot):
+        with _worker(choice, more_will_come=more_will_come) as (process, spot):
             for job in jobs[len(answers) :]:
                 answers.append(_ask(process, job))
                 if answers[-1] is None:
@@ -180,8 +199,7 @@ _waiting: dict[tuple[object, ...], _Started] = {}
 
 
 @contextmanager
-def _worker(*, more_will_come: bool = False) -> Iterator[_Started]:
-    choice = compiler_choice.choice()
+def _worker(choice: str, *, more_will_come: bool = False) -> Iterator[_Started]:
     key = os.getpid(), _WORKER, os.environ.get(_REQUIRE_CONFINED), choice, *sys.path
     process, spot = _waiting.pop(key) if key in _waiting else _started(choice)
     if process.poll() is not None:  # ended while it waited

@@ -38,6 +38,16 @@ FAILED_CHECK = Code(
     kind="circumstance",
 )
 
+COMPILERS_DISAGREE = Code(
+    "R0417",
+    title="two compilers make different tables of a rule",
+    why="Where Spot is installed, `rulec compile` translates each rule twice: by Spot, and by "
+    "rulec's own compiler, which shares nothing with it from the formula to the automaton. The "
+    "smallest table is unique, so both have to come to the same one. If they do not, there is a "
+    "mistake in one of them, none in the rulebook, and nothing is written. Please report the rule.",
+    kind="circumstance",
+)
+
 SPOT_MISSING = Code(
     "R0403",
     title="Spot is not there, and it is needed",

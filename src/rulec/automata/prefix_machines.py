@@ -11,17 +11,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from rulec.automata.alphabet import propositions_of
-from rulec.automata.axiom_instances import axiom_groups, axiom_instances
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.compiler import CPU_LIMIT_S, answers_to
+from rulec.automata.compiler import answers_to, job_of
 from rulec.automata.compiler_jobs import MOST_LETTERS, Done, Failed, Job
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, Read
 from rulec.automata.outcome_machine import OutcomeMachine, of_prefixes
 from rulec.logic import formula as ltl
-from rulec.logic.bounds import PAST, in_steps, operations_of
+from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.semantics import Semantics
-from rulec.rulebook.rulebook_model import Axiom
 
 _BEGUN = ltl.Atom("word has begun")
 """No name of a rulebook has a space in it."""
@@ -63,30 +60,17 @@ def _jobs(rule: CompiledRule, rulebook: CompiledRulebook) -> Iterator[Job]:
 
     The first is the rule's own machine if it does not look back; both are one if words end.
     """
-    formula = rule.formula if rule.step_s is None else in_steps(rule.formula, rule.step_s)
-    reads = rule.machine.reads
-    facts = [Axiom(axiom.variables, axiom.formula) for axiom in rulebook.axioms]
-    instances = axiom_instances(rule.variables, facts, rulebook.vocabulary)
+    job = job_of(rule, rulebook)
     wanted: list[Semantics] = [] if rulebook.semantics == "finite" else ["finite"]
     if _looks_back(rule):
         wanted.insert(0, rulebook.semantics)
         before = ltl.Unary(ltl.UnaryOperator.NOT, _BEGUN)
-        begun = ltl.Binary(ltl.BinaryOperator.AND, _BEGUN, formula)
+        begun = ltl.Binary(ltl.BinaryOperator.AND, _BEGUN, job.formula)
         formula = ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, before, begun)
-        reads = (*reads, Read(_BEGUN.name, ()))
-    groups = axiom_groups(propositions_of(formula), instances, rulebook.vocabulary)
+        job = replace(job, formula=formula, reads=(*job.reads, Read(_BEGUN.name, ())))
     for semantics in wanted:
-        yield Job(
-            rule.name,
-            formula,
-            reads,
-            remarks=(),
-            semantics=semantics,
-            groups=groups,
-            cpu_s=CPU_LIMIT_S,
-            # The signal that the word has begun comes on top of what a rule may read.
-            most_letters=2 * MOST_LETTERS,
-        )
+        # The signal that the word has begun comes on top of what a rule may read.
+        yield replace(job, semantics=semantics, most_letters=2 * MOST_LETTERS)
 
 
 def _table(answer: Done | Failed | None) -> MealyMonitor | None:

@@ -58,10 +58,13 @@ def file_named(argument: str) -> str:
     return str(click.get_current_context().with_resource(_copied("standard input")))
 
 
-def read_as_file(context: click.Context, _: click.Parameter, value: Any) -> Any:
+def read_as_file(
+    context: click.Context, _: click.Parameter, value: Any, ending: str = ".rules"
+) -> Any:
     """A callback of click: names of files, of which ``-`` is a copy of standard input.
 
-    Files that it refers to are looked for in the working folder.
+    Files that it refers to are looked for in the working folder. Its name has an ``ending`` unless
+    it is JSON.
 
     Raises:
         click.UsageError: standard input is asked for twice.
@@ -70,7 +73,7 @@ def read_as_file(context: click.Context, _: click.Parameter, value: Any) -> Any:
     if STANDARD_INPUT not in several or context.resilient_parsing:
         return value
     refuse_twice(context)
-    name = context.with_resource(_in_place_of_a_file())
+    name = context.with_resource(_in_place_of_a_file(ending))
     named = tuple([name if own == STANDARD_INPUT else own for own in several])
     return named if isinstance(value, tuple) else named[0]
 
@@ -103,11 +106,11 @@ def refuse_twice(context: click.Context) -> None:
 
 
 @contextmanager
-def _in_place_of_a_file() -> Iterator[str]:
+def _in_place_of_a_file(usual: str) -> Iterator[str]:
     """The name of a file of the working folder that stands for a copy of standard input."""
     with _copied("standard input") as copy:
         with opened(copy) as stream:
-            ending = ".json" if stream.read(1 << 10).lstrip().startswith(b"{") else ".rules"
+            ending = ".json" if stream.read(1 << 10).lstrip().startswith(b"{") else usual
         number = 1
         while (
             name := Path(f"standard input{'' if number == 1 else f' {number}'}{ending}")

@@ -36,20 +36,22 @@ class RuleProof:
     """What has been found of a rule: ``because`` is empty if its tables are proved.
 
     ``step_s`` is the step that it is for, as the file spells it. ``word`` are the states of a
-    shortest trace that is judged otherwise, if there is one.
+    shortest trace that is judged otherwise, if there is one. ``agreed``: its table is the one that
+    two compilers have come to, as the file has it.
     """
 
     rule: str
     step_s: str | None
     because: str
     word: tuple[Mapping[str, str], ...] = ()
+    agreed: bool = False
 
 
 def proofs_of(data: bytes) -> list[RuleProof]:
     """What has been found of each rule of a file. Raises UnreadableError."""
     book = _read(data)
     try:
-        return [_proof(rule, book) for rule in book["rules"]]
+        return [proof_of(rule, book) for rule in book["rules"]]
     except (KeyError, TypeError):
         raise UnreadableError("unreadable", "it has no rules") from None
 
@@ -82,7 +84,8 @@ def _no_number(text: str) -> float:
     raise ValueError(text)
 
 
-def _proof(rule: Any, book: Mapping[str, Any]) -> RuleProof:
+def proof_of(rule: Any, book: Mapping[str, Any]) -> RuleProof:
+    """What has been found of a rule's entry of a book that has been read."""
     name, step = str(rule["name"]), rule["step_s"]
     try:
         _prove(rule, book)
@@ -93,7 +96,7 @@ def _proof(rule: Any, book: Mapping[str, Any]) -> RuleProof:
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as problem:
         what = type(problem).__name__.removesuffix("Error").lower()
         return RuleProof(name, step, f"its entry is not as the format has it ({what} {problem})")
-    return RuleProof(name, step, "")
+    return RuleProof(name, step, "", agreed=bool(rule.get("certificate")))
 
 
 def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
@@ -114,10 +117,19 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
     progression = FormulaProgression(demands, root)
     formula = FormulaMachine(progression, possible, ends=book["semantics"] == "finite")
     prove_table(formula, machine, letters)
+    table = machine["letters"], machine["following"], machine["accepting"]
+    same = rule.get("certificate", "") in ("", table_digest(*table))
+    require(same, "its certificate is of another table")
     if rule.get("cut") is not None:
         prove_cut_table(formula, rule["cut"], letters)
     prove_parts(rule)
     prove_hoa(formula, rule["hoa"], tree, letters, ends=book["semantics"] == "finite")
+
+
+def table_digest(letters: Any, following: Any, accepting: Any) -> str:
+    """The SHA-256 of a table, as JSON without spaces: its letters, its states, its verdicts."""
+    table = json.dumps([letters, following, accepting], separators=(",", ":"))
+    return sha256(table.encode()).hexdigest()
 
 
 def _comparisons(tree: Any) -> list[Mapping[str, Any]]:

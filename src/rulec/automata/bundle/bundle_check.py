@@ -287,6 +287,7 @@ def _rule(
         weight=number_from_data(rule.weight),
         trigger=trigger_of_parts(formula) if parts is None else _trigger_of(parts),
         parts=parts,
+        certificate=rule.certificate,
     )
     if not own:
         _check_rule(compiled, rule, vocabulary, levels)

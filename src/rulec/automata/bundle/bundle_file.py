@@ -130,6 +130,7 @@ def _rule(
         formula=formula_text(rule.formula),
         tree=to_data(rule.formula),
         parts=None if rule.parts is None else _parts(rule.parts),
+        certificate=rule.certificate,
         machine=schema.MachineEntry(
             reads=[_read(read) for read in machine.reads],
             letters=machine.letters,

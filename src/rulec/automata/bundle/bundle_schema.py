@@ -145,7 +145,8 @@ class PartsEntry(_Strict, omit_defaults=True):
 class BundleRule(_Strict, omit_defaults=True):
     """One rule; ``cut`` is null if that machine would be too large, and left out if none was made.
 
-    Without ``parts`` it is nothing but what it requires.
+    Without ``parts`` it is nothing but what it requires. ``certificate`` is the digest of a table
+    that two compilers have come to.
     """
 
     name: str
@@ -166,6 +167,7 @@ class BundleRule(_Strict, omit_defaults=True):
     cut: CutMachineEntry | msgspec.UnsetType | None = msgspec.UNSET
     parts: PartsEntry | None = None
     inherited_from: str = ""
+    certificate: Annotated[str, msgspec.Meta(pattern="^([0-9a-f]{64})?$")] = ""
 
 
 class AxiomEntry(_Strict):

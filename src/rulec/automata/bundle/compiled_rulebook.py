@@ -29,7 +29,8 @@ class CompiledRule:
     ``step_s`` is the step of the traces that the machine can judge; None if it can judge any,
     because the formula has no bounds in seconds. ``trigger`` is what has to hold for the rule to
     ask for anything, None where its form names nothing (``logic.opportunities``); ``parts`` are
-    what it is read off, None if that is the formula.
+    what it is read off, None if that is the formula. ``certificate`` is the digest of the table if
+    two compilers have come to it.
     """
 
     __repr__ = short_repr
@@ -51,6 +52,7 @@ class CompiledRule:
     trigger: Formula | None = None
     parts: model.RuleParts | None = None
     inherited_from: str = ""
+    certificate: str = ""
 
 
 @dataclass(frozen=True, slots=True)

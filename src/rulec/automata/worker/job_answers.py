@@ -18,8 +18,8 @@ from rulec.automata.compiler_jobs import (
     Translated,
 )
 from rulec.automata.mealy_monitor import MealyMonitor
-from rulec.automata.random_words import agrees
 from rulec.automata.tables import build_machine
+from rulec.automata.worker.random_words import agrees
 from rulec.logic.bounds import operations_of
 from rulec.logic.codec import to_data
 from rulec.logic.formula import Formula

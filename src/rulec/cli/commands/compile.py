@@ -60,6 +60,11 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
     is_flag=True,
     help="Compile the monitor, hold it against its tables and write a report of that, too.",
 )
+@click.option(
+    "--no-certificate",
+    is_flag=True,
+    help="Leave out to compile again by a second compiler, which takes about as long as the first.",
+)
 @shared.at_option
 def command(
     rulebook: str,
@@ -69,6 +74,7 @@ def command(
     emit: Literal["automata", "c", "rust", "ros2", "ltl"],
     objects: Mapping[str, int],
     prove: bool,
+    no_certificate: bool,
     at: str,
 ) -> None:
     """Compile RULEBOOK: a name, or the path of a source.
@@ -97,7 +103,7 @@ def command(
         paths = session.write_ltl(rulebook, output, steps_s[0] if steps_s else None)
     elif emit == "automata":
         compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
-        paths = session.write_compiled(compiled, output)
+        paths = session.write_compiled(compiled, output, certificate=not no_certificate)
     else:
         compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
         paths = session.write_monitor(compiled, output, objects, prove=prove, language=emit)

@@ -63,7 +63,7 @@ def file_option(name: str, help_text: str) -> Callable[[Decorated], Decorated]:
 
 
 def _beside(context: click.Context, parameter: click.Parameter, value: str | None) -> Path | None:
-    return None if value is None else Path(read_as_file(context, parameter, value))
+    return None if value is None else Path(read_as_file(context, parameter, value, ending=""))
 
 
 def _seconds(

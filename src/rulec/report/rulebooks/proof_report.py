@@ -16,6 +16,7 @@ class ProofLine(msgspec.Struct, frozen=True):
 
     ``step_s`` is the step that its tables are for, as the file spells it, null for any. ``states``
     are a shortest trace that they judge otherwise than the formula, if that is why.
+    ``compilers_agree``: two compilers have come to its table, as its file says.
     """
 
     rule: str
@@ -23,6 +24,7 @@ class ProofLine(msgspec.Struct, frozen=True):
     proved: bool
     because: str | None
     states: Sequence[Mapping[str, str]]
+    compilers_agree: bool
 
 
 class FileProofs(msgspec.Struct, frozen=True):
@@ -48,7 +50,7 @@ def render(proofs: Sequence[tuple[str, Sequence[RuleProof]]], output_format: str
 
 def _line(proof: RuleProof) -> ProofLine:
     because = proof.because or None
-    return ProofLine(proof.rule, proof.step_s, because is None, because, proof.word)
+    return ProofLine(proof.rule, proof.step_s, because is None, because, proof.word, proof.agreed)
 
 
 def _text(proofs: Sequence[tuple[str, Sequence[RuleProof]]]) -> Iterator[str]:
@@ -56,6 +58,7 @@ def _text(proofs: Sequence[tuple[str, Sequence[RuleProof]]]) -> Iterator[str]:
         for proof in own:
             at = "" if proof.step_s is None else f" at steps of {proof.step_s} s"
             found = f"not proved, because {proof.because}" if proof.because else "proved"
+            found += ", two compilers agree" if proof.agreed else ""
             yield visible(f"{name}: rule {proof.rule}{at}: {found}")
             for number, state in enumerate(proof.word):
                 read = ", ".join(f"{subject}: {value}" for subject, value in state.items())

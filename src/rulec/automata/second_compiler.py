@@ -1,0 +1,82 @@
+"""Certificates: rules that were compiled twice, by Spot and without it, to one table.
+
+Both compilers make the minimal machine, its states and classes of letters numbered alike, so the
+tables have to be the same, number for number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from rulec.automata import compiler
+from rulec.automata.bundle.stored_prefixes import StoredPrefixes
+from rulec.automata.bundle.stored_steps import StoredSteps
+from rulec.automata.compiler_jobs import Done, Failed
+from rulec.automata.compiler_messages import COMPILERS_DISAGREE
+from rulec.automata.worker.compiler_choice import DIAGRAMS
+from rulec.diagnostics import RulecError
+from rulec.validation.file_proof import table_digest
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+    from rulec.automata.mealy_monitor import MealyMonitor
+
+
+def certified(rulebook: CompiledRulebook) -> CompiledRulebook:
+    """The rulebook with certificates of the rules that rulec's own compiler gives the same table.
+
+    Those that it cannot compile have none; nor has a rulebook that Spot did not compile. One that
+    was read from a file keeps what it has. Raises RulecError R0417 if the tables differ.
+    """
+    if not rulebook.spot:
+        return rulebook
+    steps = rulebook.recompile
+    if isinstance(steps, StoredSteps):
+        books = _with_certificates(steps.books)
+        return replace(rulebook, recompile=replace(steps, books=tuple(books)))
+    if rulebook.prefixes is None or isinstance(rulebook.prefixes, StoredPrefixes):
+        return rulebook
+    return _with_certificates([rulebook])[0]
+
+
+def _with_certificates(books: Sequence[CompiledRulebook]) -> list[CompiledRulebook]:
+    # Rules without bounds in seconds are the same for all steps.
+    rules = {(rule.name, rule.step_s): (rule, book) for book in books for rule in book.rules}
+    jobs = [compiler.job_of(rule, book) for rule, book in rules.values()]
+    answers, _ = compiler.answers_to(jobs, choice=DIAGRAMS)
+    pairs = list(zip(rules.items(), answers, strict=True))
+    different = [
+        rule.name
+        for (_, (rule, _)), answer in pairs
+        if answer == Failed("check")
+        or (isinstance(answer, Done) and answer.machine != rule.machine)
+    ]
+    if different:
+        raise RulecError(
+            [
+                COMPILERS_DISAGREE.at(
+                    books[0].place_of(name),
+                    f"Spot and rulec's own compiler make different tables of rule `{name}`",
+                    help="this is a bug in one of them, none in the rulebook: please report it",
+                )
+                for name in different
+            ]
+        )
+    known = {key: _digest(rule.machine) for (key, (rule, _)), one in pairs if isinstance(one, Done)}
+    return [
+        replace(book, rules=tuple([_with_certificate(rule, known) for rule in book.rules]))
+        for book in books
+    ]
+
+
+def _with_certificate(
+    rule: CompiledRule, known: dict[tuple[str, Fraction | None], str]
+) -> CompiledRule:
+    return replace(rule, certificate=known.get((rule.name, rule.step_s), ""))
+
+
+def _digest(machine: MealyMonitor) -> str:
+    return table_digest(machine.letters, machine.successors, machine.outputs)
