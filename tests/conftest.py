@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from rulec.automata import compiler, prefix_machines
+from support import hidden_spot
 from support.remembered_machines import ASKED, remembering
 from support.snapshots import Snapshots
 
@@ -31,11 +32,15 @@ os.environ.setdefault("RULEC_JOBS", "1")
 
 
 def pytest_collection_modifyitems(items):
-    """Leave what is marked ``long`` to the long profile."""
+    """Leave what is marked ``long`` to the long profile, and ``spot`` to who has Spot."""
     if os.environ.get("RULEC_TEST_PROFILE") != "long":
         for item in items:
             if item.get_closest_marker("long"):
                 item.add_marker(pytest.mark.skip(reason="takes long: --long"))
+    if not hidden_spot.is_there():
+        for item in items:
+            if item.get_closest_marker("spot"):
+                item.add_marker(pytest.mark.skip(reason="Spot is not installed"))
 
 
 _KEPT = "RULEC_TESTS_KEEP"
@@ -54,6 +59,8 @@ def pytest_configure(config):
     kept = Path(os.environ[_KEPT])
     own = kept / os.environ.get("PYTEST_XDIST_WORKER", "alone")
     os.environ["RULEC_CACHE_DIR"] = str(own)
+    if hidden_spot.VARIABLE in os.environ:
+        hidden_spot.hide(kept / "hidden")
     if os.environ.get("RULEC_TEST_PROFILE") != "long":
         (kept / "machines").mkdir(exist_ok=True)
         answers = remembering(kept / "machines")

@@ -12,6 +12,8 @@ from rulec.automata.worker.compiler_choice import DIAGRAMS
 from rulec.diagnostics import RulecError
 from support.builders.compiled_files import sealed
 
+pytestmark = pytest.mark.spot
+
 SOURCE = """\
 rulebook soon
 signal p, q

@@ -163,6 +163,7 @@ def checking(automaton, formula, semantics="stutter", cpu_s=None):
 SHAPE = ("parity", "det", "complete")
 
 
+@pytest.mark.spot
 @pytest.mark.parametrize("cpu_s", [None, 5])
 def test_an_automaton_that_fails_its_check_is_refused(cpu_s):
     """Had Spot translated `p` as `not p`, the check would not let it pass."""
@@ -175,6 +176,7 @@ def test_an_automaton_that_fails_its_check_is_refused(cpu_s):
             checking(wrong, P, cpu_s=cpu_s)
 
 
+@pytest.mark.spot
 def test_a_nondeterministic_automaton_fails_its_check(monkeypatch):
     from rulec.automata.spot_bridge import CheckError
 
@@ -185,6 +187,7 @@ def test_a_nondeterministic_automaton_fails_its_check(monkeypatch):
         checking("FG p", formula)
 
 
+@pytest.mark.spot
 def test_a_check_that_takes_too_long_is_left_out():
     """Nothing is known then, which is no mistake; the table is still compared on random words."""
     wide = chain(BinaryOperator.XOR, [eventually(Atom(f"s{i}")) for i in range(9)])
@@ -195,6 +198,7 @@ MEMORY = '"memory 0"'
 ONCE = Unary(UnaryOperator.ONCE, P)
 
 
+@pytest.mark.spot
 @pytest.mark.parametrize(
     ("automaton", "why"),
     [
@@ -216,6 +220,7 @@ def test_an_automaton_that_forgets_fails_its_check(automaton, why):
         checking(automaton, formula)
 
 
+@pytest.mark.spot
 def test_the_check_knows_where_words_end():
     from rulec.automata.spot_bridge import CheckError
 
@@ -277,6 +282,7 @@ def test_a_past_that_explodes_is_an_error():
     assert [one.code for one in caught.value.diagnostics] == ["R0401"]
 
 
+@pytest.mark.spot
 def test_a_failed_check_is_an_error_of_its_own(monkeypatch):
     failing = """
 from rulec.automata.spot_bridge import CheckError, translation
@@ -292,6 +298,7 @@ main(confined, choice)
     assert [one.code for one in caught.value.diagnostics] == ["R0402", "R0402"]
 
 
+@pytest.mark.spot
 def test_what_nobody_thought_of_is_a_bug_with_a_traceback(monkeypatch):
     worker = compiler._WORKER.replace(
         "\nmain(confined, choice)\n",

@@ -12,6 +12,7 @@ from rulec.cli.main import main
 from rulec.extraction import traffic_thresholds
 from rulec.rates import finding_rows
 from rulec.recordings import recording, recording_inputs
+from rulec.recordings.encodings.arrow import arrow_tables
 from rulec.report.findings.code_registry import all_codes
 from rulec.resource_limits import LIMITS, MOST_DIGITS
 from rulec.rulebook.arithmetic import size_limits
@@ -46,6 +47,9 @@ FIXED = {
     ),
     "time steps of a recording, from the first to the last": recording.MOST_STEPS,
     "time steps of a recording for one that is in it": recording.SPARSEST,
+    "cells of a table of a recording in Parquet, its rows times the columns that are read": (
+        arrow_tables.MOST_CELLS
+    ),
     "a number in findings that `rates` reads": finding_rows.LARGEST,
     "`--threshold`, in its unit": traffic_thresholds.LARGEST,
     "bytes of a scenario in TOML": scenario_files.LARGEST_BYTES,

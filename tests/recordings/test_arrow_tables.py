@@ -135,6 +135,14 @@ def test_too_many_rows_are_refused(tmp_path, monkeypatch):
         assert "2 rows" in refusal(tmp_path / "file").message
 
 
+def test_too_many_cells_are_refused(tmp_path, monkeypatch):
+    """Rows that are all alike take no bytes, and each column its own memory."""
+    path = tmp_path / "file"
+    as_parquet(path, TABLE)
+    monkeypatch.setattr(arrow_tables, "MOST_CELLS", 2 * len(WANTED.names) - 1)
+    assert "2 rows is too large" in refusal(path).message
+
+
 def test_a_file_may_be_too_large(tmp_path):
     path = tmp_path / "file"
     path.write_bytes(bytes(10_000_001))

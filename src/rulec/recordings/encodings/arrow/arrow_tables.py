@@ -27,6 +27,9 @@ from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
 from rulec.trace.formats.arrow.parquet import without_arrow
 
 MOST_ROWS = 5_000_000
+MOST_CELLS = 100_000_000
+"""Rows times columns that are read: one value may stand for many, packed into no bytes at all."""
+
 MOST_BYTES = 1_000_000_000
 """That the columns which are read unpack to."""
 
@@ -177,12 +180,13 @@ def _parquet(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wante
     # Not those of single columns: what is wrong with their statistics would end the process
     groups = range(about.num_row_groups)
     unpacked = sum(abs(about.row_group(number).total_byte_size) for number in groups)
-    if not 0 <= about.num_rows <= MOST_ROWS or unpacked > MOST_BYTES:
+    is_fit = 0 <= about.num_rows <= MOST_ROWS and about.num_rows * len(columns) <= MOST_CELLS
+    if not is_fit or unpacked > MOST_BYTES:
         raise _too_much(path, form, about.num_rows)
     batches, rows = [], 0
     for batch in source.iter_batches(columns=columns, use_threads=False):
         rows += batch.num_rows
-        if rows > MOST_ROWS:
+        if rows > MOST_ROWS or rows * len(columns) > MOST_CELLS:
             raise _too_much(path, form, rows)
         batches.append(batch)
     if not batches:
@@ -192,7 +196,7 @@ def _parquet(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wante
 
 def _too_much(path: Path, form: XmlFormat, rows: int) -> RulecError:
     why = f"its table of {rows:,} rows is too large"
-    expected = f"{MOST_ROWS:,} rows at most, and {MOST_BYTES:,} bytes"
+    expected = f"{MOST_ROWS:,} rows at most, {MOST_CELLS:,} cells and {MOST_BYTES:,} bytes"
     return form.refused(path, why, expected=f"expected {expected}")
 
 
