@@ -50,7 +50,9 @@ def render(proofs: Sequence[tuple[str, Sequence[RuleProof]]], output_format: str
 
 def _line(proof: RuleProof) -> ProofLine:
     because = proof.because or None
-    return ProofLine(proof.rule, proof.step_s, because is None, because, proof.word, proof.agreed)
+    return ProofLine(
+        proof.rule, proof.step_s, because is None, because, proof.word, compilers_agree=proof.agreed
+    )
 
 
 def _text(proofs: Sequence[tuple[str, Sequence[RuleProof]]]) -> Iterator[str]:
