@@ -8,7 +8,8 @@ import sys
 import pytest
 from click.shell_completion import BashComplete, FishComplete, ZshComplete
 
-from rulec.cli.main import VERBS, main, rulec
+from rulec.cli.main import main, rulec
+from rulec.cli.verb_table import VERBS
 from rulec.report.findings.code_registry import all_codes
 
 SHELLS = ("bash", "fish", "zsh")

@@ -40,6 +40,20 @@ def test_a_code(code, capsys):
     )
 
 
+@pytest.mark.parametrize(
+    ("name", "way_out"),
+    [
+        ("R2", "it is a rule, which `rulec show esterle2019 R2` explains"),
+        ("esterle2019", "it is a rulebook, which `rulec show esterle2019` explains"),
+        ("crossing_overtaking", "` explains (also of "),
+    ],
+)
+def test_a_rule_is_shown(name, way_out, capsys):
+    status, out, err = explain(capsys, name)
+    assert (status, out) == (2, "")
+    assert way_out in err.splitlines()[0]
+
+
 def test_a_code_without_an_example(capsys):
     status, out, _ = explain(capsys, "R0403")
     assert status == 0

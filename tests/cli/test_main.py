@@ -7,7 +7,8 @@ import sys
 
 import pytest
 
-from rulec.cli.main import VERBS, main
+from rulec.cli.main import main
+from rulec.cli.verb_table import VERBS
 
 RULEC = [sys.executable, "-c", "from rulec.cli.main import main; raise SystemExit(main())"]
 

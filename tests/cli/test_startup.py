@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.main import VERBS
+from rulec.cli.verb_table import VERBS
 from support.builders.sumo_files import body, data, moment, written
 
 HEAVY = {

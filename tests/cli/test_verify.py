@@ -37,6 +37,7 @@ def test_the_documented_line_of_json(verify):
     assert json.loads(out) == {
         "version": 1,
         "trace": "t1",
+        "rulebook": "esterle2019",
         "satisfied": False,
         "violations": [
             {
@@ -60,6 +61,7 @@ def test_satisfied(verify):
     assert json.loads(out) == {
         "version": 1,
         "trace": "t1",
+        "rulebook": "esterle2019",
         "satisfied": True,
         "violations": [],
         "open": [],

@@ -196,3 +196,68 @@ def test_parquet_without_its_package(verify, monkeypatch):
     assert (status, out) == (2, "")
     assert "pip install 'rulec[parquet]'" in err
     assert not Path("a.parquet").exists()
+
+
+SLOWER = BOOK.replace("rulebook tiny", "rulebook slower").replace("45 km/h", "40 km/h")
+ONE_RULE = "rulebook other\nuse road\nhard rule dry { require always speed >= 0 km/h }\n"
+
+
+def test_several_rulebooks_side_by_side(verify):
+    Path("slower.rules").write_text(SLOWER)
+    Path("other.rules").write_text(ONE_RULE)
+    status, out, err = verify(
+        A, "-r", "./slower.rules", "-r", "./other.rules", "-r", "./slower.rules"
+    )
+    assert (status, err) == (1, "")
+    assert [line for line in out.splitlines() if line.startswith("by ")] == [
+        "by slower",
+        "by other",
+        "by tiny",
+        "by          slower         other  tiny",
+    ]
+    # 3 drives 43.2 km/h, 4 drives 50.4 km/h, another one slower; of none it is known to be dry.
+    assert out.splitlines()[-8:] == [
+        "by          slower         other  tiny",
+        "─" * 38,
+        "slow             2  no such rule     1",
+        "─" * 38,
+        "satisfied        0             3     0",
+        "violated         2             0     1",
+        "open             1             0     2",
+        "not judged       0             0     0",
+    ]
+
+
+def test_several_rulebooks_on_traces_and_in_files(verify):
+    Path("slower.rules").write_text(SLOWER)
+    Path("t.jsonl").write_text(
+        '{"id": "t1", "states": [{"speed": 42, "wet": false}]}\n{"id": "t2", "states": 3}\n'
+    )
+    status, out, _ = verify("t.jsonl", "-r", "./slower.rules", "-o", "t.csv", "-o", "t.json")
+    assert status == 2
+    assert "slow             1  kept\n" in out
+    assert "not judged       1     1\n" in out
+    lines = [json.loads(line) for line in Path("t.json").read_text().splitlines()]
+    assert [(line["rulebook"], line.get("satisfied")) for line in lines] == [
+        ("slower", False),
+        ("slower", None),
+        ("tiny", True),
+        ("tiny", None),
+    ]
+    with Path("t.csv").open(newline="") as stream:
+        found = [(row["rulebook"], row["outcome"]) for row in csv.DictReader(stream)]
+    assert found == [("slower", "violated"), ("slower", "not_judged"), ("tiny", "not_judged")]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([A, "-o", "x.sarif"], "sarif is of one rulebook; of several give one of text, json,"),
+        (["-"], "standard input is read once"),
+    ],
+)
+def test_what_does_not_go_with_several_rulebooks(arguments, words, verify):
+    Path("slower.rules").write_text(SLOWER)
+    status, out, err = verify(*arguments, "-r", "./slower.rules")
+    assert (status, out) == (2, "")
+    assert words in err

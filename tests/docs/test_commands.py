@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from rulec.cli.main import VERBS, main, rulec
+from rulec.cli.main import main, rulec
+from rulec.cli.verb_table import VERBS
 from rulec.report.findings.diagnostics_json import FindingData
 from rulec.report.findings.finding_formats import FORMATS
 

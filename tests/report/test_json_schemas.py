@@ -7,7 +7,8 @@ import click
 import pytest
 from jsonschema import Draft202012Validator
 
-from rulec.cli.main import VERBS, main, rulec
+from rulec.cli.main import main, rulec
+from rulec.cli.verb_table import VERBS
 from support.builders.road_scenes import CHILD_AT_THE_KERB
 from tools.json_schemas import SCHEMAS
 

@@ -12,44 +12,10 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.interruption import is_interrupted
+from rulec.cli.verb_table import VERB_GROUPS, VERBS, WITH_COMPILED
 from rulec.diagnostics import RulecError, nearest_name
 from rulec.version import __version__
 
-VERBS = {
-    "analyze": "Find rules that have no effect, contradict each other, or weaken a treaty.",
-    "audit": "Say what rulebooks rest on: rules without a source or examples, what was left out.",
-    "check": "Check rulebooks and vocabularies.",
-    "compile": "Compile a rulebook to automata files.",
-    "completion": "Print the script that completes rulec's commands in a shell.",
-    "diff": "Compare two rulebooks: which is stricter where, with traces that show it.",
-    "doc": "Write a rulebook as a document for lawyers.",
-    "draw": "Draw scenes over time, navigation graphs and traces.",
-    "envelopes": "Write the bounds of the cheapest satisfying maneuvers as a table.",
-    "explain": "Explain a code of a message.",
-    "find": "List the moments at which a formula holds in drives.",
-    "fleet": "Judge all drives of a fleet: many files, on one machine or on Ray or Spark.",
-    "fmt": "Format rulebooks and vocabularies.",
-    "formats": "List the formats of recorded traffic and of maps, and what each can tell.",
-    "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",
-    "lsp": "Answer an editor: diagnostics, completion, renaming and the like.",
-    "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
-    "monitor": "Judge a running trace by a rulebook, state by state.",
-    "new": "Write a rulebook to start from.",
-    "rates": "Say how often rules are violated: per hour, per 1000 km, per opportunity.",
-    "show": "Show a rule in English, as a formula, as an automaton, by examples.",
-    "test": "Run the examples of rulebooks.",
-    "traces": "Write all maneuvers of a scenario as traces.",
-    "tree": "Show what a rulebook inherits, overrides and drops.",
-    "verify": "Judge traces by a rulebook.",
-    "verify-compiled": "Prove that compiled tables do what their formulas say.",
-}
-
-
-WITH_COMPILED = (
-    *("draw", "envelopes", "fleet", "maneuvers", "monitor", "show", "traces", "verify"),
-    "verify-compiled",
-)
-"""The verbs that take compiled rulebooks."""
 
 
 def _require_signed(context: click.Context, _: click.Parameter, key: str | None) -> None:
@@ -70,6 +36,25 @@ _REQUIRE_SIGNED = click.Option(
 )
 
 
+def _color(context: click.Context, _: click.Parameter, choice: str | None) -> None:
+    if choice is not None:
+        # 7 ms: only where it is said.
+        from rulec.report.text.terminal_text import colored
+
+        context.with_resource(colored(choice))
+
+
+COLOR = click.Option(
+    ["--color"],
+    type=click.Choice(["auto", "always", "never"]),
+    help="Colour in text.  [default: auto, which is on a terminal, unless NO_COLOR is set]",
+    expose_value=False,
+    is_eager=True,
+    callback=_color,
+)
+"""What every verb takes, and what may stand before the verb, too."""
+
+
 class _Verbs(click.Group):
     """Imports a verb's file only when that verb is called."""
 
@@ -88,28 +73,35 @@ class _Verbs(click.Group):
             for verb in kinds:
                 if _REQUIRE_SIGNED not in verb.params:
                     verb.params.append(_REQUIRE_SIGNED)
+        if COLOR not in command.params:
+            command.params.append(COLOR)
         return command
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        nearest = nearest_name(args[0], VERBS)
-        if args[0] not in VERBS and not args[0].startswith("-") and nearest is not None:
-            ctx.fail(f"there is no command `{args[0]}`; did you mean `{nearest}`?")
+        if args[0] not in VERBS and not args[0].startswith("-"):
+            nearest = nearest_name(args[0], VERBS)
+            way_out = f"did you mean `{nearest}`?" if nearest else "`rulec help` lists them"
+            ctx.fail(f"there is no command `{args[0]}`; {way_out}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        with formatter.section("Commands"):
-            formatter.write_dl(list(VERBS.items()))
+        width = max(map(len, VERBS))
+        for title, verbs in VERB_GROUPS.items():
+            with formatter.section(title):
+                formatter.write_dl([(verb.ljust(width), about) for verb, about in verbs.items()])
 
 
 @click.command(
     cls=_Verbs,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="Exit status: 0 all is well, 1 a hard rule is violated or a mistake found, "
-    "2 could not be answered, 70 a bug in rulec.",
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    params=[COLOR],
+    epilog="`rulec help COMMAND` says more of a command.  Exit status: 0 all is well, 1 a hard "
+    "rule is violated or a mistake found, 2 could not be answered, 70 a bug in rulec.",
 )
-@click.version_option(__version__, message="rulec %(version)s")
+@click.version_option(__version__, "-V", "--version", message="rulec %(version)s")
 @click.option(
     "--limit",
     "limits",
@@ -126,6 +118,8 @@ def rulec(context: click.Context, limits: Sequence[str]) -> None:
         from rulec.resource_limits import in_force
 
         context.with_resource(in_force(limits))
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -151,7 +145,7 @@ def _status_after(problem: BaseException) -> int:
         return ExitStatus.INTERRUPTED
     match problem:
         case click.ClickException():
-            _say(_visible(problem.format_message()), getattr(problem, "ctx", None))
+            _say_misuse(problem)
             return ExitStatus.NOT_ANSWERED
         case RulecError():
             # Its text and colours, 7 ms: not for `rulec --help`.
@@ -210,8 +204,23 @@ def _visible(text: str) -> str:
     return outgoing(visible(text))
 
 
-def _say(text: str, usage: click.Context | None = None) -> None:
+def _say(text: str) -> None:
     with suppress(OSError):
-        if usage is not None:
-            click.echo(f"{usage.get_usage()}\nTry '{usage.command_path} --help'.\n", err=True)
         click.echo(f"rulec: {text}", err=True)
+
+
+def _say_misuse(problem: click.ClickException) -> None:
+    """Say what is wrong with a command as it is said of sources, with how it is meant."""
+    # Colours, 7 ms: only where something is wrong.
+    from rulec.report.text.terminal_text import styled, wants_color
+
+    color = wants_color(sys.stderr)
+    text = _visible(problem.format_message())
+    said = f"{styled('error', 'bold red', color)}: {text}"
+    context = getattr(problem, "ctx", None)
+    if context is not None:
+        help_of = context.command_path.replace("rulec", "rulec help", 1)
+        usage = " ".join(context.command.collect_usage_pieces(context))
+        said += f"\n  = usage: {context.command_path} {usage}\n  = help: `{help_of}` says more"
+    with suppress(OSError):
+        click.echo(said, err=True, color=color)

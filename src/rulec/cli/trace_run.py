@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import stat
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from io import UnsupportedOperation
@@ -25,6 +24,7 @@ from rulec.report.text.console import page_width, progress
 from rulec.report.verdict_findings.found_in_traces import not_judged_trace, trace_findings
 from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
 from rulec.report.verdicts import verdict_json, verdict_report
+from rulec.report.verdicts.batch_table import BatchTally
 from rulec.trace import Trace
 from rulec.trace.formats.trace_files import Format, format_of, read_chunks
 
@@ -49,8 +49,7 @@ class TraceRun:
     to_explain: int
     every_part: bool
     engine: CEngine | None = None
-    counts: Counter[bool | None] = field(default_factory=Counter)
-    not_judged: int = 0
+    total: BatchTally = field(default_factory=BatchTally)
     judged: bool = False
     open_hard: bool = False
 
@@ -59,7 +58,7 @@ class TraceRun:
         for file in files:
             findings: list[VerdictFinding] = []
             rows: list[Mapping[str, object]] = []
-            left, traces_before = self.to_explain, self.counts.total()
+            left, traces_before = self.to_explain, self.total.judged
             for traces, place, answer in self._answers(file, form, assumed):
                 before = len(findings)
                 if isinstance(answer, NotJudged):
@@ -69,9 +68,9 @@ class TraceRun:
                 if self.to.to_rows is not None:
                     rows += self._rows(file, (traces, place, answer), findings[before:])
             if self.to.wants_findings:
-                drives = self.counts.total() - traces_before
+                drives = self.total.judged - traces_before
                 self.to.found(FoundInRecording(file, "", drives, tuple(findings), tuple(rows)))
-        self.to.text(verdict_report.summary(self.counts, self.not_judged))
+        self.to.text(verdict_report.summary(self.total.counts, self.total.not_judged))
         if self.engine is not None:
             self.to.text(verdict_report.judged_by(self.engine.judged, self.engine.compiled_by))
 
@@ -91,17 +90,17 @@ class TraceRun:
         yield from to_rows.of_trace(trace, verdict, own, used, found=found)
 
     def _not_judged(self, file: str, answer: NotJudged, findings: list[VerdictFinding]) -> None:
-        self.not_judged += 1
+        self.total.not_judged += 1
         self.complaints.add(answer.error)
         if self.to.wants_lines:
-            self.to.line(verdict_json.not_judged_as_json(answer))
+            self.to.line(verdict_json.not_judged_as_json(answer, self.rules.name))
         if self.to.wants_findings:
             findings.append(not_judged_trace(file, answer, self.rules.name))
 
     def _judged(self, file: str, answer: Any, left: int, findings: list[VerdictFinding]) -> int:
         """Say a verdict; how many violations have been explained."""
         traces, place, verdict = answer
-        self.counts[verdict.satisfied] += 1
+        self.total.add_trace(verdict, [rule.name for rule in self.rules.rules])
         self.open_hard |= any(result.strength == "hard" for result in verdict.open)
         self.judged |= len(verdict.not_judged) < max(len(self.rules.rules), 1)
         says = bool(verdict.violations or verdict.open or verdict.not_judged)

@@ -27,8 +27,8 @@ class VerdictOutputs:
     Where no output is standard output, that shows the text, but for what a file has of it.
     """
 
-    def __init__(self, to_rows: DriveRows | None) -> None:
-        self.to_rows = to_rows
+    def __init__(self) -> None:
+        self.to_rows: DriveRows | None = None
         """What makes rows of drives and rules, if tables of findings are to have them."""
         self._text: list[Callable[[str], None]] = []
         self._lines: list[Callable[[str], None]] = []
@@ -69,11 +69,11 @@ class VerdictOutputs:
 
 @contextmanager
 def verdict_outputs(
-    to: Sequence[Output], rules: CompiledRulebook, to_rows: DriveRows | None = None
+    to: Sequence[Output], rules: CompiledRulebook, *, with_rows: bool = False
 ) -> Iterator[VerdictOutputs]:
     """Outputs that are written whole when the block succeeds, and not at all else.
 
-    With ``to_rows`` tables of findings have rows of drives and rules, too.
+    ``with_rows``: tables of findings have rows of drives and rules, too.
 
     Raises RulecError R0702 if a file cannot be written, R0706.
     """
@@ -81,12 +81,12 @@ def verdict_outputs(
     from rulec.report.verdict_findings.verdict_finding import FindingsOf
 
     columns: Mapping[str, type] | None = None
-    if to_rows is not None:
+    if with_rows:
         # Arrow: not for --help.
         from rulec.fleet.finding_columns import COLUMNS
 
         columns = COLUMNS
-    outputs = VerdictOutputs(to_rows)
+    outputs = VerdictOutputs()
     written: list[Output] = []
     with ExitStack() as files:
         for one in to:

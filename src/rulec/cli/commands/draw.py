@@ -67,13 +67,16 @@ _judging_options = shared.combined(
 )
 
 
-@click.group()
-def command() -> None:
+@click.group(invoke_without_command=True)
+@click.pass_context
+def command(context: click.Context) -> None:
     """Draw a recorded drive, the scene over time, the navigation graph, or a trace.
 
     As SVG, PNG, PDF or a page (HTML). SVG and HTML need nothing else and come in light and dark, as
     the reader prefers; PNG and PDF take `pip install 'rulec[pictures]'`.
     """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
 
 
 @command.command()

@@ -9,6 +9,8 @@ from rulec.cli.options.shell_completion import complete_codes
 from rulec.cli.output import put_answer
 from rulec.diagnostics import nearest_name
 from rulec.report.findings import code_registry
+from rulec.report.text.terminal_text import first_of
+from rulec.settings import search_path
 
 
 @click.command()
@@ -24,11 +26,7 @@ def command(code: str | None, every: bool, to: Output) -> None:
         raise click.UsageError("give one code, or --all")
     named = None if code is None else code_registry.code_named(code.upper())
     if code is not None and named is None:
-        near = nearest_name(code.upper(), code_registry.all_codes())
-        raise click.UsageError(
-            f"there is no code `{code}`; "
-            + (f"did you mean `{near}`?" if near else "`rulec list codes` shows them all")
-        )
+        raise click.UsageError(f"there is no code `{code}`; {_way_out(code)}")
     codes = [*code_registry.all_codes().values()] if named is None else [named]
     match to.form:
         case "json":
@@ -43,3 +41,19 @@ def command(code: str | None, every: bool, to: Output) -> None:
         case _:
             text = "\n\n\n".join(map(code_registry.as_text, codes))
     put_answer(text, to)
+
+
+def _way_out(name: str) -> str:
+    """Where something else of this name is explained, or a code that may be meant."""
+    # Looking for files and their rules, 60 ms: only for what is no code.
+    from rulec.rulebook.files.catalogue import rulebooks_with_rule
+    from rulec.rulebook.files.search_path import available_rulebooks
+
+    if near := nearest_name(name.upper(), code_registry.all_codes()):
+        return f"did you mean `{near}`?"
+    if name in available_rulebooks(search_path()):
+        return f"it is a rulebook, which `rulec show {name}` explains"
+    if books := rulebooks_with_rule(name, search_path()):
+        more = f" (also of {first_of(books[1:], 3)})" if books[1:] else ""
+        return f"it is a rule, which `rulec show {books[0]} {name}` explains{more}"
+    return "`rulec list codes` shows them all"

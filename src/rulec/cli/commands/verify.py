@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -22,7 +22,6 @@ from rulec.cli.options.output_options import (
 )
 from rulec.cli.output import counted, read_machines
 from rulec.cli.verdict_outputs import FORMATS, verdict_outputs
-from rulec.diagnostics import RulecError
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, print_remark
 
@@ -30,18 +29,20 @@ if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.code_generation.compiled_c.c_engine import CEngine
     from rulec.fleet.drive_rows import DriveRows
-    from rulec.monitoring.verdict import EngineName, NotJudged, Verdict
+    from rulec.monitoring.verdict import EngineName
     from rulec.recordings.recording_inputs import InputFiles
-    from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
     from rulec.trace.trace_model import Ending
 
-    Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
+_OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
+"""The formats in which every line says by which rulebook."""
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@shared.rulebook_option()
+@shared.rulebook_option(
+    shared.RULEBOOK_HELP + " May be given several times, for verdicts side by side.", multiple=True
+)
 @shared.number_option(
     "--explain",
     "n_explained",
@@ -92,7 +93,7 @@ if TYPE_CHECKING:
 @shared.at_option
 def command(
     files: tuple[str, ...],
-    rulebook: str,
+    rulebooks: tuple[str, ...],
     n_explained: int | None,
     every_part: bool,
     strict: bool,
@@ -117,6 +118,8 @@ def command(
     below it, and a pattern, in which `*` is wild, all files that are called so; of several there is
     a line each, and one table of all.
 
+    By several rulebooks, -r de -r fr, everything is judged by each, and a table compares them.
+
     -o FILE writes the findings, one for each violation and for what is open or not judged: .jsonl,
     .csv, .parquet, .xml (JUnit), .sarif, .xqar (ASAM's Quality Checker) or .mcap (events beside the
     recording); with .json verdicts, as --json does, with .txt the text.
@@ -125,10 +128,13 @@ def command(
     """
     # Formats of recordings, 80 ms: not for --help.
     from rulec.recordings.recording_inputs import input_files
+    from rulec.report.verdicts.batch_table import BatchTally
 
     inputs = input_files(files)
     refuse_overwriting(to, inputs.paths)
-    rules = read_machines(rulebook, at)
+    if len(rulebooks) > 1 and STANDARD_OUTPUT in inputs.paths:
+        raise click.UsageError("standard input is read once; give a file, or one rulebook")
+    books = [read_machines(name, at) for name in dict.fromkeys(rulebooks)]
     form = scenario_options.trace_format(options)
     recordings = _recordings(inputs, form, named=options["input_format"] is not None)
     about = {name: value for name, value in options.items() if name != "assumed"}
@@ -144,11 +150,17 @@ def command(
         )
     if step_s is not None and (recordings or Fraction(str(float(step_s))) != step_s):
         raise click.UsageError("--step is a decimal, and for traces; a recording has its own step.")
+    for one in to if len(books) > 1 else ():
+        if one.form not in _OF_SEVERAL_BOOKS:
+            raise click.UsageError(
+                f"{one.form} is of one rulebook; of several give one of "
+                f"{', '.join(_OF_SEVERAL_BOOKS)}, or judge by each in a call of its own"
+            )
     if len(recordings) > 1 and any(one.form == "mcap" for one in to):
         raise click.UsageError("MCAP has one time line: give one recording.")
     traces = [path for path in inputs.paths if path not in recordings]
     is_json_alone = to == (Output(STANDARD_OUTPUT, "json"),)
-    usual = 0 if is_json_alone or len(inputs.paths) > 1 else 1
+    usual = 0 if is_json_alone or len(inputs.paths) > 1 or len(books) > 1 else 1
     to_explain = usual if n_explained is None else n_explained
     for searched in inputs.searched:
         found = counted(searched.recordings, "recording")
@@ -156,47 +168,65 @@ def command(
         print_remark(f"rulec: {found} in {searched.path}{more}")
     if exposure and not any(one.form in TABLES for one in to):
         raise click.UsageError("--exposure is for tables: -o FILE.jsonl, FILE.csv, FILE.parquet.")
-    to_rows = _to_rows(rules, egos, options, ends) if exposure else None
-    with verdict_outputs(to, rules, to_rows) as outputs:
+    with verdict_outputs(to, books[0], with_rows=exposure) as outputs:
         complaints = Complaints()
+        tallies: list[tuple[CompiledRulebook, BatchTally]] = []
         violated, judged, complete = False, False, True
-        if recordings or inputs.problems:
-            # numpy and shapely, 250 ms: only for recordings.
-            from rulec.batch.recording_judge import JudgeSettings
-            from rulec.cli.recording_run import RecordingRun
+        for rules in books:
+            if len(books) > 1:
+                outputs.text(f"{'' if rules is books[0] else chr(10)}by {rules.name}")
+            if exposure:
+                outputs.to_rows = _to_rows(rules, egos, options, ends)
+            by_rules, total = False, BatchTally()
+            if recordings or inputs.problems:
+                # numpy and shapely, 250 ms: only for recordings.
+                from rulec.batch.recording_judge import JudgeSettings
+                from rulec.cli.recording_run import RecordingRun
 
-            settings = JudgeSettings(
-                rules,
-                scenario_options.requested_drives(egos, options, rules.vocabulary),
-                scenario_options.recording_source("-", options),
-                to_explain=to_explain,
-                every_part=every_part,
-                width=page_width(),
-                text=outputs.wants_text,
-                lines=outputs.wants_lines,
-                findings=outputs.wants_findings,
-                to_rows=None if to_rows is None else to_rows.of_answer,
-            )
-            recorded = RecordingRun(settings, outputs, complaints)
-            for problem in inputs.problems:
-                recorded.not_read(problem)
-            if recordings:
-                recorded.files(recordings, jobs)
-            violated = bool(recorded.total.violated) or (strict and recorded.open_hard)
-            judged, complete = recorded.judged, recorded.complete
-        if traces:
-            # Formats of traces, 30 ms: not for recordings.
-            from rulec.cli.trace_run import TraceRun
+                to_rows = outputs.to_rows
+                settings = JudgeSettings(
+                    rules,
+                    scenario_options.requested_drives(egos, options, rules.vocabulary),
+                    scenario_options.recording_source("-", dict(options)),
+                    to_explain=to_explain,
+                    every_part=every_part,
+                    width=page_width(),
+                    text=outputs.wants_text,
+                    lines=outputs.wants_lines,
+                    findings=outputs.wants_findings,
+                    to_rows=None if to_rows is None else to_rows.of_answer,
+                )
+                recorded = RecordingRun(settings, outputs, complaints)
+                for problem in inputs.problems:
+                    recorded.not_read(problem)
+                if recordings:
+                    recorded.files(recordings, jobs)
+                violated |= bool(recorded.total.violated) or (strict and recorded.open_hard)
+                by_rules, complete = recorded.judged, complete and recorded.complete
+                total.include(recorded.total)
+            if traces:
+                # Formats of traces, 30 ms: not for recordings.
+                from rulec.cli.trace_run import TraceRun
 
-            assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
-            step = None if step_s is None else float(step_s)
-            assumed = replace(assumed, step_s=step)
-            judge = None if engine == "python" else _c_engine(rules)
-            traced = TraceRun(rules, outputs, complaints, to_explain, every_part, engine=judge)
-            traced.files(traces, form, assumed)
-            violated |= bool(traced.counts[False]) or (strict and traced.open_hard)
-            judged |= traced.judged
-            complete &= not traced.not_judged
+                assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
+                step = None if step_s is None else float(step_s)
+                assumed = replace(assumed, step_s=step)
+                judge = None if engine == "python" else _c_engine(rules)
+                traced = TraceRun(
+                    rules, outputs, complaints, to_explain, every_part, engine=judge
+                )
+                traced.files(traces, form, assumed)
+                violated |= bool(traced.total.violated) or (strict and traced.open_hard)
+                by_rules |= traced.judged
+                complete &= not traced.total.not_judged
+                total.include(traced.total)
+            tallies.append((rules, total))
+            judged = by_rules and (judged or rules is books[0])
+        if len(books) > 1:
+            # Verdicts and recordings: only where there are some.
+            from rulec.report.verdicts import side_by_side
+
+            outputs.text(f"\n{side_by_side.as_text(tallies)}")
     complaints.close()
     return ExitStatus.after(answered=judged and complete, failed=violated)
 

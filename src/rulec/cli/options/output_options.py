@@ -44,6 +44,7 @@ _ENDINGS: Endings = {
     "svg": (".svg",),
     "png": (".png",),
     "pdf": (".pdf",),
+    "roff": (".1", ".man"),
 }
 
 _BINARY = frozenset({"mcap", "parquet", "pdf", "png"})

@@ -128,12 +128,14 @@ def rulebooks_argument(
 
 
 def rulebook_option(
-    help_text: str = RULEBOOK_HELP, *, required: bool = True
+    help_text: str = RULEBOOK_HELP, *, required: bool = True, multiple: bool = False
 ) -> Callable[[Decorated], Decorated]:
-    """``--rulebook R``."""
+    """``--rulebook R``; ``multiple`` times it is given as ``rulebooks``."""
     return click.option(
         "-r",
         "--rulebook",
+        "rulebooks" if multiple else "rulebook",
+        multiple=multiple,
         required=required,
         metavar="R",
         help=help_text,

@@ -5,13 +5,16 @@ from __future__ import annotations
 import os
 import sys
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from textwrap import wrap
 from typing import TextIO
 
 from click import unstyle
 
 MOST_DIGITS = 30
+
+_PLAIN, _COLORED = "NO_COLOR", "FORCE_COLOR"
 
 _REORDERING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u061c")
 
@@ -31,9 +34,33 @@ def _shown(character: str) -> str:
     return character
 
 
+@contextmanager
+def colored(choice: str) -> Iterator[None]:
+    """Have colour ``always``, ``never``, or ``auto``, by the stream, while the block runs.
+
+    It is said in the environment, by which other processes go as well.
+    """
+    before = dict(os.environ)
+    try:
+        for name in (_PLAIN, _COLORED):
+            os.environ.pop(name, None)
+        if choice == "auto":
+            os.environ.update({name: before[name] for name in (_PLAIN,) if name in before})
+        else:
+            os.environ[_COLORED if choice == "always" else _PLAIN] = "1"
+        yield
+    finally:
+        for name in (_PLAIN, _COLORED):
+            os.environ.pop(name, None)
+            if name in before:
+                os.environ[name] = before[name]
+
+
 def wants_color(stream: TextIO) -> bool:
-    """Test for a terminal without a request for plain text (no-color.org)."""
-    return stream.isatty() and not os.environ.get("NO_COLOR")
+    """Test for a terminal without a request for plain text (no-color.org, force-color.org)."""
+    if os.environ.get(_PLAIN):
+        return False
+    return bool(os.environ.get(_COLORED)) or stream.isatty()
 
 
 def styled(text: str, style: str, color: bool | None = None) -> str:

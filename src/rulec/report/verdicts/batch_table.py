@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.recording_verdicts import ViolationTally
+from rulec.monitoring.verdict import Verdict
 from rulec.report.text.terminal_text import table_lines, visible
 from rulec.report.verdicts import verdict_report
 
@@ -46,6 +47,30 @@ class BatchTally:
             ego = min(times, key=lambda name: times[name])
             self.first.setdefault(rule, (file, ego, times[ego]))
 
+    def add_trace(self, verdict: Verdict, rules: Sequence[str]) -> None:
+        """Add the verdict on a trace, by these rules."""
+        self.satisfied += verdict.satisfied is True
+        self.violated += verdict.satisfied is False
+        self.doubtful += verdict.satisfied is None
+        is_open = {one.rule for one in verdict.open}
+        self.drives.update({violation.rule for violation in verdict.violations})
+        self.open_in.update(is_open)
+        self.judged_in.update(set(rules) - is_open - {one.rule for one in verdict.not_judged})
+
+    def include(self, other: BatchTally) -> None:
+        """Add what was judged by the same rulebook elsewhere; where first stays as it is."""
+        self.satisfied += other.satisfied
+        self.violated += other.violated
+        self.doubtful += other.doubtful
+        self.not_judged += other.not_judged
+        for rules in ("drives", "open_in", "judged_in"):
+            getattr(self, rules).update(getattr(other, rules))
+
+    @property
+    def counts(self) -> dict[bool | None, int]:
+        """How many drives are satisfied (True), violated (False), and open (None)."""
+        return {True: self.satisfied, False: self.violated, None: self.doubtful}
+
     @property
     def judged(self) -> int:
         """The number of drives that have a verdict."""
@@ -73,8 +98,7 @@ def as_text(total: BatchTally, rules: CompiledRulebook, unread: Sequence[str]) -
     if rows:
         head = ("violated", "", " drives", " recordings", "first")
         lines += ["", *table_lines([head, *rows], right=(2, 3))]
-    counts = {True: total.satisfied, False: total.violated, None: total.doubtful}
-    end = verdict_report.summary(counts, total.not_judged)
+    end = verdict_report.summary(total.counts, total.not_judged)
     lines.append(end.replace("traces", "drives").replace("trace", "drive"))
     return "\n".join(visible(line) for line in lines)
 

@@ -45,6 +45,7 @@ class NotDriven(JsonDocument, frozen=True, kw_only=True):
     """A vehicle without a drive to judge, and ``why_not``."""
 
     trace: str
+    rulebook: str
     recording: str
     mirrored: bool
     remarks: Sequence[str] | UnsetType = UNSET
@@ -66,6 +67,7 @@ def as_json(
 ) -> str:
     """Write a vehicle's verdict with explanations of its first violations."""
     recorded: dict[str, Any] = {
+        "rulebook": verdicts.rules.name,
         "recording": verdicts.recording.name,
         "mirrored": verdicts.mirrored,
         "remarks": verdicts.recording.remarks or UNSET,

@@ -191,6 +191,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     """
 
     trace: str
+    rulebook: str
     satisfied: bool | None
     violations: Sequence[ViolationData]
     open: Sequence[OpenData] = ()
@@ -203,6 +204,7 @@ class TraceNotJudged(JsonDocument, frozen=True, kw_only=True):
     """A trace that could not be judged; ``trace`` null without an id."""
 
     trace: str | None
+    rulebook: str
     error: ErrorData
 
 
@@ -215,6 +217,7 @@ def as_json(
 ) -> str:
     """Write a verdict; ``explained`` are explanations of its first violations."""
     own = {
+        "rulebook": rulebook.name,
         "violations": violations_data(verdict, rulebook, explained),
         "engine": verdict.engine if says_engine else UNSET,
         **doubts(verdict, rulebook),
@@ -259,9 +262,10 @@ def _inherited_from(name: str, rulebook: CompiledRulebook) -> str | UnsetType:
     return next(inherited, "") or UNSET
 
 
-def not_judged_as_json(answer: NotJudged) -> str:
+def not_judged_as_json(answer: NotJudged, rulebook: str) -> str:
     """Write why there is no verdict."""
-    return as_line(TraceNotJudged(trace=answer.trace, error=error_data(answer.error)))
+    error = error_data(answer.error)
+    return as_line(TraceNotJudged(trace=answer.trace, rulebook=rulebook, error=error))
 
 
 def violations_data(

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,6 +36,17 @@ def rulebook_heads(search_path: Sequence[Path] = ()) -> list[tree.File]:
     """The header lines of all readable rulebooks, by name, in alphabetical order."""
     files = map(_head, _rulebooks(search_path))
     return [file for file in files if file is not None and file.name is not None]
+
+
+def rulebooks_with_rule(name: str, search_path: Sequence[Path] = ()) -> list[str]:
+    """The rulebooks in whose text a rule of this name stands; what they inherit does not."""
+    rule = re.compile(rf"\brule\s+{re.escape(name)}\b".encode())
+    found = []
+    for path in _rulebooks(search_path):
+        with suppress(RulecError):
+            if rule.search(search.read_bytes(path)):
+                found.append(path.stem)
+    return found
 
 
 def list_vocabularies(search_path: Sequence[Path] = ()) -> list[Entry]:

@@ -1,0 +1,36 @@
+"""``rulec help``: what `--help` shows, asked for by a verb's name."""
+
+from __future__ import annotations
+
+import click
+from click.shell_completion import CompletionItem
+
+from rulec.cli.verb_table import VERBS
+from rulec.diagnostics import nearest_name
+
+
+def _verbs(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    return [
+        CompletionItem(verb, help=about)
+        for verb, about in VERBS.items()
+        if verb.startswith(incomplete)
+    ]
+
+
+@click.command()
+@click.argument("words", nargs=-1, metavar="[COMMAND]", shell_complete=_verbs)
+@click.pass_context
+def command(context: click.Context, words: tuple[str, ...]) -> None:
+    """Show what COMMAND does and takes, such as `check` or `draw drive`; without it all of them."""
+    here = context.find_root()
+    for word in words:
+        known = here.command.list_commands(here) if isinstance(here.command, click.Group) else []
+        found = None
+        if isinstance(here.command, click.Group):
+            found = here.command.get_command(here, word)
+        if found is None:
+            near = nearest_name(word, known)
+            way_out = f"did you mean `{near}`?" if near else "`rulec help` lists them"
+            raise click.UsageError(f"there is no command `{word}`; {way_out}")
+        here = click.Context(found, here, word)
+    click.echo(here.get_help())

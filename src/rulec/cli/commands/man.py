@@ -1,0 +1,24 @@
+"""``rulec man``: all commands as a manual page."""
+
+from __future__ import annotations
+
+import click
+
+from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.output import put_answer
+
+
+@click.command()
+@output_options(endings_of("roff"), "the page")
+@click.pass_context
+def command(context: click.Context, to: Output) -> None:
+    """Write the manual page rulec(1), which has every command with its options.
+
+    \b
+    rulec man -o ~/.local/share/man/man1/rulec.1    for `man rulec`
+    rulec man | man -l -                            to read it at once
+    """  # noqa: D301 - click reads the backspace
+    # Only for the page itself.
+    from rulec.cli.manual_page import manual_page
+
+    put_answer(manual_page(context.find_root()), to)

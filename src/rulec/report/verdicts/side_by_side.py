@@ -1,0 +1,40 @@
+"""The verdicts by several rulebooks on the same traces or drives, side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.report.text.terminal_text import table_lines, visible
+from rulec.report.verdicts.batch_table import BatchTally
+
+
+def as_text(tallies: Sequence[tuple[CompiledRulebook, BatchTally]]) -> str:
+    """A table with a column for each rulebook, and a row for each rule that one says is violated.
+
+    A number is that of the traces or drives that violate the rule.
+    """
+    names = dict.fromkeys(
+        rule.name for rules, total in tallies for rule in rules.rules if total.drives[rule.name]
+    )
+    rows = [("by", *(rules.name for rules, _ in tallies))]
+    rows += [(name, *(_cell(name, *one) for one in tallies)) for name in sorted(names)]
+    for verdict, word in ((True, "satisfied"), (False, "violated"), (None, "open")):
+        rows.append((word, *(f"{total.counts[verdict]:,}" for _, total in tallies)))
+    rows.append(("not judged", *(f"{total.not_judged:,}" for _, total in tallies)))
+    lines = table_lines(
+        [tuple(map(visible, row)) for row in rows],
+        right=range(1, len(tallies) + 1),
+        ruled=[0, len(names)] if names else [0],
+    )
+    return "\n".join(lines)
+
+
+def _cell(name: str, rules: CompiledRulebook, total: BatchTally) -> str:
+    if name not in {rule.name for rule in rules.rules}:
+        return "no such rule"
+    if total.drives[name]:
+        return f"{total.drives[name]:,}"
+    if total.open_in[name]:
+        return "open"
+    return "kept" if total.judged_in[name] else "not judged"
