@@ -86,6 +86,7 @@ def test_a_line_of_json_for_each_drive(verify):
     assert {name: first[name] for name in first if name != "violations"} == {
         "version": 1,
         "trace": "4",
+        "rulebook": "tiny",
         "satisfied": False,
         "open": [],
         "not_judged": [],
