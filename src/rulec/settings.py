@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import stat
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
 from rulec.file_messages import OUT_OF_TREE, WRONG_SETTINGS
@@ -13,6 +16,7 @@ from rulec.work_trees import leads_out, refuse_link_out, tree_of
 
 FILE_NAME = "rulec.toml"
 _HOW = 'such as `search_path = ["rulebooks"]`'
+_SETTINGS = ("search_path", "exclude")
 _INSIDE = (
     "name a folder relative to the file, in the same git work tree, or without one below the file"
 )
@@ -28,26 +32,52 @@ def search_path(folder: Path | None = None) -> tuple[Path, ...]:
 
     Raises RulecError: R0701 if it cannot be read, R0101 or R0704 for what is wrong in it.
     """
-    folder = folder or Path.cwd()
-    for place in (folder, *folder.parents):
-        file = place / FILE_NAME
-        if file.is_file():
-            return _folders(file)
-    return ()
+    file = _nearest(folder or Path.cwd())
+    return () if file is None else _folders(file, _read(file))
 
 
-def _folders(file: Path) -> tuple[Path, ...]:
+@dataclass(frozen=True, slots=True)
+class Exclusion:
+    """What is left alone below a folder: ``patterns`` as gitignore(5) has them."""
+
+    folder: Path
+    patterns: tuple[str, ...]
+
+
+def exclusion() -> Exclusion | None:
+    """What the ``exclude`` of ``rulec.toml`` says; None without. Raises RulecError, as above."""
+    file = _nearest(Path.cwd())
+    patterns = [] if file is None else _read(file)["exclude"]
+    return None if file is None or not patterns else Exclusion(file.parent, tuple(patterns))
+
+
+def _nearest(folder: Path) -> Path | None:
+    files = (place / FILE_NAME for place in (folder, *folder.parents))
+    return next((file for file in files if file.is_file()), None)
+
+
+def _read(file: Path) -> Mapping[str, list[str]]:
+    """The settings, each a list of texts."""
     refuse_link_out(file)
     with opened(file) as stream:
         source = decoded(str(file), read_whole(stream, file, MAX_SETTINGS_BYTES))
-    settings = parsed_toml(source, WRONG_SETTINGS, _HOW)
+    settings: dict[str, Any] = parsed_toml(source, WRONG_SETTINGS, _HOW)
     for name in settings:
-        if name != "search_path":
-            way_out = did_you_mean(name, ["search_path"]) or "the one setting is `search_path`"
+        if name not in _SETTINGS:
+            way_out = did_you_mean(name, _SETTINGS) or "there are `search_path` and `exclude`"
             raise _wrong(file, f"there is no setting `{name}`", way_out)
-    folders = settings.get("search_path", [])
-    if not isinstance(folders, list) or not all(isinstance(item, str) for item in folders):
-        raise _wrong(file, "`search_path` is not a list of folders", _HOW)
+    for name, of, how in (
+        ("search_path", "folders", _HOW),
+        ("exclude", "patterns", 'such as `exclude = ["old/", "*.draft.rules"]`'),
+    ):
+        value = settings.setdefault(name, [])
+        if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+            raise _wrong(file, f"`{name}` is not a list of {of}", how)
+    return settings
+
+
+def _folders(file: Path, settings: Mapping[str, list[str]]) -> tuple[Path, ...]:
+    folders = settings["search_path"]
     result = [file.parent / item for item in folders]
     tree = tree_of(file.parent)
     for item, path in zip(folders, result, strict=True):

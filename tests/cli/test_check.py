@@ -88,7 +88,7 @@ def test_a_vocabulary_that_several_use_is_complained_about_once(folder, capsys):
         (["empty"], "no rulebook and no vocabulary in this folder"),
         (["a\0b.rules"], "cannot be read"),
         ([""], "there is no rulebook"),
-        ([], "Missing argument"),
+        (["x*.rules"], "no rulebook and no vocabulary is called like that"),
         (["esterle2019", "--output-format", "xml"], "'sarif'"),
     ],
 )

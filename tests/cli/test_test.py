@@ -117,7 +117,7 @@ def test_nothing_to_run_fails_only_if_asked_to(odd, capsys):
 def test_a_pattern_that_matches_nothing_is_a_mistake(odd, capsys):
     for pattern, help_text in (("a", "did you mean `A`?"), ("A/4", "RULE or RULE/LABEL")):
         status, out, err = run(capsys, odd, "--run", pattern, "--coverage")
-        assert (status, out.splitlines()[-1]) == (2, "0 examples: 0 passed, 0 failed")
+        assert (status, out) == (2, "")
         assert f"error[R0460]: no rule and no example matches `{pattern}`\n" in err
         assert help_text in err
 
@@ -260,7 +260,6 @@ def test_a_rulebook_with_mistakes_does_not_keep_the_others_from_being_tested(odd
         (["esterle2019", "--threshold", "101"], "--threshold"),
         (["esterle2019", "--threshold", "nan"], "--threshold"),
         (["esterle2019", "--output-format", "sarif"], "'junit'"),
-        ([], "Missing argument"),
     ],
 )
 def test_what_cannot_be_answered(arguments, words, capsys):

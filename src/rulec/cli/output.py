@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
+from glob import has_magic
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, cast
 
@@ -14,6 +16,7 @@ import click
 import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output
+from rulec.cli.options.shared_options import only_sources
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.files import written_whole
 from rulec.report.findings.diagnostics_text import print_diagnostics
@@ -27,7 +30,7 @@ from rulec.report.text.console import (
 )
 from rulec.report.text.outgoing import OutgoingLines, outgoing
 from rulec.report.text.terminal_text import wants_color
-from rulec.settings import search_path
+from rulec.settings import exclusion, search_path
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -150,6 +153,25 @@ def print_left_alone(left_alone: Sequence[LeftAlone], *, verbose: bool) -> None:
         from rulec.rulebook.files.source_walk import in_words
 
         print_remark(f"left alone: {in_words(left_alone)}")
+
+
+def sources_of_rulebooks(references: Sequence[str], lack: str) -> tuple[str, ...]:
+    """Rulebooks by name or path, those in folders and of patterns in place of these.
+
+    ``lack`` is why none can be compiled, such as ``"cannot be audited"``. Raises RulecError R0733
+    where a folder has none.
+    """
+    only_sources(references, lack)
+    if not any(has_magic(reference) or os.path.isdir(reference) for reference in references):  # noqa: PTH112
+        return tuple(references)
+    # Sources below folders, 10 ms: not for --help.
+    from rulec.rulebook.batch.batch_check import rulebooks_meant
+
+    names, on_the_way = rulebooks_meant(references, search_path(), exclusion())
+    if on_the_way.refused:
+        raise RulecError(on_the_way.refused)
+    print_left_alone(on_the_way.left_alone, verbose=False)
+    return tuple(names)
 
 
 def counted(number: int, noun: str, several: str = "") -> str:

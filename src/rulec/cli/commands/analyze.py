@@ -14,7 +14,14 @@ from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output
-from rulec.cli.output import counted, errors_told, open_session, print_findings, print_lost
+from rulec.cli.output import (
+    counted,
+    errors_told,
+    open_session,
+    print_findings,
+    print_lost,
+    sources_of_rulebooks,
+)
 from rulec.diagnostics import Diagnostic
 from rulec.report.text.console import print_remark, progress
 
@@ -40,7 +47,7 @@ def command(rulebooks: tuple[str, ...], to: Output, fail_on: str, jobs: Jobs, at
     from rulec.analysis.lint.finding_messages import NOT_DECIDED
     from rulec.batch.spreading import spreading
 
-    shared.only_sources(rulebooks, "cannot be analyzed")
+    rulebooks = sources_of_rulebooks(rulebooks, "cannot be analyzed")
     findings: list[Diagnostic] = []
     unread: list[Diagnostic] = []
     for rulebook in dict.fromkeys(rulebooks):

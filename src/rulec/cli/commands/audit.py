@@ -13,7 +13,7 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.scenario_options import recording_options, recording_source
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.output import errors_told, open_session, put_answer, width_of
+from rulec.cli.output import errors_told, open_session, put_answer, sources_of_rulebooks, width_of
 from rulec.cli.standard_input import read_as_file
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def command(
     from rulec.analysis.audit.saved_audit import read_audits
     from rulec.report.rulebooks.audit_report import render
 
-    shared.only_sources(rulebooks, "cannot be audited")
+    rulebooks = sources_of_rulebooks(rulebooks, "cannot be audited")
     if law_now is not None and law is None:
         raise click.UsageError("--law-now needs --law, the text that it is compared with")
     if law is not None and len(rulebooks) > 1:

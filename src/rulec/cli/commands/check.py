@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
 from rulec.cli.options.output_options import Output
@@ -9,15 +11,18 @@ from rulec.cli.options.shared_options import at_option, findings_options, verbos
 from rulec.cli.options.shell_completion import complete_sources
 from rulec.cli.output import counted, print_findings, print_left_alone
 from rulec.cli.standard_input import standard_input
+from rulec.cli.watching import watch as watch_sources
+from rulec.cli.watching import watch_option
 from rulec.files import MAX_SOURCE_BYTES
 from rulec.report.text.console import print_remark
-from rulec.settings import search_path
+from rulec.settings import exclusion, search_path
+
+if TYPE_CHECKING:
+    from rulec.rulebook.batch.batch_check import Checked
 
 
 @click.command()
-@click.argument(
-    "sources", nargs=-1, required=True, metavar="FILE|NAME...", shell_complete=complete_sources
-)
+@click.argument("sources", nargs=-1, metavar="[FILE|NAME]...", shell_complete=complete_sources)
 @findings_options
 @click.option(
     "--no-cache",
@@ -30,6 +35,7 @@ from rulec.settings import search_path
     help="Write into the files what warnings offer. It may change what rules mean: read it.",
 )
 @verbose_option
+@watch_option
 @at_option
 def command(
     sources: tuple[str, ...],
@@ -40,36 +46,50 @@ def command(
     no_cache: bool,
     fix: bool,
     verbose: bool,
+    watch: bool,
 ) -> int:
     """Check rulebooks and vocabularies, and write nothing but fixes that are asked for.
 
-    Each is a name, a file, a folder (the sources in and below it, but for what git ignores, and for
-    environments), or `-` for standard input.
+    Each is a name, a file, a pattern, a folder (the sources in and below it, but for what git
+    ignores or rulec.toml excludes, and for environments), or `-` for standard input; without one it
+    is the working folder.
 
     Exit status: 0 no mistakes, 1 there are some, 2 a file could not be read.
     """
+    sources = sources or (".",)
+    if fix and "-" in sources:
+        raise click.UsageError("`-` is standard input and cannot be written; write it to a file")
+
+    def run() -> int:
+        done = _checked(sources, at, recalls=not no_cache)
+        if fix and any(finding.fix for finding in done.findings):
+            # The formatter, 20 ms: only where something is to be written.
+            from rulec.rulebook.batch.batch_fix import write_fixes
+
+            number, changed = write_fixes(done.files, done.findings)
+            print_remark(f"{counted(number, 'fix', 'fixes')} written to {', '.join(changed)}")
+            done = _checked(sources, at, recalls=not no_cache)
+        status = print_findings(
+            done.findings,
+            done.unread,
+            nothing=f"{counted(len(done.files), 'file')} checked",
+            to=to,
+            fail_on=fail_on,
+        )
+        print_left_alone(done.left_alone, verbose=verbose)
+        return status
+
+    if watch:
+        watch_sources(run, sources)
+    return run()
+
+
+def _checked(sources: tuple[str, ...], at: str, *, recalls: bool) -> Checked:
     # Rulebooks and what is remembered of them, 10 ms: not for --help.
     from rulec.rulebook.batch.batch_check import check
 
-    def given() -> bytes:
-        return standard_input().read(MAX_SOURCE_BYTES + 1)
+    return check(sources, _standard_input, search_path(), at, recalls=recalls, excluded=exclusion())
 
-    if fix and "-" in sources:
-        raise click.UsageError("`-` is standard input and cannot be written; write it to a file")
-    done = check(sources, given, search_path(), at, recalls=not no_cache)
-    if fix and any(finding.fix for finding in done.findings):
-        # The formatter, 20 ms: only where something is to be written.
-        from rulec.rulebook.batch.batch_fix import write_fixes
 
-        number, changed = write_fixes(done.files, done.findings)
-        print_remark(f"{counted(number, 'fix', 'fixes')} written to {', '.join(changed)}")
-        done = check(sources, given, search_path(), at, recalls=not no_cache)
-    status = print_findings(
-        done.findings,
-        done.unread,
-        nothing=f"{counted(len(done.files), 'file')} checked",
-        to=to,
-        fail_on=fail_on,
-    )
-    print_left_alone(done.left_alone, verbose=verbose)
-    return status
+def _standard_input() -> bytes:
+    return standard_input().read(MAX_SOURCE_BYTES + 1)

@@ -12,7 +12,14 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.output import counted, errors_told, open_session, output_stream, put_answer
+from rulec.cli.output import (
+    counted,
+    errors_told,
+    open_session,
+    output_stream,
+    put_answer,
+    sources_of_rulebooks,
+)
 from rulec.diagnostics import did_you_mean
 from rulec.report.text.console import print_remark, progress
 from rulec.settings import search_path
@@ -85,7 +92,7 @@ def command(
     from rulec.rulebook.loader import load_rulebook
     from rulec.trace.formats.json_lines import write_traces
 
-    shared.only_sources(rulebooks, "cannot be compared")
+    rulebooks = sources_of_rulebooks(rulebooks, "cannot be compared")
     if every:
         if paired:
             raise click.UsageError("--pair is for two rulebooks, not for --all")

@@ -18,7 +18,7 @@ from rulec.report.text.console import print_line, print_remark, print_result
 from rulec.report.text.outgoing import outgoing
 from rulec.report.text.terminal_text import visible
 from rulec.report.text.text_diff import as_diff, for_terminal
-from rulec.settings import search_path
+from rulec.settings import exclusion, search_path
 
 if TYPE_CHECKING:
     from rulec.rulebook.batch.batch_format import Formatted
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -> int:
     """Format rulebooks and vocabularies in place.
 
-    Each PATH is a file or a folder (the sources in it and below it, but for what git ignores, and
-    for environments); without one it is the working folder. `-` formats standard input to standard
-    output.
+    Each PATH is a file, a pattern or a folder (the sources in it and below it, but for what git
+    ignores or rulec.toml excludes, and for environments); without one it is the working folder. `-`
+    formats standard input to standard output.
 
     A file with mistakes of spelling is left as it is, and its mistakes are shown. What is written
     means the same and has the same comments, or nothing is written.
@@ -56,7 +56,7 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
             return ExitStatus.OK
         _show([file] if file.changed else [], diff=diff)
         return ExitStatus.after(failed=file.changed)
-    done = format_files(paths or ["."], search_path())
+    done = format_files(paths or ["."], search_path(), exclusion(), recalls=True)
     files, refused = done.files, done.refused
     changed = [file for file in files if file.changed]
     in_form = len(files) - len(changed)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -12,7 +14,9 @@ from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.output import print_lost, put_answer
+from rulec.cli.output import print_lost, put_answer, sources_of_rulebooks
+from rulec.cli.watching import watch as watch_sources
+from rulec.cli.watching import watch_option
 from rulec.diagnostics import RulecError
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_remark
@@ -33,7 +37,7 @@ def _number(
 
 
 @click.command()
-@shared.rulebooks_argument()
+@shared.rulebooks_argument("[RULEBOOK]...", required=False)
 @click.option(
     "--run",
     "pattern",
@@ -58,6 +62,7 @@ def _number(
     help="Fail if the examples cover less; implies --coverage.",
 )
 @shared.jobs_option("Test so many rulebooks at a time")
+@watch_option
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
@@ -67,13 +72,42 @@ def command(
     with_coverage: bool,
     threshold: float | None,
     jobs: Jobs,
+    watch: bool,
     at: str,
 ) -> int:
-    """Run the accept and reject examples of every RULEBOOK: a name, or the path of a source.
+    """Run the accept and reject examples of every RULEBOOK.
+
+    It is a name, the path of a source, a pattern, or a folder: all rulebooks in and below it.
+    Without one it is the working folder.
 
     Exit status: 0 all pass, 1 one fails, or --fail-on-empty or --threshold says so, 2 a rulebook
     could not be read or compiled, or --run matches nothing.
     """
+    references = rulebooks or (".",)
+    measured = with_coverage or threshold is not None
+
+    def run() -> int:
+        wanted = Wanted(pattern, at, measured=measured, fails_empty=fail_on_empty)
+        return _tested(references, wanted, threshold, to, jobs)
+
+    if watch:
+        watch_sources(run, references)
+    return run()
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which examples are run, on which day, and what is asked of them."""
+
+    pattern: str | None
+    at: str
+    measured: bool
+    fails_empty: bool
+
+
+def _tested(
+    references: Sequence[str], wanted: Wanted, threshold: float | None, to: Output, jobs: Jobs
+) -> int:
     # Rulebooks and their automata, 130 ms: not for --help.
     from rulec.batch.example_batch import ExampleRequest, measured_runs
     from rulec.book_tests.book_test_messages import nothing_to_run
@@ -81,11 +115,10 @@ def command(
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import shortcomings
 
-    shared.only_sources(rulebooks, "has no examples")
+    rulebooks = sources_of_rulebooks(references, "has no examples")
     runs: list[ExampleRun] = []
     coverages: list[tuple[RuleCoverage, ...]] = []
-    measured = with_coverage or threshold is not None
-    request = ExampleRequest(search_path(), at, pattern, measured)
+    request = ExampleRequest(search_path(), wanted.at, wanted.pattern, wanted.measured)
     for answer in measured_runs(request, rulebooks, jobs, partial(print_lost, "tested")):
         if isinstance(answer, RulecError):
             print_diagnostics(answer.diagnostics)
@@ -94,21 +127,19 @@ def command(
         print_diagnostics([*run.warnings, *uncovered_verdicts(run)])
         runs.append(run)
         coverages.append(covers)
-    covered = coverages if measured else None
-    if runs or to.form != "full":
-        put_answer(render(runs, covered, to.form), to)
-    short = shortcomings(runs, covered, threshold, fail_on_empty=fail_on_empty)
-    for sentence in short:
-        print_remark(f"rulec: {sentence}")
-    rules = [rule for run in runs for rule in run.rulebook.rules]
     answered = len(runs) == len(rulebooks)
     if (
-        pattern is not None
+        wanted.pattern is not None
         and answered
         and not any(run.outcomes or any(map(run.names, run.rulebook.rules)) for run in runs)
     ):
-        names = list(dict.fromkeys(rule.name for rule in rules))
-        print_diagnostics([nothing_to_run(pattern, names)])
-        answered = False
+        names = dict.fromkeys(rule.name for run in runs for rule in run.rulebook.rules)
+        raise RulecError([nothing_to_run(wanted.pattern, list(names))])
+    covered = coverages if wanted.measured else None
+    if runs or to.form != "full":
+        put_answer(render(runs, covered, to.form), to)
+    short = shortcomings(runs, covered, threshold, fail_on_empty=wanted.fails_empty)
+    for sentence in short:
+        print_remark(f"rulec: {sentence}")
     failed = any(not outcome.passed for run in runs for outcome in run.outcomes)
     return ExitStatus.after(answered=answered, failed=failed or bool(short))

@@ -8,7 +8,7 @@ import click
 
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.output import open_session, put_answer, width_of
+from rulec.cli.output import open_session, put_answer, sources_of_rulebooks, width_of
 from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
@@ -35,7 +35,7 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, to: Output, at: str
     from rulec.report.rulebooks import lineage_tree
     from rulec.rulebook.files.catalogue import rulebook_heads
 
-    shared.only_sources(rulebooks, "cannot be taken apart")
+    rulebooks = sources_of_rulebooks(rulebooks, "cannot be taken apart")
     width, color = width_of(to), wants_color(sys.stdout)
     if len(rulebooks) == 1:
         inherited = lineage_tree.chosen(open_session(at).tree(rulebooks[0]), pattern)

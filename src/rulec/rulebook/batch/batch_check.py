@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import date
+from glob import glob, has_magic
 from pathlib import Path
 from typing import Any
 
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import diagnostic_rows
+from rulec.file_messages import NOTHING_LEFT
 from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
-from rulec.rulebook.files.source_walk import FoundSources, LeftAlone, sources_below
+from rulec.rulebook.files.source_walk import SUFFIX, FoundSources, LeftAlone, sources_below
+from rulec.settings import Exclusion
+from rulec.source_detection import beginning_of, first_word_at
 from rulec.value_display import Rows, short_repr
 
 _STANDARD_INPUT = Path("standard input")
@@ -43,6 +48,7 @@ def check(
     at: str = "",
     *,
     recalls: bool = False,
+    excluded: Exclusion | None = None,
 ) -> Checked:
     """Check the files that references name; report each finding once.
 
@@ -52,12 +58,13 @@ def check(
         search_path: folders of rulebooks and vocabularies.
         at: the day (ISO) whose law it is; if empty, that of each `law` line or else today.
         recalls: may findings come from the cache where nothing has changed, and go there?
+        excluded: what is left alone in folders.
     """
     files: dict[str, str] = {}
     findings: dict[tuple[object, ...], Diagnostic] = {}
     meant = FoundSources()
     unread = meant.refused
-    for path in _meant(references, search_path, meant):
+    for path in _meant(references, search_path, excluded, meant):
         try:
             data = standard_input() if path is _STANDARD_INPUT else search.read_bytes(path)
         except RulecError as error:
@@ -95,20 +102,65 @@ def _findings(
 
 
 def _meant(
-    references: Iterable[str], search_path: Sequence[Path], meant: FoundSources
+    references: Iterable[str],
+    search_path: Sequence[Path],
+    excluded: Exclusion | None,
+    meant: FoundSources,
 ) -> Iterator[Path]:
     for reference in references:
         if reference == "-":
             yield _STANDARD_INPUT
             continue
         try:
-            found = find_sources(reference, search_path)
+            found = find_sources(reference, search_path, excluded)
         except RulecError as error:
             meant.refused += error.diagnostics
             continue
         meant.refused += found.refused
         meant.left_alone += found.left_alone
         yield from found.paths
+
+
+def rulebooks_meant(
+    references: Iterable[str],
+    search_path: Sequence[Path] = (),
+    excluded: Exclusion | None = None,
+) -> tuple[list[str], FoundSources]:
+    """Names and paths of rulebooks, with those in folders and of patterns in place of these.
+
+    Of folders and patterns vocabularies are left out. The second result has what was left alone
+    and refused on the way.
+    """
+    names: dict[str, None] = {}
+    on_the_way = FoundSources()
+    for reference in references:
+        known = "/" not in reference and reference in search.available_rulebooks(search_path)
+        if known or not (has_magic(reference) or os.path.isdir(reference)):  # noqa: PTH112
+            names[reference] = None
+            continue
+        found = find_sources(reference, search_path, excluded)
+        on_the_way.left_alone += found.left_alone
+        on_the_way.refused += found.refused
+        rulebooks = [path for path in found.paths if not _is_vocabulary(path)]
+        if found.paths and not rulebooks:
+            on_the_way.refused.append(
+                NOTHING_LEFT.at(
+                    SourceLocation(reference),
+                    "there are vocabularies, and no rulebook",
+                    help="give a folder with rulebooks, or the path of one",
+                )
+            )
+        # A file in the working folder would be taken for a name.
+        names |= {str(path) if "/" in str(path) else f"./{path}": None for path in rulebooks}
+    return list(names), on_the_way
+
+
+def _is_vocabulary(path: Path) -> bool:
+    with suppress(RulecError):
+        text = beginning_of(search.read_bytes(path))
+        start, end = first_word_at(text)
+        return text[start:end] == "vocabulary"
+    return False
 
 
 def _identity(diagnostic: Diagnostic) -> tuple[object, ...]:
@@ -118,10 +170,13 @@ def _identity(diagnostic: Diagnostic) -> tuple[object, ...]:
     return diagnostic.code, diagnostic.message, where
 
 
-def find_sources(reference: str, search_path: Sequence[Path] = ()) -> FoundSources:
-    """The files that a name, a path or a folder refers to.
+def find_sources(
+    reference: str, search_path: Sequence[Path] = (), excluded: Exclusion | None = None
+) -> FoundSources:
+    """The files that a name, a path, a folder or a pattern refers to.
 
-    A folder stands for the sources in it and below it, as ``sources_below`` finds them. A path
+    A folder stands for the sources in it and below it, as ``sources_below`` finds them. Where no
+    file is called so, ``*``, ``?`` and ``[…]`` are wild and ``**`` is any number of folders. A path
     that leads nowhere is returned as it is; reading it tells why. Raises RulecError R0703 for an
     unknown name.
     """
@@ -134,7 +189,9 @@ def find_sources(reference: str, search_path: Sequence[Path] = ()) -> FoundSourc
         if reference in vocabularies:
             return FoundSources([vocabularies[reference]])
     if os.path.isdir(reference):  # noqa: PTH112 - Path raises on a null character
-        return sources_below(reference)
+        return sources_below(reference, excluded)
+    if has_magic(reference) and not os.path.lexists(reference):
+        return _matching(reference, excluded)
     if not is_path:
         raise NAME_NOT_FOUND.error(
             None,
@@ -143,3 +200,26 @@ def find_sources(reference: str, search_path: Sequence[Path] = ()) -> FoundSourc
             notes=(search.BY_PATH,),
         )
     return FoundSources([Path(reference)])
+
+
+def _matching(pattern: str, excluded: Exclusion | None) -> FoundSources:
+    """The sources that a pattern matches, and those in folders that it matches."""
+    found = FoundSources()
+    # As the shell does it: what begins with a point has to be named so.
+    for path in sorted(glob(pattern, recursive=True)):  # noqa: PTH207
+        if os.path.isdir(path):  # noqa: PTH112
+            below = sources_below(path, excluded)
+            found.paths += below.paths
+            found.left_alone += below.left_alone
+        elif path.endswith(SUFFIX):
+            found.paths.append(Path(path))
+    if not found.paths:
+        found.refused.append(
+            NOTHING_LEFT.at(
+                SourceLocation(pattern),
+                "no rulebook and no vocabulary is called like that",
+                help="`*`, `?` and `[…]` stand for other letters; check the pattern and the "
+                "working folder",
+            )
+        )
+    return found

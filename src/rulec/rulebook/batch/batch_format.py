@@ -11,10 +11,10 @@ from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.file_messages import UNREADABLE_FILE, UNWRITABLE_FILE
 from rulec.files import written_whole
 from rulec.rulebook.batch.batch_check import find_sources
+from rulec.rulebook.batch.form_cache import KnownForms
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.rulebook.files.source_walk import FoundSources, LeftAlone
-from rulec.syntax import decode
-from rulec.syntax.formatting import format_source
+from rulec.settings import Exclusion
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,17 +41,26 @@ class FormattedFiles:
     left_alone: tuple[LeftAlone, ...]
 
 
-def format_files(references: Iterable[str], search_path: Sequence[Path] = ()) -> FormattedFiles:
-    """Format the files at the paths, each once, and collect errors; nothing is written.
+def format_files(
+    references: Iterable[str],
+    search_path: Sequence[Path] = (),
+    excluded: Exclusion | None = None,
+    *,
+    recalls: bool = False,
+) -> FormattedFiles:
+    """Format the files at the paths, each once, and collect errors; none of them is written.
 
-    ``search_path`` is for who gives a name instead. Raises FormattingError, a mistake in rulec.
+    ``search_path`` is for who gives a name instead, ``excluded`` is left alone in folders. With
+    ``recalls`` the cache knows which texts are in form, and is told. Raises FormattingError, a
+    mistake in rulec.
     """
+    known = KnownForms.read() if recalls else KnownForms()
     done: dict[str, Formatted] = {}
     refused: list[Diagnostic] = []
     left_alone: list[LeftAlone] = []
     for reference in references:
         try:
-            found = _at(reference, search_path)
+            found = _at(reference, search_path, excluded)
         except RulecError as error:
             refused += error.diagnostics
             continue
@@ -62,13 +71,20 @@ def format_files(references: Iterable[str], search_path: Sequence[Path] = ()) ->
             if identity in done:
                 continue
             try:
-                done[identity] = formatted(str(path), path, read_bytes(path))
+                data = read_bytes(path)
+                if known.has(data):
+                    done[identity] = Formatted(str(path), path, data, data)
+                    continue
+                done[identity] = formatted(str(path), path, data)
+                known.add(done[identity].after)
             except RulecError as error:
                 refused += error.diagnostics
+    if recalls:
+        known.write()
     return FormattedFiles(tuple(done.values()), tuple(refused), tuple(left_alone))
 
 
-def _at(reference: str, search_path: Sequence[Path]) -> FoundSources:
+def _at(reference: str, search_path: Sequence[Path], excluded: Exclusion | None) -> FoundSources:
     # The file that a rulebook's name stands for is often another's.
     if "/" not in reference and not os.path.lexists(reference):
         elsewhere = _named(reference, search_path)
@@ -77,9 +93,9 @@ def _at(reference: str, search_path: Sequence[Path]) -> FoundSources:
             way_out = f"give the path that it stands for, `{elsewhere}`"
             raise UNREADABLE_FILE.error(SourceLocation(reference), message, help=way_out)
     if "/" in reference:
-        return find_sources(reference)
+        return find_sources(reference, (), excluded)
     is_folder = os.path.isdir(reference)  # noqa: PTH112 - Path raises on a null character
-    return find_sources(f"{reference}/" if is_folder else f"./{reference}")
+    return find_sources(f"{reference}/" if is_folder else f"./{reference}", (), excluded)
 
 
 def _named(reference: str, search_path: Sequence[Path]) -> Path | None:
@@ -92,6 +108,10 @@ def _named(reference: str, search_path: Sequence[Path]) -> Path | None:
 
 def formatted(name: str, path: Path | None, data: bytes) -> Formatted:
     """Format one file. Raises RulecError, or FormattingError, a mistake in rulec."""
+    # The parser, 75 ms: not where all is known to be in form.
+    from rulec.syntax import decode
+    from rulec.syntax.formatting import format_source
+
     return Formatted(name, path, data, format_source(decode(name, data)).encode())
 
 

@@ -14,6 +14,7 @@ import stat
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -178,8 +179,9 @@ def diagnostic_of(data: dict[str, Any]) -> Diagnostic:
     return Diagnostic(**{**data, **parts})
 
 
+@cache
 def program_digest() -> str:
-    """A digest of rulec's own files, by their times and sizes."""
+    """A digest of rulec's own files, by their times and sizes as they were when first asked for."""
     seen = sha256()
     for path, status in package_files():
         seen.update(f"{path}\0{status.st_mtime_ns}\0{status.st_size}\n".encode())

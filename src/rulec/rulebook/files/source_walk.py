@@ -11,7 +11,14 @@ from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.file_messages import NOTHING_LEFT, UNREADABLE_FILE
-from rulec.rulebook.files.git_ignores import IgnoreFile, ignore_files, is_ignored, patterns_in
+from rulec.rulebook.files.git_ignores import (
+    IgnoreFile,
+    ignore_files,
+    is_ignored,
+    pattern_of,
+    patterns_in,
+)
+from rulec.settings import Exclusion
 from rulec.source_detection import LEAD_BYTES, beginning_of, is_foreign
 from rulec.work_trees import is_ordinary, refuse_no_source, tree_of
 
@@ -44,17 +51,18 @@ class FoundSources:
     refused: list[Diagnostic] = field(default_factory=list)
 
 
-def sources_below(folder: str) -> FoundSources:
+def sources_below(folder: str, excluded: Exclusion | None = None) -> FoundSources:
     """The sources in and below a folder, in order.
 
     Hidden folders, environments, links to folders and what is very deep are not entered. What git
-    ignores, and what begins neither with `rulebook` nor with `vocabulary` is left alone. Links out
-    of the tree, pipes and devices are refused.
+    ignores or is ``excluded``, and what begins neither with `rulebook` nor with `vocabulary`, is
+    left alone. Links out of the tree, pipes and devices are refused.
     """
     found = FoundSources()
     top = Path(os.path.abspath(folder))  # noqa: PTH100 - Path.absolute() keeps `..`
     tree = tree_of(top)
     ignored: dict[Path, list[IgnoreFile]] = {top: ignore_files(top, tree)}
+    own = _patterns(excluded)
 
     def unreadable(problem: OSError) -> None:
         found.refused.append(_locked(problem))
@@ -65,7 +73,8 @@ def sources_below(folder: str) -> FoundSources:
         entered = []
         for name in sorted(folders):
             deep = "too deep" if len(place.parts) - len(top.parts) >= DEEPEST_FOLDER else ""
-            if why := _why_not_entered(place / name, files) or deep:
+            by_hand = _is_excluded(place / name, own, is_folder=True)
+            if why := _why_not_entered(place / name, files) or by_hand or deep:
                 if not name.startswith("."):
                     found.left_alone.append(LeftAlone(str(Path(here, name)), why))
                 continue
@@ -73,7 +82,9 @@ def sources_below(folder: str) -> FoundSources:
             ignored[place / name] = [*files, *patterns_in(place / name, tree)]
         folders[:] = entered
         for name in sorted(name for name in names if name.endswith(SUFFIX)):
-            _sort(Path(here, name), is_ignored(place / name, files, is_folder=False), tree, found)
+            is_left = is_ignored(place / name, files, is_folder=False)
+            why = "ignored by git" if is_left else _is_excluded(place / name, own)
+            _sort(Path(here, name), why, tree, found)
     if not found.paths and not found.refused:
         found.refused.append(_nothing_left(folder, found.left_alone))
     return found
@@ -89,10 +100,23 @@ def _why_not_entered(folder: Path, files: Sequence[IgnoreFile]) -> str:
     return "ignored by git" if is_ignored(folder, files, is_folder=True) else ""
 
 
-def _sort(path: Path, ignored: bool, tree: Path, found: FoundSources) -> None:
-    """Put a file where it belongs."""
-    if ignored:
-        found.left_alone.append(LeftAlone(str(path), "ignored by git"))
+def _patterns(excluded: Exclusion | None) -> IgnoreFile | None:
+    if excluded is None:
+        return None
+    return IgnoreFile(excluded.folder, tuple(filter(None, map(pattern_of, excluded.patterns))))
+
+
+def _is_excluded(path: Path, own: IgnoreFile | None, *, is_folder: bool = False) -> str:
+    """Why a path is left alone by the project's own settings; empty if it is not."""
+    if own is None or own.folder not in path.parents:
+        return ""
+    return "excluded" if is_ignored(path, [own], is_folder=is_folder) else ""
+
+
+def _sort(path: Path, left: str, tree: Path, found: FoundSources) -> None:
+    """Put a file where it belongs, ``left`` being why it is left alone."""
+    if left:
+        found.left_alone.append(LeftAlone(str(path), left))
         return
     try:
         refuse_no_source(path, tree=tree)
