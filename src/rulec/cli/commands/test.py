@@ -87,7 +87,7 @@ def command(
     measured = with_coverage or threshold is not None
 
     def run() -> int:
-        wanted = Wanted(pattern, at, measured=measured, fails_empty=fail_on_empty)
+        wanted = WantedExamples(pattern, at, measured=measured, fails_empty=fail_on_empty)
         return _tested(references, wanted, threshold, to, jobs)
 
     if watch:
@@ -96,7 +96,7 @@ def command(
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class WantedExamples:
     """Which examples are run, on which day, and what is asked of them."""
 
     pattern: str | None
@@ -106,7 +106,11 @@ class Wanted:
 
 
 def _tested(
-    references: Sequence[str], wanted: Wanted, threshold: float | None, to: Output, jobs: Jobs
+    references: Sequence[str],
+    wanted: WantedExamples,
+    threshold: float | None,
+    to: Output,
+    jobs: Jobs,
 ) -> int:
     # Rulebooks and their automata, 130 ms: not for --help.
     from rulec.batch.example_batch import ExampleRequest, measured_runs
