@@ -194,7 +194,7 @@ def test_parquet_without_its_package(verify, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     status, out, err = verify(A, "-o", "a.parquet")
     assert (status, out) == (2, "")
-    assert "pip install 'rulec[parquet]'" in err
+    assert "[parquet]'`" in err
     assert not Path("a.parquet").exists()
 
 

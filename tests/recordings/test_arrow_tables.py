@@ -187,4 +187,4 @@ def test_without_arrow_it_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setattr(builtins, "__import__", without)
     found = refusal(tmp_path / "file")
     assert found.code == "R0706"
-    assert "pip install 'rulec[parquet]'" in found.help
+    assert "[parquet]'`" in found.help

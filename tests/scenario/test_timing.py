@@ -56,4 +56,7 @@ def test_what_does_not_fit(horizon, step, words):
 def test_a_step_that_would_fit_is_named():
     with pytest.raises(RulecError) as caught:
         timing(4.0, 0.3)
-    assert "0.307692 s would fit, or a horizon of 3.9 s" in caught.value.diagnostics[0].help
+    assert (
+        "a step of 0.25 s or 0.4 s would fit, or a horizon of 3.9 s"
+        in caught.value.diagnostics[0].help
+    )

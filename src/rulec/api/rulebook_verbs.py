@@ -263,6 +263,7 @@ class RulebookVerbs(SessionSettings):
         ``spread`` has them answered ahead, as the command does in several processes.
         """
         from rulec.analysis.lint.rulebook_findings import rulebook_findings
+        from rulec.rulebook.allowances import without_allowed
         from rulec.rulebook.loader import read_rulebook
 
         loaded = read_rulebook(reference, self.search_path, self.at)
@@ -270,13 +271,14 @@ class RulebookVerbs(SessionSettings):
         above = [Path(file.span.source.name) for file in loaded.books[-2:-1]]
         # On the same side of the road: a treaty's near side is that of the party's traffic.
         bases = [read_rulebook(name, self.search_path, book.at, book.traffic) for name in above]
-        return rulebook_findings(
+        findings = rulebook_findings(
             book,
             [base.rulebook for base in bases],
             on_progress,
             extends.span if extends else None,
             spread,
         )
+        return without_allowed(findings)
 
     def audit(
         self,

@@ -17,7 +17,6 @@ from rulec.diagnostics import RulecError, nearest_name
 from rulec.version import __version__
 
 
-
 def _require_signed(context: click.Context, _: click.Parameter, key: str | None) -> None:
     if key:
         # 20 ms: only where a key is given.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.diagnostic import RulecError
+from rulec.diagnostics.install_command import install_command
 from rulec.diagnostics.source_text import SourceLocation
 
 
@@ -20,5 +21,5 @@ def missing_package(
     return code.error(
         place,
         f"{what} takes the package `{package}`, which is not installed",
-        help=f"`pip install 'rulec[{extra}]'`" + (f", or {otherwise}" if otherwise else ""),
+        help=f"`{install_command(extra)}`" + (f", or {otherwise}" if otherwise else ""),
     )

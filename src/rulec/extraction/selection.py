@@ -186,10 +186,12 @@ def _value(text: str, declaration: Declaration) -> Value:
 
 
 def _measure(text: str, name: str, unit: str) -> float:
-    """A number in its unit, which a bare number has, from any unit of its dimension."""
+    """A number in its unit, from any unit of its dimension; 0 needs none."""
     match = _NUMBER.fullmatch(text)
     own = parse_unit(unit)
     given = own if match is None or not match[2] else parse_unit(match[2])
+    if match is not None and not match[2] and unit and Fraction(match[1]):
+        raise ValueError(f"`{name}` is in {unit}: write the unit, such as `{name}={text} {unit}`")
     if match is None or own is None or given is None or given.dimension != own.dimension:
         example = f"50 {unit}" if unit else "50"
         raise ValueError(f"`{name}` is a number such as `{example}`, not `{text}`")

@@ -8,11 +8,13 @@ from datetime import date
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
+from rulec.rulebook.allowances import judged_allowances
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import vocabulary_for_rulebook
 from rulec.rulebook.files.referenced_files import Book, ReferencedFiles, source_file
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
 from rulec.rulebook.rulebook_model import Rulebook, SourceFile, Traffic
+from rulec.rulebook.words_elsewhere import with_words_elsewhere
 from rulec.syntax import decode, parse, tree
 from rulec.vocabulary import Vocabulary
 
@@ -41,6 +43,7 @@ class Trees:
     sources: tuple[SourceFile, ...]
     mistakes: tuple[Diagnostic, ...]
     dependencies: tuple[search.Dependency, ...] | None
+    search_path: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +54,11 @@ class Loaded:
     warnings: tuple[Diagnostic, ...] = ()
     books: tuple[tree.File, ...] = field(default=(), compare=False, repr=False)
     vocabularies: tuple[tree.File, ...] = field(default=(), compare=False, repr=False)
+
+    @property
+    def paths(self) -> list[str]:
+        """The files that it was read from."""
+        return [file.span.source.name for file in (*self.books, *self.vocabularies)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +133,7 @@ def with_book(trees: Trees, source: Source, search_path: Sequence[Path] = ()) ->
         sources=(*trees.sources, *files.sources),
         mistakes=(*mistakes, *files.mistakes, *trees.mistakes),
         dependencies=None if files.failed else trees.dependencies,
+        search_path=trees.search_path,
     )
 
 
@@ -179,7 +188,7 @@ def diagnose(
         _, meanings = resolve_vocabulary(file)
     except RulecError as error:
         return Diagnosis(error.diagnostics)
-    return Diagnosis(in_order(name, [*mistakes, *meanings]))
+    return Diagnosis(in_order(name, judged_allowances([*mistakes, *meanings], source)))
 
 
 def trees_of(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagnostic]) -> Trees:
@@ -195,6 +204,7 @@ def trees_of(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagnosti
         sources=(source_file(file.source.name, file.data), *files.sources),
         mistakes=(*mistakes, *files.mistakes),
         dependencies=None if files.failed else tuple(files.dependencies),
+        search_path=file.search_path,
     )
 
 
@@ -213,7 +223,11 @@ def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | No
         at=day_of(trees, at),
         traffic=traffic,
     )
-    findings = in_order(trees.name, [*trees.mistakes, *meanings])
+    said = judged_allowances([*trees.mistakes, *meanings], trees.books[-1].span.source)
+    findings = in_order(trees.name, said)
+    if rulebook is None and not trees.mistakes:
+        read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]
+        findings = with_words_elsewhere(findings, read, trees.search_path)
     diagnosis = Diagnosis(findings, trees.dependencies)
     if rulebook is None or any(finding.severity == "error" for finding in findings):
         return None, diagnosis

@@ -6,11 +6,13 @@ from collections.abc import Iterator, Sequence
 from datetime import date
 from pathlib import Path
 
+from rulec.diagnostics import RulecError
 from rulec.rulebook.loader import Loaded, parse_rulebook, read_rulebook
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.rulebook.rulebook_model import Rule
-from rulec.syntax import tree
+from rulec.rulebook.template_messages import no_name
+from rulec.syntax import decode, parse, tree
 from rulec.syntax.tree_printer import print_formula
 
 _TEXT = """\
@@ -63,8 +65,9 @@ law     "The law that it puts into rules" as of {today}
 def new_rulebook(name: str, today: date) -> str:
     """Text of a new rulebook that checks, tests and compiles.
 
-    Raises RulecError if a rulebook cannot have this name, at its place in the text.
+    Raises RulecError R0218 if a rulebook cannot have this name.
     """
+    _refuse(name)
     text = _TEXT.format(name=name, today=today.isoformat())
     parse_rulebook(text, f"{name}.rules")
     return text
@@ -73,13 +76,27 @@ def new_rulebook(name: str, today: date) -> str:
 def new_rulebook_upon(name: str, base: str, today: date, search_path: Sequence[Path] = ()) -> str:
     """Text of a new rulebook that extends another one, with all that it could change as comments.
 
-    Raises RulecError if a rulebook cannot have this name, or if the base cannot be read.
+    Raises RulecError if a rulebook cannot have this name (R0218), or if the base cannot be read.
     """
+    _refuse(name)
     inherited = read_rulebook(base, search_path)
     head = _UPON.format(name=name, base=base, today=today.isoformat())
     text = "\n".join([head, *_changes(inherited)])
     parse_rulebook(text, f"{name}.rules", search_path)
     return text
+
+
+def _refuse(name: str) -> None:
+    """Raise RulecError R0218 if this is no name of a rulebook."""
+    try:
+        source = decode(name, f"rulebook {name}\n{_ANY}".encode("utf-8", "replace"))
+        if parse(source)[1]:
+            raise no_name(name)
+    except RulecError:
+        raise no_name(name) from None
+
+
+_ANY = "signal p\nhard rule r { require p }\n"
 
 
 def _changes(loaded: Loaded) -> Iterator[str]:

@@ -56,7 +56,23 @@ def timing(horizon_s: float, step_s: float) -> Timing:
             None,
             f"the horizon of {horizon_s:g} s is not a whole number of steps of {step_s:g} s",
             expected="expected a horizon that is a multiple of the step",
-            help=f"a step of {horizon_s / steps:g} s would fit, or a horizon of "
-            f"{float(step * steps):g} s",
+            help=f"{_steps_that_fit(horizon, steps)}, or a horizon of {float(step * steps)!r} s",
         )
     return Timing(horizon / steps, steps + 1)
+
+
+def _steps_that_fit(horizon: Fraction, steps: int) -> str:
+    """The steps that divide a horizon nearest to so many, written as they can be given again."""
+    numbers = [
+        number
+        for number in range(1, min(4 * steps + 4, MAX_LAYERS))
+        if (horizon / number * _SHORT).denominator == 1
+    ]
+    longer = [number for number in numbers if number <= steps][-1:]
+    shorter = [number for number in numbers if number > steps][:1]
+    fitting = [f"{float(horizon / number):g} s" for number in (*shorter, *longer)]
+    return f"a step of {' or '.join(fitting)} would fit" if fitting else "take another step"
+
+
+_SHORT = 1000
+"""A step that is offered has at most three digits behind the point."""

@@ -29,11 +29,11 @@ WORDS = Vocabulary(
         ("built_up=true", "built_up", True),
         (" built_up = false ", "built_up", False),
         ("light=red_light", "light", "red_light"),
-        ("limit=50", "limit", 50.0),
+        ("limit=0", "limit", 0.0),
         ("limit=50 km/h", "limit", 50.0),
         ("limit=10 m/s", "limit", 36.0),
         ("limit=30 mph", "limit", float(30 * Fraction("1.609344"))),
-        ("limit=-2.5", "limit", -2.5),
+        ("limit=-2.5 km/h", "limit", -2.5),
     ],
 )
 def test_values_in_their_unit_or_another(text, name, value):
@@ -49,6 +49,7 @@ def test_values_in_their_unit_or_another(text, name, value):
         ("built_up=yes", "`built_up` is `true` or `false`, not `yes`"),
         ("light=blue", "`light` is one of `red_light`, `green_light`, not `blue`"),
         ("limit=fast", "`limit` is a number such as `50 km/h`, not `fast`"),
+        ("limit=50", "`limit` is in km/h: write the unit, such as `limit=50 km/h`"),
         ("limit=50 m", "`limit` is a number such as `50 km/h`, not `50 m`"),
         ("gap=5 m", "`gap` is about objects; only what is about none can be assumed"),
         ("buildup=true", "vocabulary `road` has no `buildup`"),
@@ -60,7 +61,7 @@ def test_what_is_wrong_with_an_assumption(text, message):
 
 
 def test_the_last_of_several_texts_counts():
-    assert assumption_options(["limit=30", "limit=50"], WORDS) == {"limit": 50.0}
+    assert assumption_options(["limit=30 km/h", "limit=50 km/h"], WORDS) == {"limit": 50.0}
 
 
 def test_thresholds_change_what_is_named_and_nothing_else():

@@ -19,6 +19,7 @@ from rulec.automata.bundle.minisign import (
     public_key,
 )
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.install_command import install_command
 from rulec.resource_limits import variable_set
 
 VARIABLE = "RULEC_REQUIRE_SIGNED"
@@ -60,7 +61,7 @@ def check_signed(path: Path, data: bytes) -> None:
         raise NO_CRYPTOGRAPHY.error(
             None,
             "a signature cannot be checked: the package `cryptography` is not installed",
-            help="`pip install 'rulec[signed]'`",
+            help=f"`{install_command('signed')}`",
         ) from None
     if not signed:
         raise _not_signed(path, "it is not signed by the key that is required")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import asdict
 from functools import partial
 from math import inf
 from time import monotonic
@@ -24,6 +25,7 @@ from rulec.cli.output import (
 )
 from rulec.diagnostics import Diagnostic
 from rulec.report.text.console import print_remark, progress
+from rulec.settings import search_path
 
 _LONG_S = 20
 """After so many seconds without a terminal it is said that the analysis goes on."""
@@ -33,8 +35,17 @@ _LONG_S = 20
 @shared.rulebooks_argument()
 @shared.findings_options
 @shared.jobs_option("Answer questions about rules side by side")
+@shared.no_cache_option
 @shared.at_option
-def command(rulebooks: tuple[str, ...], to: Output, fail_on: str, jobs: Jobs, at: str) -> int:
+def command(
+    rulebooks: tuple[str, ...],
+    to: Output,
+    *,
+    fail_on: str,
+    jobs: Jobs,
+    no_cache: bool,
+    at: str,
+) -> int:
     """Find out what is odd in RULEBOOKs (names, or paths of sources) by their automata.
 
     That is: rules that nothing can violate or keep, that others imply, or that wait for what never
@@ -46,15 +57,27 @@ def command(rulebooks: tuple[str, ...], to: Output, fail_on: str, jobs: Jobs, at
     # Automata and their analysis, 150 ms: not for --help.
     from rulec.analysis.lint.finding_messages import NOT_DECIDED
     from rulec.batch.spreading import spreading
+    from rulec.rulebook.batch.answer_cache import AnswerQuestion
+    from rulec.rulebook.batch.check_cache import diagnostic_of
+    from rulec.rulebook.loader import read_rulebook
 
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be analyzed")
     findings: list[Diagnostic] = []
     unread: list[Diagnostic] = []
     for rulebook in dict.fromkeys(rulebooks):
-        with errors_told(unread.extend), progress(f"analyzing {rulebook}", None) as tell:
-            spread = spreading(jobs, rulebook, partial(print_lost, "analyzed", rulebook))
-            said = _patience(rulebook, tell)
-            findings += open_session(at).analyze(rulebook, on_progress=said, spread=spread)
+        with errors_told(unread.extend):
+            question = AnswerQuestion(("analyze", rulebook, at), search_path())
+            known = None if no_cache else question.recall()
+            if known is not None:
+                findings += map(diagnostic_of, known)
+                continue
+            with progress(f"analyzing {rulebook}", None) as tell:
+                spread = spreading(jobs, rulebook, partial(print_lost, "analyzed", rulebook))
+                said = _patience(rulebook, tell)
+                found = open_session(at).analyze(rulebook, on_progress=said, spread=spread)
+            findings += found
+            read = read_rulebook(rulebook, search_path(), at)
+            question.remember([asdict(finding) for finding in found], read.paths)
     status = print_findings(
         list(dict.fromkeys(findings)),
         unread,

@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING
 import click
 
 from rulec.cli.options.output_options import Output
-from rulec.cli.options.shared_options import at_option, findings_options, verbose_option
+from rulec.cli.options.shared_options import (
+    at_option,
+    findings_options,
+    no_cache_option,
+    verbose_option,
+)
 from rulec.cli.options.shell_completion import complete_sources
 from rulec.cli.output import counted, print_findings, print_left_alone
 from rulec.cli.standard_input import standard_input
@@ -24,11 +29,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("sources", nargs=-1, metavar="[FILE|NAME]...", shell_complete=complete_sources)
 @findings_options
-@click.option(
-    "--no-cache",
-    is_flag=True,
-    help="Check anew also what has not changed since the last time.",
-)
+@no_cache_option
 @click.option(
     "--fix",
     is_flag=True,

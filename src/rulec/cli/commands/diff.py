@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     metavar="FILE",
     help="Write the traces that one forbids and the other allows to FILE, as JSON Lines.",
 )
+@shared.no_cache_option
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
@@ -76,6 +77,7 @@ def command(
     n_witnesses: int,
     to: Output,
     witness: str | None,
+    no_cache: bool,
     at: str,
 ) -> int:
     """Say which rules of a first RULEBOOK are stricter or laxer than those of a second, or neither.
@@ -86,9 +88,7 @@ def command(
     Exit status: 0 no difference, 1 there are some, 2 a question could not be answered.
     """
     # Rulebooks and their automata, 140 ms: not for --help.
-    from rulec.analysis.diff.comparison_matrix import comparison_matrix, steps
-    from rulec.report.rulebooks import diff_formats, matrix_report
-    from rulec.rulebook.files.search_path import available_rulebooks
+    from rulec.report.rulebooks import diff_formats
     from rulec.rulebook.loader import load_rulebook
     from rulec.trace.formats.json_lines import write_traces
 
@@ -98,32 +98,8 @@ def command(
             raise click.UsageError("--pair is for two rulebooks, not for --all")
         if witness is not None:
             raise click.UsageError("--witness is for two rulebooks, not for --all")
-        folders = search_path()
-        names = dict.fromkeys(rulebooks or available_rulebooks(folders))
-        books: list[Rulebook] = []
-        for name in names:
-            with errors_told():
-                books.append(load_rulebook(name, folders, at))
-        are_all_read = len(books) == len(names)
-        # Treaties before those that build upon them, so that theirs is law A.
-        books.sort(key=lambda book: len(book.extends))
-        alone = []
-        if not rulebooks:
-            uses = Counter(rule.name for book in books for rule in book.rules)
-            alone = [
-                book.name for book in books if all(uses[rule.name] == 1 for rule in book.rules)
-            ]
-            books = [book for book in books if book.name not in alone]
-        if len(books) < 2:
-            print_remark("there are no two rulebooks to compare")
-            return ExitStatus.NOT_ANSWERED
-        with progress("comparing", steps(books, patterns)) as tell:
-            matrix = comparison_matrix(books, patterns, step_s, tell)
-        if alone:
-            print_remark(f"left out, for they share no rule with others: {', '.join(alone)}")
-        put_answer(matrix_report.render(matrix, to.form), to)
-        answered = are_all_read and matrix.is_complete
-        return ExitStatus.after(answered=answered, failed=not matrix.is_uniform)
+        asked = AllPairs(tuple(patterns), step_s, at, to.form)
+        return _compared(rulebooks, asked, to, recalls=not no_cache)
     if len(rulebooks) != 2:
         raise click.UsageError("name the two rulebooks that are to be compared, or say --all")
     named = [load_rulebook(name, search_path(), at) for name in rulebooks] if paired else []
@@ -143,6 +119,75 @@ def command(
         print_remark(f"wrote {counted(number, 'trace')} to {name}")
     put_answer(diff_formats.render(difference, to.form), to)
     return ExitStatus.after(answered=difference.is_complete, failed=not difference.is_none)
+
+
+class AllPairs(NamedTuple):
+    """What an overview of many rulebooks is asked for."""
+
+    patterns: tuple[str, ...]
+    step_s: Fraction | None
+    at: str
+    form: str
+
+
+def _compared(rulebooks: Sequence[str], asked: AllPairs, to: Output, *, recalls: bool) -> int:
+    """Write the overview of these rulebooks, or of all, and return the status."""
+    # Files and what is known of them, 10 ms: not for two.
+    from rulec.rulebook.batch.answer_cache import AnswerQuestion
+    from rulec.rulebook.files.search_path import available_rulebooks
+
+    folders = search_path()
+    names = list(dict.fromkeys(rulebooks or available_rulebooks(folders)))
+    every = "" if rulebooks else "all"
+    question = AnswerQuestion(("diff", every, *map(str, asked), "", *names), folders)
+    known = question.recall() if recalls else None
+    if known is None:
+        text, alone, is_complete, is_uniform, paths = _matrix(names, asked, is_all=not rulebooks)
+        known = text, alone, is_complete, is_uniform
+        if is_complete:
+            question.remember(known, paths)
+    text, alone, is_complete, is_uniform = known
+    if alone:
+        print_remark(f"left out, for they share no rule with others: {', '.join(alone)}")
+    if text is None:
+        print_remark("there are no two rulebooks to compare")
+        return ExitStatus.NOT_ANSWERED
+    put_answer(text, to)
+    return ExitStatus.after(answered=is_complete, failed=not is_uniform)
+
+
+def _matrix(
+    names: Sequence[str], asked: AllPairs, *, is_all: bool
+) -> tuple[str | None, list[str], bool, bool, list[str]]:
+    """The overview, who was left out, whether it is complete and uniform, and the files read.
+
+    There is none of fewer than two rulebooks.
+    """
+    # Rulebooks and their automata, 140 ms: not for what is known.
+    from rulec.analysis.diff.comparison_matrix import comparison_matrix, steps
+    from rulec.report.rulebooks import matrix_report
+    from rulec.rulebook.loader import read_rulebook
+
+    read = []
+    for name in names:
+        with errors_told():
+            read.append(read_rulebook(name, search_path(), asked.at))
+    books = [one.rulebook for one in read]
+    # Treaties before those that build upon them, so that theirs is law A.
+    books.sort(key=lambda book: len(book.extends))
+    alone = []
+    if is_all:
+        uses = Counter(rule.name for book in books for rule in book.rules)
+        alone = [book.name for book in books if all(uses[rule.name] == 1 for rule in book.rules)]
+        books = [book for book in books if book.name not in alone]
+    if len(books) < 2:
+        return None, [], False, False, []
+    with progress("comparing", steps(books, asked.patterns)) as tell:
+        matrix = comparison_matrix(books, asked.patterns, asked.step_s, tell)
+    is_complete = len(read) == len(names) and matrix.is_complete
+    paths = [path for one in read for path in one.paths]
+    text = matrix_report.render(matrix, asked.form)
+    return text, alone, is_complete, matrix.is_uniform, paths
 
 
 def _pairs(texts: Sequence[str], books: Sequence[Rulebook]) -> dict[str, str]:

@@ -118,6 +118,7 @@ def _tested(
     from rulec.book_tests.example_coverage import uncovered_verdicts
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import shortcomings
+    from rulec.rulebook.allowances import without_allowed
 
     rulebooks = sources_of_rulebooks(references, "has no examples")
     runs: list[ExampleRun] = []
@@ -128,7 +129,7 @@ def _tested(
             print_diagnostics(answer.diagnostics)
             continue
         run, covers = answer
-        print_diagnostics([*run.warnings, *uncovered_verdicts(run)])
+        print_diagnostics(without_allowed([*run.warnings, *uncovered_verdicts(run)]))
         runs.append(run)
         coverages.append(covers)
     answered = len(runs) == len(rulebooks)

@@ -212,9 +212,7 @@ def command(
                 step = None if step_s is None else float(step_s)
                 assumed = replace(assumed, step_s=step)
                 judge = None if engine == "python" else _c_engine(rules)
-                traced = TraceRun(
-                    rules, outputs, complaints, to_explain, every_part, engine=judge
-                )
+                traced = TraceRun(rules, outputs, complaints, to_explain, every_part, engine=judge)
                 traced.files(traces, form, assumed)
                 violated |= bool(traced.total.violated) or (strict and traced.open_hard)
                 by_rules |= traced.judged

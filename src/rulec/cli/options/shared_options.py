@@ -200,6 +200,12 @@ at_option = click.option(
     "out.  [default: that of the rulebook's `law` line, else today]",
 )
 
+no_cache_option = click.option(
+    "--no-cache",
+    is_flag=True,
+    help="Answer anew also what has not changed since the last time.",
+)
+
 verbose_option = click.option(
     "-v", "--verbose", is_flag=True, help="Name each file and folder that is left alone, and why."
 )

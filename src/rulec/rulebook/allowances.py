@@ -1,0 +1,74 @@
+"""Comments that allow the warnings of their line: ``# rulec: allow R0208 because …``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+
+from rulec.diagnostics import Diagnostic, Source, Span
+from rulec.diagnostics.code import Code
+
+UNFIT_ALLOWANCE = Code(
+    "R0219",
+    title="a comment allows nothing, or says no reason",
+    why="`# rulec: allow CODE because REASON`, at the end of the line that a warning is about, "
+    "takes the warning back. Errors stay. So that such comments do not outlive their reason, those "
+    "that take nothing back are named.",
+    bad="rulebook example\nsignal p, q\nhard rule r { require always p }  "
+    "# rulec: allow R0208 because q comes later\n",
+    good="rulebook example\nsignal p\nparam pace = 7 km/h  # rulec: allow R0208 because a later "
+    "rule reads it\nhard rule r { require always p }\n",
+)
+
+_ALLOWANCE = re.compile(
+    r"#\s*rulec:\s*allow\s+(?P<codes>R\d{4}(?:\s*,\s*R\d{4})*)\b[ \t]*(?:because[ \t]+(?P<why>\S))?"
+)
+_OF_A_CHECK = ("R01", "R02", "R03")
+"""So the codes begin that a check finds; of others it does not say that they are not there."""
+
+
+def judged_allowances(findings: Sequence[Diagnostic], source: Source) -> tuple[Diagnostic, ...]:
+    """The findings of a source that no comment allows, and what is wrong with such comments."""
+    return (*without_allowed(findings), *_unfit(findings, source))
+
+
+def without_allowed(findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Findings without the warnings that a comment on their line allows, with a reason."""
+    return tuple([finding for finding in findings if not _is_allowed(finding)])
+
+
+def _unfit(findings: Sequence[Diagnostic], source: Source) -> Iterator[Diagnostic]:
+    # Where there are errors, not all warnings are known.
+    if "rulec:" not in source.text or any(one.severity == "error" for one in findings):
+        return
+    found = {
+        (finding.place.line, finding.code)
+        for finding in findings
+        if finding.place is not None and finding.place.file == source.name
+        if finding.severity == "warning"
+    }
+    for match in _ALLOWANCE.finditer(source.text):
+        line, _ = source.position(match.start())
+        span = Span(source, match.start(), match.end())
+        if match["why"] is None:
+            yield UNFIT_ALLOWANCE.at(
+                span,
+                "this comment says no reason",
+                severity="warning",
+                help="write `because` and the reason behind it",
+            )
+        for code in re.findall(r"R\d{4}", match["codes"]):
+            if (line, code) not in found and code.startswith(_OF_A_CHECK):
+                yield UNFIT_ALLOWANCE.at(
+                    span,
+                    f"there is no warning {code} on this line",
+                    severity="warning",
+                    help="leave the comment out, or move it to the line that the warning is about",
+                )
+
+
+def _is_allowed(finding: Diagnostic) -> bool:
+    if finding.severity != "warning" or finding.place is None:
+        return False
+    match = _ALLOWANCE.search(finding.place.excerpt)
+    return match is not None and match["why"] is not None and finding.code in match["codes"]

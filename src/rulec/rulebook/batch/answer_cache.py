@@ -1,0 +1,91 @@
+"""Cache of answers that take long, valid while all sources that they come from are unchanged.
+
+An answer is JSON, a file for each question, in the folder of the cache of checks. Anything odd
+about one, and the question is answered anew.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import date
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from rulec.diagnostics import RulecError
+from rulec.files import is_own
+from rulec.rulebook.batch.check_cache import program_digest, tidy, usable_folder, write_own
+from rulec.rulebook.files.search_path import read_bytes
+from rulec.rulebook.files.source_walk import rules_files
+from rulec.version import __version__
+
+MOST_ANSWERS = 200
+"""So many are kept; those longest unused go first."""
+
+_ENDING = ".answer"
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerQuestion:
+    """Key of an answer: the ``words`` of the question, options included, and the search path."""
+
+    words: tuple[str, ...]
+    search_path: tuple[Path, ...]
+
+    def recall(self) -> Any:
+        """The answer; None if it is not known."""
+        path = self._path()
+        if path is None:
+            return None
+        with suppress(OSError, ValueError, TypeError, LookupError, AttributeError):
+            with path.open("rb") as stream:
+                if not is_own(os.fstat(stream.fileno())):
+                    return None
+                kept = json.loads(stream.read())
+            if kept["stamp"] == self._stamp(kept["sources"]):
+                os.utime(path)
+                return kept["answer"]
+        return None
+
+    def remember(self, answer: Any, sources: Iterable[str]) -> None:
+        """Keep an answer that comes from these sources, if that is possible."""
+        path = self._path()
+        paths = sorted(set(sources))
+        stamp = self._stamp(paths)
+        if path is None or stamp is None:
+            return
+        with suppress(OSError, RulecError, ValueError):
+            kept = {"sources": paths, "stamp": stamp, "answer": answer}
+            write_own(path, json.dumps(kept).encode())
+            tidy(path.parent, f"*{_ENDING}", MOST_ANSWERS)
+
+    def _path(self) -> Path | None:
+        folder = usable_folder()
+        if folder is None:
+            return None
+        parts = (str(Path.cwd()), *map(str, self.search_path), "", *self.words)
+        name = sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:40]
+        return folder / f"{name}{_ENDING}"
+
+    def _stamp(self, sources: Iterable[str]) -> str | None:
+        """What has to be as it was: sources, what is beside them, the day, limits and rulec."""
+        seen = sha256(f"{__version__}\0{program_digest()}\0".encode())
+        seen.update(date.today().isoformat().encode())  # noqa: DTZ011 - the reader's own day
+        for variable in ("RULEC_COMPILER", "RULEC_LIMITS"):
+            seen.update(f"\0{os.environ.get(variable, '')}".encode("utf-8", "surrogatepass"))
+        folders = dict.fromkeys(self.search_path)
+        try:
+            for source in map(Path, sources):
+                seen.update(sha256(read_bytes(source)).digest())
+                folders[source.parent] = None
+        except RulecError:
+            return None
+        # A new file may take the place of one that is found last.
+        for folder in folders:
+            names = sorted(map(str, rules_files(folder)))
+            seen.update("\0".join(names).encode("utf-8", "surrogatepass"))
+        return seen.hexdigest()
