@@ -220,6 +220,12 @@ def _say_misuse(problem: click.ClickException) -> None:
     if context is not None:
         help_of = context.command_path.replace("rulec", "rulec help", 1)
         usage = " ".join(context.command.collect_usage_pieces(context))
+        if isinstance(problem, click.MissingParameter) and _asks_for_rulebook(problem):
+            said += "\n  = help: `rulec list rulebooks` shows which there are, such as `de`"
         said += f"\n  = usage: {context.command_path} {usage}\n  = help: `{help_of}` says more"
     with suppress(OSError):
         click.echo(said, err=True, color=color)
+
+
+def _asks_for_rulebook(problem: click.MissingParameter) -> bool:
+    return problem.param is not None and problem.param.name in ("rulebook", "rulebooks")

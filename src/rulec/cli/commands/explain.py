@@ -48,6 +48,7 @@ def _way_out(name: str) -> str:
     # Looking for files and their rules, 60 ms: only for what is no code.
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
     from rulec.rulebook.files.search_path import available_rulebooks
+    from rulec.rulebook.files.words_in_files import vocabularies_with
 
     if near := nearest_name(name.upper(), code_registry.all_codes()):
         return f"did you mean `{near}`?"
@@ -56,4 +57,6 @@ def _way_out(name: str) -> str:
     if books := rulebooks_with_rule(name, search_path()):
         more = f" (also of {first_of(books[1:], 3)})" if books[1:] else ""
         return f"it is a rule, which `rulec show {books[0]} {name}` explains{more}"
+    if vocabularies := vocabularies_with(name):
+        return f"it is a word of the vocabulary `{vocabularies[0]}`, whose file says what it means"
     return "`rulec list codes` shows them all"

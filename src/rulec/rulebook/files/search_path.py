@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -52,7 +53,8 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
     found = _by_name(text, search_path)
     if found is not None:
         return found
-    way_out = suggest(text, available_rulebooks(search_path))
+    known = available_rulebooks(search_path)
+    way_out = _by_title(text, known, search_path) or suggest(text, known)
     raise NAME_NOT_FOUND.error(
         None, f"there is no rulebook `{text}`", help=way_out, notes=(BY_PATH,)
     )
@@ -122,16 +124,35 @@ def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Pa
         looked = (
             f"`{name}{SUFFIX}` is looked for beside this file, on the search path, and in rulec"
         )
-        raise _not_found("rulebook", name, line, known, looked)
+        folders = [*_around(user), *search_path]
+        raise _not_found("rulebook", name, line, known, looked, by=_by_title(name, known, folders))
     return path
 
 
-def _not_found(kind: str, name: str, place: Span, known: Sequence[str], *notes: str) -> RulecError:
+_TITLE = re.compile(rb'^title[ \t]+"([^"\n]*)"', re.M)
+
+
+def _by_title(name: str, known: Sequence[str], search_path: Sequence[Path]) -> str:
+    """The rulebooks whose title begins with a name, such as a country's; empty if there is none."""
+    found = []
+    for book in known:
+        with suppress(RulecError):
+            title = _TITLE.search(read_bytes(find_rulebook(book, search_path)))
+            shown = title[1].decode("utf-8", "replace") if title else ""
+            if len(name) > 3 and shown.casefold().startswith(name.casefold()):
+                found.append(f"`{book}` ({shown})")
+    return f"did you mean {' or '.join(found)}?" if found else ""
+
+
+def _not_found(
+    kind: str, name: str, place: Span, known: Sequence[str], *notes: str, by: str = ""
+) -> RulecError:
+    """Say that there is no such file; ``by`` is a way out other than by likeness."""
     return NAME_NOT_FOUND.error(
         place,
         f"there is no {kind} `{name}`",
         expected=f"expected the name of a {kind}",
-        help=_suggest(name, known),
+        help=by or _suggest(name, known),
         notes=notes,
     )
 

@@ -116,6 +116,13 @@ def _comment(scene: ParseContext) -> str:
     return "a comment begins with `#`" if scene.text in ("//", "/*") else ""
 
 
+def _name_of_two_words(scene: ParseContext) -> str:
+    is_name = scene.kind == "rule_head" and scene.text_at(scene.at - 2) == "rule"
+    if is_name and scene.is_word() and scene.text_at(scene.at + 1) in ("(", "{", ""):
+        return f"a name is one word: `{scene.text_before}_{scene.text}`"
+    return ""
+
+
 def _misspelt(scene: ParseContext) -> str:
     token, before = scene.unexpected, scene.before
     if token is None or token.kind != "word" or token.text.casefold() in RESERVED:
@@ -177,6 +184,7 @@ _IN_ORDER: tuple[Callable[[ParseContext], str], ...] = (
     _ending,
     advise_on_bound,
     advise_on_aggregate,
+    _name_of_two_words,
     _misspelt,
     _name,
     advise_on_rule_head,
