@@ -36,7 +36,7 @@ def test_a_file_that_is_there_stays(tmp_path, capsys):
 @pytest.mark.parametrize("name", ["two words", "1st", "", "../up", "a--b", "x\ny"])
 def test_a_name_that_no_rulebook_can_have(name, tmp_path, capsys):
     assert main(["new", name, "-o", str(tmp_path / "out")]) == 2
-    assert "error[R0218]" in capsys.readouterr().err
+    assert "error[R0738]" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 

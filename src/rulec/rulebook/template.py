@@ -65,7 +65,7 @@ law     "The law that it puts into rules" as of {today}
 def new_rulebook(name: str, today: date) -> str:
     """Text of a new rulebook that checks, tests and compiles.
 
-    Raises RulecError R0218 if a rulebook cannot have this name.
+    Raises RulecError R0738 if a rulebook cannot have this name.
     """
     _refuse(name)
     text = _TEXT.format(name=name, today=today.isoformat())
@@ -76,7 +76,7 @@ def new_rulebook(name: str, today: date) -> str:
 def new_rulebook_upon(name: str, base: str, today: date, search_path: Sequence[Path] = ()) -> str:
     """Text of a new rulebook that extends another one, with all that it could change as comments.
 
-    Raises RulecError if a rulebook cannot have this name (R0218), or if the base cannot be read.
+    Raises RulecError if a rulebook cannot have this name (R0738), or if the base cannot be read.
     """
     _refuse(name)
     inherited = read_rulebook(base, search_path)
@@ -87,7 +87,7 @@ def new_rulebook_upon(name: str, base: str, today: date, search_path: Sequence[P
 
 
 def _refuse(name: str) -> None:
-    """Raise RulecError R0218 if this is no name of a rulebook."""
+    """Raise RulecError R0738 if this is no name of a rulebook."""
     try:
         source = decode(name, f"rulebook {name}\n{_ANY}".encode("utf-8", "replace"))
         if parse(source)[1]:

@@ -8,7 +8,7 @@ from rulec.diagnostics import RulecError
 from rulec.diagnostics.code import Code
 
 NO_NAME = Code(
-    "R0218",
+    "R0738",
     title="a rulebook cannot have this name",
     why="A rulebook's name is written in its first line and in rules that build upon it: letters, "
     "digits, `_` and `-`, a letter first, and no word of the language.",

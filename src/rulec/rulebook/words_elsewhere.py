@@ -32,7 +32,8 @@ def _mended(finding: Diagnostic, read: Sequence[str], search_path: Sequence[Path
     if finding.code != UNKNOWN_NAME.code or place is None or place.column is None:
         return finding
     name = place.excerpt[place.column - 1 : (place.end_column or place.column) - 1].split("(")[0]
-    if not name.isidentifier():
+    is_spelt_otherwise = f"did you mean `{name.casefold()}`" in finding.help.casefold()
+    if not name.isidentifier() or is_spelt_otherwise:
         return finding
     if own := [book for book in vocabularies_with(name, search_path) if book not in read]:
         return replace(finding, help=f"it is a word of the vocabulary `{own[0]}`: `use {own[0]}`")
