@@ -42,7 +42,7 @@ def test_what_is_not_found_is_not_allowed():
 def test_an_error_is_not_allowed():
     text = "rulebook a\nhard rule r { require nope }  # rulec: allow R0202 because I say so\n"
     found = [finding.code for finding in diagnose("a.rules", text.encode()).findings]
-    assert found == ["R0202", "R0219"]
+    assert found == ["R0202"]  # and where there are errors, not all warnings are known
 
 
 def test_in_a_vocabulary_it_is_looked_at_as_well():

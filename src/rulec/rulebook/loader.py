@@ -223,11 +223,7 @@ def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | No
         at=day_of(trees, at),
         traffic=traffic,
     )
-    said = judged_allowances([*trees.mistakes, *meanings], trees.books[-1].span.source)
-    findings = in_order(trees.name, said)
-    if rulebook is None and not trees.mistakes:
-        read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]
-        findings = with_words_elsewhere(findings, read, trees.search_path)
+    findings = said(trees, [*trees.mistakes, *meanings], trees.books[-1].span.source)
     diagnosis = Diagnosis(findings, trees.dependencies)
     if rulebook is None or any(finding.severity == "error" for finding in findings):
         return None, diagnosis
@@ -239,6 +235,17 @@ def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
     for use in uses:
         first.setdefault(use.name.text, use)
     return list(first.values())
+
+
+def said(trees: Trees, found: Sequence[Diagnostic], source: Source) -> tuple[Diagnostic, ...]:
+    """What is said of what was found, in order.
+
+    That is not what comments of the source allow, and with books and vocabularies that have the
+    words that nothing is called here.
+    """
+    findings = in_order(trees.name, judged_allowances(found, source))
+    read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]
+    return with_words_elsewhere(findings, read, trees.search_path)
 
 
 def in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

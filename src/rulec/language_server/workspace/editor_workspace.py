@@ -14,10 +14,11 @@ from pygls import uris
 from rulec.diagnostics import Diagnostic, RulecError, Source
 from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.resources import rulebooks_folder
+from rulec.rulebook.allowances import judged_allowances
 from rulec.rulebook.files.open_documents import shown
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.rulebook.files.source_walk import sources_below
-from rulec.rulebook.loader import RulebookFile, Trees, in_order, trees_of
+from rulec.rulebook.loader import RulebookFile, Trees, in_order, said, trees_of
 from rulec.rulebook.resolution_memory import ResolutionMemory, ResolvedTrees
 from rulec.rulebook.resolve import names_of, resolve_vocabulary
 from rulec.settings import search_path
@@ -148,7 +149,7 @@ class EditorWorkspace:
                 return CheckedDocument(name, path, parsed, None, error.diagnostics)
             resolved = document.memory.resolved(trees)
         found = [*parsed.mistakes, *map(parsed.in_text, resolved.findings)]
-        return CheckedDocument(name, path, parsed, resolved, in_order(name, found))
+        return CheckedDocument(name, path, parsed, resolved, said(trees, found, source))
 
     def positions(self, text: str) -> TextPositions:
         """The positions of a text as this editor counts them."""
@@ -182,6 +183,7 @@ class EditorWorkspace:
 def _checked_vocabulary(name: str, path: Path | None, parsed: ParsedText) -> CheckedDocument:
     _, meanings = resolve_vocabulary(parsed.file)
     trees = Trees(name, (parsed.file,), vocabularies=(), sources=(), mistakes=(), dependencies=())
-    findings = in_order(name, [*parsed.mistakes, *meanings])
+    found = judged_allowances([*parsed.mistakes, *meanings], Source(name, parsed.text))
+    findings = in_order(name, found)
     names = names_of((parsed.file,), at="")
     return CheckedDocument(name, path, parsed, ResolvedTrees(trees, names, None, ()), findings)
