@@ -47,6 +47,7 @@ RUNS = [
     ["formats"],
     ["help", HOSTILE],
     ["list", HOSTILE],
+    ["lsp", HOSTILE],
     ["man", "-o", f"{FILE}.man"],
     ["maneuvers", f"./{FILE}.toml", "-r", SAFE],
     ["maneuvers", "s1", "-r", f"{FILE}.json"],
