@@ -28,6 +28,9 @@ vscode.workspace = anything();
 vscode.workspace.workspaceFolders = undefined;
 vscode.workspace.textDocuments = [];
 vscode.workspace.getConfiguration = () => ({ get: (name) => (name === "command" ? [command] : undefined) });
+vscode.env = anything();
+vscode.env.appName = "test";
+vscode.env.language = "en";
 vscode.window = anything();
 vscode.window.showErrorMessage = async (message) => console.log(message);
 
@@ -35,4 +38,6 @@ const load = Module._load;
 Module._load = (name, ...rest) => (name === "vscode" ? vscode : load(name, ...rest));
 
 const { activate } = require(extension);
-activate({ subscriptions: [] }).finally(() => process.exit(0));
+// A server that leaves in the middle of a message may leave the client waiting.
+const patience = new Promise((resolve) => setTimeout(resolve, 20000));
+Promise.race([activate({ subscriptions: [] }), patience]).finally(() => process.exit(0));
