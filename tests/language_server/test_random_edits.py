@@ -4,11 +4,11 @@ from random import Random
 
 import pytest
 
-from rulec.diagnostics import Source
 from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.loader import diagnose
 from rulec.syntax import parse
+from rulec.syntax.scanner import decode
 from support.generators.random_edits import edited
 
 BOOK = """\
@@ -55,7 +55,7 @@ def differing_edits(name, text, number, seed, folder):
         document = workspace.open(path.as_uri(), text)
         checked = workspace.check(document)
         alone = diagnose(str(path), text.encode(), path)
-        tree, _ = parse(Source(str(path), text))
+        tree, _ = parse(decode(str(path), text.encode()))
         if checked.findings != alone.findings or checked.parsed.file != tree:
             yield text
         text = edited(text, original, random) or original
@@ -63,6 +63,16 @@ def differing_edits(name, text, number, seed, folder):
 
 def test_a_small_book(tmp_path):
     assert next(differing_edits("small.rules", BOOK, 60, 1, tmp_path), None) is None
+
+
+def test_lines_end_as_their_editor_ends_them(tmp_path):
+    path = tmp_path / "small.rules"
+    hidden = BOOK.replace("# Above.", "# Above\u202e.")
+    alone = diagnose(str(path), hidden.encode(), path)
+    for ends in ("\r\n", "\r"):
+        text = hidden.replace("\n", ends)
+        workspace = EditorWorkspace((tmp_path,))
+        assert workspace.check(workspace.open(path.as_uri(), text)).findings == alone.findings
 
 
 @pytest.mark.long

@@ -93,6 +93,8 @@ class EditorWorkspace:
 
     def open(self, uri: str, text: str, version: int | None = None) -> Document:
         """Open a document, or have another text shown in it."""
+        # As in files: a line ends in one sign, which no column counts.
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
         known = self.documents.get(uri)
         if known is None:
             known = self.documents[uri] = self._files.pop(uri, Document(uri, text))
