@@ -440,6 +440,7 @@ def test_finite_words_end_with_alive():
     assert '"alive (2)" is true as long as the word lasts' in clash.hoa
 
 
+@pytest.mark.spot
 @settings(max_examples=10)
 @given(st.lists(formulas, min_size=2, max_size=8))
 def test_a_rules_table_does_not_depend_on_its_neighbours(several):

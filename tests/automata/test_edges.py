@@ -57,6 +57,7 @@ def test_the_edges_of_a_state_share_out_the_letters(machine):
     check(machine)
 
 
+@pytest.mark.spot
 @given(formulas)
 def test_so_do_those_of_a_rule(formula):
     compiled = compile_here(book_of(rule_of("r", formula, "x: car"))).rules[0]

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from rulec.cli.main import main
+from support import hidden_spot
 from support.builders.compiled_files import sealed
 
 
@@ -30,7 +31,7 @@ def test_what_is_proved(file, capsys):
             "proved": True,
             "because": None,
             "states": [],
-            "compilers_agree": True,
+            "compilers_agree": hidden_spot.is_there(),
         }
     ]
 

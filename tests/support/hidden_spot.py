@@ -12,7 +12,8 @@ def hide(folder: Path) -> None:
     """Put modules that cannot be loaded before Spot's, for processes that are started, too."""
     folder.mkdir(exist_ok=True)
     for name in ("spot", "buddy"):
-        (folder / f"{name}.py").write_text('raise ImportError("Spot is hidden from the tests")\n')
+        text = 'raise ModuleNotFoundError("Spot is hidden from the tests")\n'
+        (folder / f"{name}.py").write_text(text)
     sys.path.insert(0, str(folder))
     others = os.environ.get("PYTHONPATH")
     os.environ["PYTHONPATH"] = os.pathsep.join([str(folder), *([others] if others else [])])
