@@ -16,6 +16,9 @@ from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.words_in_files import vocabularies_with
 from rulec.rulebook.names.atom_messages import UNKNOWN_NAME
 
+_SHORTEST = 3
+"""Shorter names are variables and the like, and occur everywhere."""
+
 
 def with_words_elsewhere(
     findings: Iterable[Diagnostic], read: Sequence[str], search_path: Sequence[Path] = ()
@@ -33,7 +36,7 @@ def _mended(finding: Diagnostic, read: Sequence[str], search_path: Sequence[Path
         return finding
     name = place.excerpt[place.column - 1 : (place.end_column or place.column) - 1].split("(")[0]
     is_spelt_otherwise = f"did you mean `{name.casefold()}`" in finding.help.casefold()
-    if not name.isidentifier() or is_spelt_otherwise:
+    if not name.isidentifier() or len(name) < _SHORTEST or is_spelt_otherwise:
         return finding
     if own := [book for book in vocabularies_with(name, search_path) if book not in read]:
         return replace(finding, help=f"it is a word of the vocabulary `{own[0]}`: `use {own[0]}`")

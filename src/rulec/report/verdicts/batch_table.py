@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.extraction.recording_verdicts import ViolationTally
 from rulec.monitoring.verdict import Verdict
 from rulec.report.text.terminal_text import table_lines, visible
 from rulec.report.verdicts import verdict_report
+
+if TYPE_CHECKING:
+    from rulec.extraction.recording_verdicts import ViolationTally
 
 
 @dataclass
