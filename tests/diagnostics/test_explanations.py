@@ -182,7 +182,8 @@ def test_only_what_no_input_makes_has_no_example():
     compilers = ["R0751", "R0752", "R0753"]
     spot, fleets = ["R0402", "R0403"], ["R0709", "R0710", "R0711", "R0712", "R0713"]
     process = ["R0414", "R0415", "R0416", "R0417", "R0708"]
-    assert without == [*spot, *process, *fleets, "R0717", "R0723", *compilers]
+    extras = ["R0760"]
+    assert without == [*spot, *process, *fleets, "R0717", "R0723", *compilers, *extras]
 
 
 def test_traces_are_lines():

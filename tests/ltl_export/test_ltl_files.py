@@ -149,6 +149,7 @@ def test_where_it_is_from(tmp_path):
 
 
 def test_a_text_without_end_is_refused(tmp_path):
-    with pytest.raises(rulec.RulecError, match="too long"):
+    with pytest.raises(rulec.RulecError, match="too long") as refused:
         rulec.write_ltl("un-r79", tmp_path, Fraction(1, 10_000))
+    assert {one.code for one in refused.value.diagnostics} == {"R0754"}
     assert not list(tmp_path.iterdir())

@@ -97,19 +97,20 @@ def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, s
     for one in [*spoken_of, *(memory.atom for memory in past.memories)]:
         names[one] = fresh_identifier(str(one), set(names.values()))
     terms = Terms(names, "alive" if rulebook.semantics == "finite" else None)
+    known_as = tuple(Proposition(names[one], str(one), _said(one, phrases)) for one in spoken_of)
+    ago = tuple(
+        Proposition(names[memory.atom], formula_text(fold_constants(memory.formula)))
+        for memory in past.memories
+    )
+    defined = (terms.term_of(fold_constants(definition(memory))) for memory in past.memories)
     found = RuleTerms(
         rule,
         lowered.step_s,
-        terms.term_of(fold_constants(past.present)),
-        conjunction((terms.lasting, *(terms.always(fact) for fact in facts))),
-        conjunction(
-            tuple(terms.term_of(fold_constants(definition(memory))) for memory in past.memories)
-        ),
-        tuple(Proposition(names[one], str(one), _said(one, phrases)) for one in spoken_of),
-        tuple(
-            Proposition(names[memory.atom], formula_text(fold_constants(memory.formula)))
-            for memory in past.memories
-        ),
+        formula=terms.term_of(fold_constants(past.present)),
+        facts=conjunction((terms.lasting, *(terms.always(fact) for fact in facts))),
+        history=conjunction(tuple(defined)),
+        propositions=known_as,
+        past=ago,
     )
     if sum(size_of(term) for term in (found.formula, found.facts, found.history)) > MOST_SIGNS:
         raise too_long(rule, f"its text would have more than {MOST_SIGNS:,} signs")
