@@ -90,6 +90,8 @@ def test_every_command_can_be_called():
     commands = {file.stem for file in folder.glob("*.py")} - {
         "__init__",
         "completion",
+        "help",
+        "man",
     }
     # Engines of many machines have a surface of their own, as they take Arrow.
     assert rulec.fleet.run_fleet is not None

@@ -68,6 +68,8 @@ WITHOUT = {
     "new": "writes a rulebook that is called as it is named",
     "fmt": "changes files in place",
     "completion": "prints a script for the shell that is named",
+    "help": "prints what `--help` prints",
+    "lsp": "answers an editor",
 }
 """Verbs that have one output of one kind, with the reason."""
 
@@ -126,7 +128,7 @@ class TestEveryVerb:
         assert main([*name.split(), *needed(command), "-o", str(file)]) == 2
         err = capsys.readouterr().err
         assert f"`{file}` does not say by its ending what to write" in err
-        assert re.search(r"Let it end in one of (\.[a-z.]+, )+or name the format", err)
+        assert re.search(r"Let it end in one of (\.[a-z1.]+, )+or name the format", err)
         assert not file.exists()
 
 

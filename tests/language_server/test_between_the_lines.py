@@ -52,7 +52,8 @@ TOWN = "rulebook town\nsignal fog, slow\nhard rule r {\n  require always (fog im
         (TOWN.replace("(fog implies slow)", "fog implies slow"), None),
         (TOWN + "hard rule s {\n  require never fog\n", "Put `}` here"),
         (TOWN.replace("fog, slow", "fog, slow, fog"), "Leave out `fog`"),
-        (TOWN.replace("implies slow", "implies wet"), "Declare `signal wet`"),
+        (TOWN.replace("implies slow", "implies hazy"), "Declare `signal hazy`"),
+        (TOWN.replace("fog implies slow", "fog implies raining"), "Use `road`"),
         (TOWN + "define unused = fog\n", "Leave out the line of `unused`"),
     ],
 )

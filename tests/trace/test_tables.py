@@ -352,4 +352,4 @@ def test_parquet_takes_a_package(monkeypatch):
         read(b"", "parquet")
     (found,) = caught.value.diagnostics
     assert found.code == "R0706"
-    assert "rulec[parquet]" in found.help
+    assert "[parquet]'`" in found.help

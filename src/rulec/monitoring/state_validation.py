@@ -305,6 +305,6 @@ def _unknown_name(name: str, vocabulary: Vocabulary) -> str:
     # Where files are looked for, 3 ms: only for this message.
     from rulec.rulebook.files.words_in_files import vocabularies_with
 
-    if others := vocabularies_with(name):
+    if others := vocabularies_with(str(name)):
         return f"it is a word of the vocabulary `{others[0]}`: judge by a rulebook that uses that"
     return _suggest(name, vocabulary.declarations)

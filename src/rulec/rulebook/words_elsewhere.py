@@ -13,11 +13,13 @@ from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.rulebook.files import search_path as search
-from rulec.rulebook.files.words_in_files import vocabularies_with
+from rulec.rulebook.files.words_in_files import words_of_vocabularies
 from rulec.rulebook.names.atom_messages import UNKNOWN_NAME
 
 _SHORTEST = 3
 """Shorter names are variables and the like, and occur everywhere."""
+
+_DEFINITION = re.compile(r"^\s*define\s+(\w+)", re.M)
 
 
 def with_words_elsewhere(
@@ -27,29 +29,46 @@ def with_words_elsewhere(
 
     ``read`` are the rulebooks and vocabularies whose words there are already.
     """
-    return tuple(_mended(finding, read, search_path) for finding in findings)
+    known = tuple(findings)
+    names = [_unknown_name(finding) for finding in known]
+    if not any(names):
+        return known
+    # Each file is read once, however many names are unknown.
+    words, definitions = words_of_vocabularies(search_path), _definitions(search_path)
+
+    def way_out(name: str) -> str:
+        for vocabulary, own in words.items():
+            if vocabulary not in read and name in own:
+                return f"it is a word of the vocabulary `{vocabulary}`: `use {vocabulary}`"
+        for book, own in definitions.items():
+            if book not in read and name in own:
+                return f"it is defined in the rulebook `{book}`: `extends {book}`, or copy it"
+        return ""
+
+    return tuple(
+        replace(finding, help=way_out(name) or finding.help) if name else finding
+        for finding, name in zip(known, names, strict=True)
+    )
 
 
-def _mended(finding: Diagnostic, read: Sequence[str], search_path: Sequence[Path]) -> Diagnostic:
+def _unknown_name(finding: Diagnostic) -> str:
+    """The name that nothing is called; empty if it is about something else, or misspelt."""
     place = finding.place
     if finding.code != UNKNOWN_NAME.code or place is None or place.column is None:
-        return finding
+        return ""
     name = place.excerpt[place.column - 1 : (place.end_column or place.column) - 1].split("(")[0]
     is_spelt_otherwise = f"did you mean `{name.casefold()}`" in finding.help.casefold()
     if not name.isidentifier() or len(name) < _SHORTEST or is_spelt_otherwise:
-        return finding
-    if own := [book for book in vocabularies_with(name, search_path) if book not in read]:
-        return replace(finding, help=f"it is a word of the vocabulary `{own[0]}`: `use {own[0]}`")
+        return ""
+    return name
+
+
+def _definitions(search_path: Sequence[Path]) -> dict[str, frozenset[str]]:
+    """What each rulebook defines."""
+    found = {}
     for book in search.available_rulebooks(search_path):
-        if book not in read and _defines(book, name, search_path):
-            way_out = f"it is defined in the rulebook `{book}`: `extends {book}`, or copy it"
-            return replace(finding, help=way_out)
-    return finding
-
-
-def _defines(book: str, name: str, search_path: Sequence[Path]) -> bool:
-    definition = re.compile(rf"^\s*define\s+{re.escape(name)}\b".encode(), re.M)
-    with suppress(RulecError):
-        path = search.find_rulebook(book, search_path)
-        return definition.search(search.read_bytes(path)) is not None
-    return False
+        with suppress(RulecError):
+            text = search.read_bytes(search.find_rulebook(book, search_path))
+            names = _DEFINITION.findall(text.decode(errors="replace"))
+            found[book] = frozenset(names)
+    return found

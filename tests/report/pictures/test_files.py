@@ -94,7 +94,7 @@ def test_without_matplotlib_there_is_a_way_out(monkeypatch):
         as_bytes(drawing(), "png", "f.png")
     (problem,) = caught.value.diagnostics
     assert (problem.code, problem.place.file) == ("R0707", "f.png")
-    assert "rulec[pictures]" in problem.help
+    assert "[pictures]'`" in problem.help
     assert as_bytes(drawing(), "html", "f.html")
 
 

@@ -52,7 +52,7 @@ class CompiledRule:
     trigger: Formula | None = None
     parts: model.RuleParts | None = None
     inherited_from: str = ""
-    certificate: str = ""
+    certificate: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -94,8 +94,12 @@ def _candidates(
     for word in asked:
         if word == text[start:end]:
             continue
-        declares = word.split(" ", 1)[0] in DECLARATION_WORDS and " " in word
-        if declares:
+        first_word, _, rest = word.partition(" ")
+        if first_word == "use" and rest:
+            head = text.find("\n") + 1 or len(text)
+            yield f"Use `{rest}`", TextChange(head, head, f"{word}\n")
+            continue
+        if first_word in DECLARATION_WORDS and rest:
             line = _line_of_item(text, start)
             yield f"Declare `{_short(word)}`", TextChange(line, line, f"{word}\n")
             continue
