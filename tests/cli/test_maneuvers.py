@@ -510,10 +510,11 @@ def test_what_is_not_known_is_said_of_each_maneuver(tmp_path, capsys):
     about = [str(file), "-r", "esterle2019", "--horizon", "2"]
     status, out, _ = answer(capsys, *about, "--list", "9")
     lines = out.splitlines()
-    assert (status, lines[3:6]) == (
+    assert (status, lines[3:7]) == (
         0,
         [
             "satisfying  4 by esterle2019 (R1, R2, R3)",
+            "violating   0",
             "open        1 more",
             "unknown     CONGESTED: not, or not exactly, known",
         ],
@@ -586,7 +587,7 @@ def test_traces_of_what_is_not_known_have_the_same_verdicts(tmp_path, capsys, en
 
 
 def test_bounds_and_pictures_read_what_is_not_known_alike(tmp_path, capsys):
-    """All but two of eight maneuvers need to know whether traffic is congested."""
+    """Bounds and pictures are of open maneuvers, too; by what is assumed these are satisfying."""
     file = tmp_path / "dark.toml"
     file.write_text(DARK, encoding="utf-8")
     about = (str(file), "-r", "esterle2019", "--horizon", "2")
@@ -598,11 +599,18 @@ def test_bounds_and_pictures_read_what_is_not_known_alike(tmp_path, capsys):
     capsys.readouterr()
     _, out, _ = answer(capsys, *about, *assumed)
     satisfying = int(next(x for x in out.splitlines() if x.startswith("satisfying")).split()[1])
-    assert len(told.read_text().splitlines()) > len(plain.read_text().splitlines())
+    layers = 3
+    assert len(told.read_text().splitlines()) == layers * satisfying
+    assert len(plain.read_text().splitlines()) == layers * satisfying
+    never = ["--assume", "CONGESTED=false"]
+    assert main(["envelopes", *about, "--list", "99", "-o", str(told), *never]) == 0
+    assert len(told.read_text().splitlines()) == layers * (satisfying - 1)
+    capsys.readouterr()
     drawing = tmp_path / "graph.svg"
     shown = ["--maneuver", str(satisfying), "-o", str(drawing)]
-    assert main(["draw", "graph", *about, *shown]) == 2
+    assert main(["draw", "graph", *about, *shown]) == 0
     assert main(["draw", "graph", *about, *shown, *assumed]) == 0
+    assert main(["draw", "graph", *about, *shown, *never]) == 2
     assert main(["draw", "graph", str(file), "-o", str(drawing), "--told-only"]) == 2
     assert "--told-only needs a rulebook" in capsys.readouterr().err
 

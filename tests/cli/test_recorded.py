@@ -44,12 +44,13 @@ def test_json(answer):
     found = json.loads(out)
     scene = found["scene"]
     assert status == 0
-    assert {"safe_gap", "crossing_use"} < set(found["by_default"])
-    assert not {"congested", "lanes"} & set(found["by_default"])
-    assert {name: item["value"] for name, item in scene.pop("derived").items()} == {
-        "congested": False,
-        "lanes": "one_lane",
-    }
+    # What cells cannot tell is unknown, and no default but what is presumed
+    assert set(found["by_default"]) <= {"told_to_stop", "told_to_go"}
+    assert "safe_gap" in found["unknown"]
+    assert found["traces"] == sum(found[x] for x in ("satisfying", "violating", "open"))
+    assert "junction_priority" in found["judged"]
+    assert not set(found["judged"]) & {rule["rule"] for rule in found["not_judged"]}
+    assert scene.pop("derived") == {}
     counted = {"reference": "1", "obstacles": 1, "left_out": 0, "recorded_until_s": 0.0}
     assert scene == {**counted, "remarks": []}
 

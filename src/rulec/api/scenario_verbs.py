@@ -68,7 +68,16 @@ class ScenarioVerbs(SessionSettings):
         reading = SceneReading(assumptions or Assumptions(), told_only)
         compiled = self._compiled(rules)
         options["partition"] = partition_for(compiled, options.get("partition"))
-        return evaluate(self.navigation_graph(scenario, **options), compiled, after, reading)
+        graph = self.navigation_graph(scenario, **options)
+        account, words = graph.scenario.account, None
+        # The paper's words are those of the paper's cells
+        is_papers = graph.partition == "paper" or graph.bounds is None
+        if account is not None and account.origin is not None and not is_papers:
+            # Extraction, 100 ms: only of recorded scenes
+            from rulec.cell_words import cell_words
+
+            words = cell_words(graph, compiled)
+        return evaluate(graph, compiled, after, reading, words)
 
     def envelope(self, graph: NavigationGraph, nodes: Sequence[int]) -> Sequence[Envelope]:
         """The bounds of a maneuver by layer. Raises RulecError R0609 without path."""
@@ -77,10 +86,9 @@ class ScenarioVerbs(SessionSettings):
         return envelope(graph, nodes)
 
     def envelopes(self, maneuvers: Maneuvers, n: int = 1) -> tuple[Sequence[Envelope], ...]:
-        """The envelopes of the ``n`` cheapest satisfying maneuvers."""
-        return tuple(
-            self.envelope(maneuvers.graph, maneuver.nodes) for maneuver in maneuvers.cheapest(n)
-        )
+        """The envelopes of the ``n`` cheapest maneuvers that are satisfying, or open."""
+        cheapest = maneuvers.cheapest(n, perhaps=True)
+        return tuple(self.envelope(maneuvers.graph, maneuver.nodes) for maneuver in cheapest)
 
     def traces(
         self,
@@ -91,6 +99,7 @@ class ScenarioVerbs(SessionSettings):
         **options: Unpack[GraphOptions],
     ) -> Iterator[Trace]:
         """Generate a scenario's maneuvers lazily as traces, in the rules' words."""
+        from rulec.trace.plain_unknowns import with_plain_unknowns
         from rulec.trace.trace_model import all_traces
 
         scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
@@ -99,7 +108,7 @@ class ScenarioVerbs(SessionSettings):
             graph = self.navigation_graph(scene, **options).trace_graph()
         else:
             graph = self.find_maneuvers(scene, rules, **options).paths
-        return all_traces(graph, scene.name, limit)
+        return map(with_plain_unknowns, all_traces(graph, scene.name, limit))
 
     def rule_probabilities(self, maneuvers: Maneuvers, maneuver: Maneuver) -> RuleProbabilities:
         """The probability that a maneuver keeps each rule, over the obstacles' predictions."""
@@ -143,6 +152,6 @@ class ScenarioVerbs(SessionSettings):
             drawing = draw(subject, None, maneuver)
         else:
             if maneuver is None:
-                maneuver = next(iter(subject.cheapest(1)), None)
+                maneuver = next(iter(subject.cheapest(1, perhaps=True)), None)
             drawing = draw(subject.graph, subject, maneuver)
         return as_bytes(drawing, form, drawing.title)

@@ -10,7 +10,9 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.monitoring_messages import STEP_TOO_FAR_OFF
 from rulec.trace import Trace, Value
 from rulec.trace.trace_model import Ending
-from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
+
+_NOT_TOLD = UNKNOWN_TYPES - {Interval}
 
 JITTER = 0.05
 """By so much of a step another may differ that is taken for it: what a logger's clock does."""
@@ -81,14 +83,14 @@ class Assumptions:
     def _told(self, state: Mapping[str, Any]) -> dict[str, Any]:
         values = self.values
         known = {
-            name: values[name] if value is UNKNOWN and name in values else value
+            name: values[name] if type(value) in _NOT_TOLD and name in values else value
             for name, value in state.items()
         }
         return _without_unknown(known) if self.defaults else known
 
 
 def _without_unknown(values: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: _plain(value) for name, value in values.items() if value is not UNKNOWN}
+    return {name: _plain(value) for name, value in values.items() if type(value) not in _NOT_TOLD}
 
 
 def _plain(value: Any) -> Any:

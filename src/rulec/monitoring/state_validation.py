@@ -16,7 +16,7 @@ from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALU
 from rulec.trace import State
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, OneOf
 
 NUMBERS = frozenset({int, float})
 TRUTHS = frozenset({bool})
@@ -229,7 +229,10 @@ def _look(declaration: Declaration, fitting: list[frozenset[str]], *, partial: b
 def _one_value(declaration: Declaration, *, partial: bool) -> _Look:
     match declaration:
         case Enumeration():
-            return frozenset([*declaration.values, *([UNKNOWN] if partial else [])]).__contains__
+            known = frozenset([*declaration.values, *([UNKNOWN] if partial else [])])
+            if not partial:
+                return known.__contains__
+            return lambda value: value in known or (type(value) is OneOf and value.values <= known)
         case Signal() if partial:
             return lambda value: type(value) is bool or value is UNKNOWN
         case Signal():
@@ -262,7 +265,8 @@ def _misfit(value: Any, declaration: Declaration) -> str:
         return ""
     match declaration:
         case Enumeration():
-            if not isinstance(value, str) or value not in declaration.values:
+            among = value.values if isinstance(value, OneOf) else (value,)
+            if not all(isinstance(one, str) and one in declaration.values for one in among):
                 return f"it is one of {named(declaration.values)}"
         case Signal():
             if not isinstance(value, bool):

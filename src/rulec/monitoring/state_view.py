@@ -14,7 +14,7 @@ from rulec.automata.thresholds import exact
 from rulec.logic.kleene import Between, Unknown
 from rulec.trace import State, Value
 from rulec.vocabulary import Declaration, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, PartialValue
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class StateView:
             value = value.get(item)
         if value is None:
             value = self.vocabulary.declarations[name].default
-        if value is None or value is UNKNOWN or type(value) is Interval:
+        if value is None or type(value) in UNKNOWN_TYPES:
             return Unknown(name, items)
         known: Value = value
         return known

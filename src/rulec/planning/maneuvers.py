@@ -32,13 +32,21 @@ from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_clas
 from rulec.planning.ranking.least_violating import RankedManeuver, front, ranked, with_penalty
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
 from rulec.planning.ranking.proven import MOST_TRIED, proven, with_trajectory
-from rulec.planning.ranking.pruning import Blaming, RulePruning, violating, violating_alone
+from rulec.planning.ranking.pruning import (
+    Blaming,
+    RuleOutcomes,
+    RulePruning,
+    outcomes_of,
+    violating,
+    violating_alone,
+)
 from rulec.planning.rule_instances import SceneReading, bind_rules, in_rule_words, past_for
 from rulec.trace import TraceGraph
 from rulec.trace.trace_model import trace_of
 from rulec.value_display import Rows, short_count
 
 if TYPE_CHECKING:
+    from rulec.cell_words import CellWords
     from rulec.partition import NavigationGraph
     from rulec.partition.dead_ends import DeadEnd
     from rulec.partition.motion.witness_trajectory import WitnessSearch
@@ -63,7 +71,7 @@ class Maneuvers(Rows):
     the hard rules. ``violated_before`` are the hard rules that it has violated for good; nothing of
     that counts against a maneuver.
     ``not_judged`` are rules that no maneuver can be known to violate. ``reading`` says what holds
-    where the scenario does not tell.
+    where the scenario does not tell, ``words`` what is said in the cells of a recorded scene.
     """
 
     graph: NavigationGraph
@@ -79,6 +87,7 @@ class Maneuvers(Rows):
     violated_before: tuple[Violation, ...] | None = None
     not_judged: tuple[RuleNotJudged, ...] = ()
     reading: SceneReading = AS_WRITTEN
+    words: CellWords | None = None
 
     def __repr__(self) -> str:
         counts = f"{short_count(self.satisfying)} of {short_count(self.traces)}"
@@ -93,6 +102,23 @@ class Maneuvers(Rows):
     def open(self) -> int:
         """Number of further maneuvers of which no hard rule is known to be violated."""
         return self.possible.accepted - self.product.accepted
+
+    @property
+    def violating(self) -> int:
+        """Number of maneuvers that violate some hard rule, whatever is unknown."""
+        return self.traces - self.possible.accepted
+
+    def rule_outcomes(self) -> list[RuleOutcomes]:
+        """How many maneuvers keep and violate each rule that can be judged.
+
+        Raises RulecError as ``best`` does.
+        """
+        dark = {rule.rule for rule in self.not_judged}
+        return [
+            outcomes_of(rule, self._every, self._every_perhaps, self.traces)
+            for rule in self.rules.rules
+            if rule.name not in dark
+        ]
 
     @property
     def judges(self) -> bool:
@@ -326,16 +352,18 @@ def evaluate(
     rules: CompiledRulebook,
     after: Before | None = None,
     reading: SceneReading = AS_WRITTEN,
+    words: CellWords | None = None,
 ) -> Maneuvers:
     """Count a graph's paths, and those that keep every hard rule.
 
-    ``after`` has led up to the first layer, ``reading`` says what holds where the scenario does not
-    tell. Raises RulecError: R0502 to R0505 if the graph does not
-    supply what the rules read, R0507 if a hard rule was compiled for another step; R0501 to R0511
-    if ``after`` is no such past.
+    ``after`` has led up to the first layer, ``words`` is what is said in the graph's cells, and
+    ``reading`` what holds where they, or the scenario, do not tell. Raises RulecError: R0502 to
+    R0505 if the graph does not supply what the rules read, R0507 if a hard rule was compiled for
+    another step; R0501 to R0511 if ``after`` is no such past.
     """
     rules = rules.fitted_to(graph.step)
-    paths = in_rule_words(graph, graph.trace_graph(), graph.objects, rules.vocabulary, reading)
+    traces = graph.trace_graph()
+    paths = in_rule_words(graph, traces, graph.objects, rules.vocabulary, reading, words=words)
     past = past_for(graph, paths, rules, HARD, after)
     bound = bind_rules(graph, paths, rules, HARD, past)
     hard = perhaps = node_transformers(paths, bound)
@@ -357,4 +385,5 @@ def evaluate(
         violated_before=None if after is None else past.violations,
         not_judged=tuple(not_judged(paths, rules, past)),
         reading=reading,
+        words=words,
     )

@@ -20,6 +20,7 @@ from rulec.trace.vocabulary_projection import project_graph
 from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
+    from rulec.cell_words import CellWords
     from rulec.partition import NavigationGraph, PartitionName
     from rulec.planning.trace_history import Before
     from rulec.rulebook.rulebook_model import Rulebook
@@ -88,7 +89,10 @@ class SceneReading:
         """The graph as it is read."""
         if not self.assumptions and not self.told_only:
             return graph
-        told = SUPPLIED.union(name for layer in graph.states for state in layer for name in state)
+        told = graph.told
+        if told is None:
+            said = (name for layer in graph.states for state in layer for name in state)
+            told = SUPPLIED.union(said)
         traces = [
             self.assumptions.applied(
                 Trace("", graph.step_s, graph.objects, layer, ends="complete", told=told)
@@ -97,7 +101,8 @@ class SceneReading:
         ]
         # Without layers nothing would be told.
         told = told.union(self.assumptions.values)
-        told_only = self.told_only and not self.assumptions.defaults
+        told_only = self.told_only or graph.told is not None
+        told_only = told_only and not self.assumptions.defaults
         states = tuple([trace.states for trace in traces])
         return replace(graph, states=states, told=told if told_only else None)
 
@@ -108,11 +113,26 @@ def in_rule_words(
     obstacles: Mapping[str, Obstacle],
     vocabulary: Vocabulary,
     reading: SceneReading,
+    *,
+    words: CellWords | None = None,
 ) -> TraceGraph:
-    """Traces of paths through a graph, about these obstacles, in the words of a vocabulary."""
+    """Traces of paths through a graph, about these obstacles, in the words of a vocabulary.
+
+    With ``words`` these are what is said in its cells, and nothing else is.
+    """
     recorded = None
     if graph.scenario.account is not None:
         recorded = {name: (own.type, *own.broader) for name, own in obstacles.items()}
+    if words is not None:
+        recorded = dict(words.types)
+        always = 0, len(graph.layers) - 1
+        traces = replace(
+            traces,
+            states=words.states,
+            objects={name: own[0] for name, own in recorded.items()},
+            present={name: span for name, span in words.present.items() if span != always},
+            told=words.told,
+        )
     return reading.of(project_graph(traces, vocabulary, SUPPLIED, recorded))
 
 

@@ -181,7 +181,8 @@ class Account:
     ``left_out`` of the file's ``recorded`` obstacles are never on the road of ``reference``, the
     lanelet ego starts from; ``until_s`` is when the recording ends, and from when on who was still
     there goes on as before; ``derived`` says how each derived signal came about,
-    ``remarks`` what the file leaves open, and is taken to be.
+    ``remarks`` what the file leaves open, and is taken to be. ``origin`` is what it was made of
+    (``recorded.scene_origin.SceneOrigin``), None unless others do what was recorded.
     """
 
     reference: str
@@ -190,6 +191,7 @@ class Account:
     until_s: float
     derived: Mapping[str, str]
     remarks: tuple[str, ...] = ()
+    origin: object = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,8 +53,15 @@ class Interval:
         return (self.high - self.low) / 2
 
 
-UNKNOWN_TYPES = frozenset({UnknownValue, Interval})
+@dataclass(frozen=True, slots=True)
+class OneOf:
+    """A value of an enumeration known to be one of several, as in a cell of a graph."""
+
+    values: frozenset[str]
+
+
+UNKNOWN_TYPES = frozenset({UnknownValue, Interval, OneOf})
 
 Unknown = Literal[UnknownValue.UNKNOWN]
-PartialValue = bool | float | str | Unknown | Interval
-"""What a state may say of a name: a value, an interval, or that it is unknown."""
+PartialValue = bool | float | str | Unknown | Interval | OneOf
+"""What a state may say of a name: a value, what it is among or between, or that it is unknown."""

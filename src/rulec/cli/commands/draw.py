@@ -285,12 +285,13 @@ def _judged(
     maneuvers = rulec.find_maneuvers(read_scene(scenario, options), rules, **reading, **options)
     place = number or 1
     maneuver = None
-    if place <= min(maneuvers.satisfying, sys.maxsize):
-        maneuver = next(islice(cheapest(maneuvers.product), place - 1, None))
+    legal = maneuvers.satisfying + maneuvers.open
+    if place <= min(legal, sys.maxsize):
+        maneuver = next(islice(cheapest(maneuvers.possible), place - 1, None))
     if maneuver is None and number is not None:
         raise click.UsageError(
             f"There is no maneuver {number}: "
-            f"{shown_count(maneuvers.satisfying)} satisfy the rulebook."
+            f"{shown_count(legal)} satisfy the rulebook{', or may' if maneuvers.open else ''}."
         )
     return maneuvers.graph, maneuvers, maneuver
 

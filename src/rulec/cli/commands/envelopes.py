@@ -43,8 +43,10 @@ def command(
     """Write the envelopes of the cheapest satisfying maneuvers of SCENARIO (a name or a file).
 
     A table in JSON Lines, CSV or Parquet: what bounds a maneuver in each layer, piece by piece.
+    Where not all is known those that are open are among them.
 
-    Exit status: 0 there is a satisfying maneuver, 1 there is none, 2 it could not be answered.
+    Exit status: 0 there is a satisfying or an open maneuver, 1 there is none, 2 it could not be
+    answered.
     """
     # Maneuvers and the formats of tables, 100 ms: not for --help.
     from rulec.report.maneuvers.envelope_table import write_envelopes
@@ -53,9 +55,10 @@ def command(
     reading = scene_reading(options, rules.vocabulary)
     scene = read_scene(scenario, options)
     maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
-    cheapest = maneuvers.cheapest(number)
+    cheapest = maneuvers.cheapest(number, perhaps=True)
     with output_stream(to) as (stream, name):
         write_envelopes(maneuvers.graph, cheapest, stream, name, cast("Format", to.form))
-    satisfying = shown_count(maneuvers.satisfying)
-    print_written(f"{len(cheapest):,} of {satisfying} satisfying maneuvers to {to.path}", to)
+    legal = shown_count(maneuvers.satisfying + maneuvers.open)
+    what = "satisfying or open" if maneuvers.open else "satisfying"
+    print_written(f"{len(cheapest):,} of {legal} {what} maneuvers to {to.path}", to)
     return ExitStatus.OK if cheapest else ExitStatus.VIOLATED

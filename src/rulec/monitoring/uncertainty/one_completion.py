@@ -9,7 +9,7 @@ from typing import Any
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.trace import Trace, Value
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
 
 def completed(trace: Trace, vocabulary: Vocabulary) -> Trace:
@@ -43,6 +43,8 @@ def _known(value: Any, declaration: Declaration, depth: int) -> Any:
         return {}  # unknown of all objects
     if isinstance(value, Interval):
         return value.middle
+    if isinstance(value, OneOf):
+        return min(value.values)
     return any_value(declaration) if value is UNKNOWN else value
 
 

@@ -8,7 +8,7 @@ from operator import getitem
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.monitoring.verdict import Violation
-from rulec.planning.product.graph_product import Joint, Product, explore_with
+from rulec.planning.product.graph_product import Joint, Product, explore, explore_with
 from rulec.planning.product.node_transformers import LOST, SAFE, Effect, NodeTransformers
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.value_display import short_repr
@@ -39,6 +39,35 @@ class RulePruning:
     example: Maneuver | None
     violations: tuple[Violation, ...]
     open: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class RuleOutcomes:
+    """The numbers of maneuvers that keep a rule, that violate it, and of which neither is known."""
+
+    rule: CompiledRule
+    kept: int
+    violated: int
+    open: int
+
+    @property
+    def judged(self) -> bool:
+        """Whether it is kept or violated for sure by half of the maneuvers or more."""
+        return self.kept + self.violated >= self.open and self.kept + self.violated > 0
+
+
+def outcomes_of(
+    rule: CompiledRule, surely: NodeTransformers, perhaps: NodeTransformers, paths: int
+) -> RuleOutcomes:
+    """The outcomes of a rule on all paths, of which there are so many."""
+
+    def accepted(transformers: NodeTransformers) -> int:
+        names = [instance.rule.name for instance in transformers.instances]
+        own = [number for number, name in enumerate(names) if name == rule.name]
+        return explore(transformers.of(own)).accepted if own else paths
+
+    kept, not_violated = accepted(surely), accepted(perhaps)
+    return RuleOutcomes(rule, kept, paths - not_violated, not_violated - kept)
 
 
 def violating(transformers: NodeTransformers) -> dict[str, Product[Blaming]]:

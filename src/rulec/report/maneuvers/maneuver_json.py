@@ -199,8 +199,9 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     """The counts of maneuvers in a scenario, and further answers asked for.
 
     On ``open`` more than those ``satisfying`` it depends on what is ``unknown``; ``exact`` is false
-    if there was too much to look at, and some may be known after all. With ``bounds`` of ego's
-    motion (m, s) they are paths through reachable cells, else through all.
+    if there was too much to look at, and some may be known after all. ``judged`` are the rules that
+    half of them or more keep or violate for sure, null unless cells have words. With ``bounds`` of
+    ego's motion (m, s) they are paths through reachable cells, else through all.
     """
 
     scenario: str
@@ -215,8 +216,10 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     bounds: Mapping[str, float] | None
     traces: int
     satisfying: int
+    violating: int
     open: int
     exact: bool
+    judged: Sequence[str] | None
     unknown: Sequence[str]
     not_judged: Sequence[NotJudgedRule]
     by_default: Sequence[str]
@@ -248,8 +251,10 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             bounds=None if graph.bounds is None else asdict(graph.bounds),
             traces=maneuvers.traces,
             satisfying=maneuvers.satisfying,
+            violating=maneuvers.violating,
             open=maneuvers.open,
             exact=maneuvers.exact,
+            judged=_judged(maneuvers),
             unknown=maneuvers.unknown,
             not_judged=not_judged_data(maneuvers.not_judged, maneuvers.rules),
             by_default=maneuvers.by_default,
@@ -274,6 +279,13 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             classes=UNSET if answers.classes is None else _classes(maneuvers, *answers.classes),
         )
     )
+
+
+def _judged(maneuvers: Maneuvers) -> list[str] | None:
+    """The rules that the words of cells judge; None where cells have none."""
+    if maneuvers.words is None:
+        return None
+    return [outcomes.rule.name for outcomes in maneuvers.rule_outcomes() if outcomes.judged]
 
 
 def _each(items: Iterable[Item] | None, data: Callable[[Item], Data]) -> list[Data] | UnsetType:

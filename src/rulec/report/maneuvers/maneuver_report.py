@@ -56,7 +56,9 @@ def likeliest(scenario: Scenario) -> float:
 
 
 def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[Any, str]]:
-    """Signals supplied by the recording, each with value and reason."""
+    """Signals of the scene as a whole, each with value and reason; none if its cells have words."""
+    if maneuvers.words is not None:
+        return {}
     supplied = maneuvers.paths.states[0][0]
     return {
         name: (supplied[name], because)
@@ -86,6 +88,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
         f"maneuvers   {_paths(maneuvers)}",
         *_shut_in(maneuvers),
+        *_judged(maneuvers),
         f"satisfying  {satisfying}",
         *_without_rules(maneuvers),
         *_doubts(maneuvers),
@@ -124,9 +127,18 @@ def _paths(maneuvers: Maneuvers) -> str:
     return f"{shown_count(maneuvers.traces)} {paths} through {cells}"
 
 
+def _judged(maneuvers: Maneuvers) -> Iterator[str]:
+    """How many rules the words of cells judge."""
+    if maneuvers.words is not None and maneuvers.traces:
+        judged = sum(outcomes.judged for outcomes in maneuvers.rule_outcomes())
+        every = f"{judged} of {len(maneuvers.rules.rules)} could be judged"
+        yield f"rules       {every}: kept or violated on half of the maneuvers or more"
+
+
 def _doubts(maneuvers: Maneuvers) -> Iterator[str]:
     """What not all being known comes to."""
     if maneuvers.in_doubt and maneuvers.judges:
+        yield f"violating   {styled(shown_count(maneuvers.violating), 'bold')}"
         more = "" if maneuvers.exact else ", or fewer: there was too much to look at"
         yield f"open        {styled(shown_count(maneuvers.open), 'bold')} more{more}"
     if maneuvers.unknown:

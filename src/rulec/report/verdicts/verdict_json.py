@@ -14,7 +14,7 @@ from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleNotJudged, Verdict
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.verdicts.violation_table import repaired_states
-from rulec.vocabulary.partial_values import Interval, PartialValue, UnknownValue
+from rulec.vocabulary.partial_values import Interval, OneOf, PartialValue, UnknownValue
 
 
 class BoundsData(JsonPart, frozen=True, kw_only=True, rename={"low": "from", "high": "to"}):
@@ -296,7 +296,7 @@ def error_data(error: RulecError) -> ErrorData:
 def _value_data(value: PartialValue | None) -> Value:
     if isinstance(value, Interval):
         return BoundsData(low=value.low, high=value.high)
-    return None if isinstance(value, UnknownValue) else value
+    return None if isinstance(value, UnknownValue | OneOf) else value
 
 
 def explanation_data(explanation: Explanation) -> ExplanationData:

@@ -22,6 +22,7 @@ from rulec.scenario.recorded.ego_start import choice_error, ego_start, reference
 from rulec.scenario.recorded.lane_coordinates import borders_along, crossings_along, lanes_along
 from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
 from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
+from rulec.scenario.recorded.scene_origin import SceneOrigin
 from rulec.scenario.recorded.traffic_obstacles import TrafficView, traffic_obstacles
 from rulec.scenario.scenario_model import (
     Account,
@@ -122,6 +123,9 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
             until_s=view.until_s,
             derived={name: how for name, (_, how) in derived.items()},
             remarks=recording.remarks,
+            origin=SceneOrigin(recording, start, line, lanes, ego_s=ego_s, way=tuple(way))
+            if choice.prediction == "recorded"
+            else None,
         ),
     )
 

@@ -37,7 +37,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
 )
 from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Quantity
-from rulec.vocabulary.partial_values import Interval
+from rulec.vocabulary.partial_values import Interval, OneOf
 from rulec.vocabulary.vocabulary_model import choices
 
 Digits: TypeAlias = tuple[int, ...]
@@ -203,7 +203,8 @@ def _completed(
         given = view.given(*subject)
         match declaration:
             case Enumeration():
-                values[subject] = declaration.values
+                among = given.values if isinstance(given, OneOf) else declaration.values
+                values[subject] = [value for value in declaration.values if value in among]
             case Quantity():
                 number = ltl.QuantityTerm(*subject)
                 bounds[number] = None

@@ -18,7 +18,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
     Subject,
 )
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf, PartialValue
 
 Cube: TypeAlias = tuple[int, ...]
 """For each read the bit set of its digits, each of which goes with each of the others'."""
@@ -93,6 +93,9 @@ def possible_digits(read: Read | NumberRead, value: PartialValue | Fraction | No
         return 0
     if value is UNKNOWN:
         return (1 << read.size) - 1
+    if isinstance(value, OneOf):
+        assert isinstance(read, Read)
+        return sum({1 << read.digit(one) for one in value.values})
     if isinstance(value, Interval):
         assert isinstance(read, NumberRead)
         known = scale(read)

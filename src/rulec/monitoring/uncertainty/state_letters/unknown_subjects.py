@@ -13,7 +13,7 @@ from rulec.logic import formula as ltl
 from rulec.logic.kleene import PartialState, Unknown
 from rulec.trace import Value
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES, PartialValue
 
 Subject: TypeAlias = tuple[str, tuple[str, ...]]
 """A declaration's name and the objects that it is asked of."""
@@ -94,8 +94,7 @@ def unknown_subjects(
 
 def is_unknown(subject: Subject, view: PartialView) -> bool:
     """Whether no single value is known."""
-    given = view.given(*subject)
-    return given is UNKNOWN or isinstance(given, Interval)
+    return type(view.given(*subject)) in UNKNOWN_TYPES
 
 
 def subjects_in(

@@ -1,0 +1,5 @@
+"""What the words of recorded drives are in the cells of a navigation graph."""
+
+from rulec.cell_words.cell_words import CellWords, cell_words
+
+__all__ = ["CellWords", "cell_words"]

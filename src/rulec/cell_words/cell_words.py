@@ -1,0 +1,223 @@
+"""The words of recorded drives in the cells of a graph: values, bounds, or unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.cell_words.ego_boxes import EgoBoxes, ego_boxes
+from rulec.cell_words.place_words import PlaceWords, SceneWords, Words, settled_by_place
+from rulec.cell_words.probe_drives import ProbeDrives, probe_drives
+from rulec.cell_words.relation_words import FLOWS, RELATIONS, Relations
+from rulec.cell_words.road_frame import OthersNow, RoadFrame
+from rulec.extraction.drive_context import KMH
+from rulec.extraction.recording_verdicts import names_read
+from rulec.extraction.selection import RequestedDrives, chosen_side
+from rulec.extraction.traffic_thresholds import USUAL
+from rulec.partition import NavigationGraph
+from rulec.scenario.recorded.scene_origin import SceneOrigin
+from rulec.trace import State
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+
+_BEFORE_M, _BEYOND_M = 100.0, 250.0
+"""What is farther from where ego may be gives no reason for any word."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CellWords:
+    """What is said in each cell of a graph.
+
+    ``states[p][i]`` is the state of cell ``i`` of layer ``p``, ``told`` are the names that the
+    recording tells. ``types`` are those of everybody, the most specific first, by their ids in the
+    recording, ``present`` their first and last layers.
+    """
+
+    states: tuple[tuple[State, ...], ...]
+    told: frozenset[str]
+    types: Mapping[str, tuple[str, ...]]
+    present: Mapping[str, tuple[int, int]]
+
+
+def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | None:
+    """The words that rules read, in the cells of a recorded scene; None of any other scene.
+
+    Nothing is told where the recording would have to be mirrored.
+    """
+    account = graph.scenario.account
+    origin = None if account is None else account.origin
+    if not isinstance(origin, SceneOrigin):
+        return None
+    side, mirrored = chosen_side(origin.recording, RequestedDrives(), rules.traffic)
+    if mirrored:
+        nothing: State = {}
+        states = tuple((nothing,) * len(layer.cells) for layer in graph.layers)
+        types = {name: (own.type, *own.broader) for name, own in graph.objects.items()}
+        return CellWords(states, frozenset(), types, graph.present)
+    probes = probe_drives(graph, origin, rules, side)
+    try:
+        frame = RoadFrame(probes)
+    except ValueError:
+        frame = None
+    return _Words(graph, rules, probes, frame).all()
+
+
+class _Words:
+    """The words of a graph, layer by layer."""
+
+    def __init__(
+        self,
+        graph: NavigationGraph,
+        rules: CompiledRulebook,
+        probes: ProbeDrives,
+        frame: RoadFrame | None,
+    ) -> None:
+        self._graph, self._probes, self._frame = graph, probes, frame
+        self._vocabulary: Vocabulary = rules.vocabulary
+        self._names = names_read(rules) & probes.told
+        self._boxes = list(ego_boxes(graph, probes.among.surroundings.tolerances.speed_mps))
+        self._scene = self._scene_words()
+        self._places = PlaceWords(probes, self._names)
+        self._bodies = probes.among.recording.participants[:-1]
+        self._rows = {body.id: row for row, body in enumerate(self._bodies)}
+        self._now = [None if frame is None else frame.at(layer.start_s) for layer in graph.layers]
+        self._present = self._presences()
+
+    def all(self) -> CellWords:
+        """All words of all cells."""
+        return CellWords(
+            tuple(tuple(self._layer(number)) for number in range(len(self._graph.layers))),
+            self._probes.told,
+            {item: self._bodies[self._rows[item]].object_types for item in self._present},
+            self._present,
+        )
+
+    def _scene_words(self) -> SceneWords:
+        low = min(float(box.s[0].min()) for box in self._boxes if len(box.s[0]))
+        high = max(float(box.s[1].max()) for box in self._boxes if len(box.s[1]))
+        frame = self._frame
+
+        def near(stretches: Sequence[tuple[float, float]]) -> bool:
+            return any(
+                not (end <= low - _BEFORE_M or start >= high + _BEYOND_M)
+                for start, end in stretches
+            )
+
+        crossings = frame is None or near(frame.crossings)
+        rails = any(
+            "level_crossing" in lanelet.types
+            for lanelet in self._probes.recording.lanelets.values()
+        )
+        junctions = frame is None or near(frame.junctions)
+        return SceneWords(
+            self._probes, self._names, not (junctions or crossings or rails), not crossings
+        )
+
+    def _presences(self) -> dict[str, tuple[int, int]]:
+        """First and last layers of all who are on the scene's road, or count for ego.
+
+        By their ids in the recording: who leaves the scene's road and comes back may be beside it
+        meanwhile.
+        """
+        spans: dict[str, tuple[int, int]] = {}
+        for name, obstacle in self._graph.objects.items():
+            first, last = self._graph.present[name]
+            low, high = spans.get(obstacle.id, (first, last))
+            spans[obstacle.id] = min(low, first), max(high, last)
+        for number, (now, boxes) in enumerate(zip(self._now, self._boxes, strict=True)):
+            if now is None or not len(boxes.s[0]):
+                continue
+            begin, end = boxes.s[0].min() - USUAL.near_m, boxes.s[1].max() + USUAL.near_m
+            far = (now.s[1] <= begin) | (now.s[0] >= end)
+            for row in np.flatnonzero(now.is_there & ~far).tolist():
+                first, last = spans.get(self._bodies[row].id, (number, number))
+                spans[self._bodies[row].id] = min(first, number), max(last, number)
+        return spans
+
+    def _layer(self, number: int) -> Iterator[State]:
+        layer, boxes, now = self._graph.layers[number], self._boxes[number], self._now[number]
+        if not layer.cells:
+            return
+        items = [item for item, (first, last) in self._present.items() if first <= number <= last]
+        shared = self._shared(number, items)
+        places = self._places.of_cells(boxes)
+        own = self._own_words(boxes)
+        about = self._relations(boxes, now, items)
+        for cell, place in enumerate(places):
+            state: Words = {**shared, **place, **settled_by_place(place, self._names)}
+            state |= {name: values[cell] for name, values in own.items()}
+            state |= {name: values[cell] for name, values in about.items()}
+            yield state
+
+    def _shared(self, number: int, items: Sequence[str]) -> Words:
+        """What is the same in all cells of a layer; what nobody knows is unknown."""
+        step_s = self._probes.recording.step_s
+        at = self._graph.layers[number].start_s / step_s
+        states = sorted({int(np.floor(at + 1e-6)), int(np.ceil(at - 1e-6))})
+        everywhere, about_all = self._scene.everywhere, self._scene.about_all
+        of_others = self._scene.of_others(states)
+        words: Words = {}
+        for name in self._names:
+            declaration = self._vocabulary.declarations.get(name)
+            if declaration is None:
+                continue
+            if not declaration.parameters:
+                words[name] = everywhere.get(name, self._by_motion(name))
+            else:
+                said = of_others.get(name, {})
+                words[name] = {item: said.get(item, about_all.get(name, UNKNOWN)) for item in items}
+        return words
+
+    def _by_motion(self, name: str) -> Any:
+        """What the bounds of ego's motion tell everywhere: it goes ahead, on its lanes."""
+        if self._graph.bounds is not None and name in ("reversing", "u_turn", "joins_road"):
+            return False
+        if name in ("lane_change", "straddling") and len(self._graph.scenario.road.lanes) == 2:
+            return False
+        return UNKNOWN
+
+    def _own_words(self, boxes: EgoBoxes) -> dict[str, list[Any]]:
+        """Ego's speed, by cell."""
+        found: dict[str, list[Any]] = {}
+        slow, fast = (speed * KMH for speed in boxes.mean_speed)
+        standing = USUAL.standing_kmh
+        if "speed" in self._names:
+            low = np.where(slow < 2 * standing, 0.0, slow)
+            found["speed"] = [
+                Interval(float(np.floor(one * 100) / 100), float(np.ceil(other * 100) / 100))
+                for one, other in zip(low.tolist(), fast.tolist(), strict=True)
+            ]
+        if "can_stop_at_once" in self._names:
+            limit = USUAL.stops_at_once_kmh
+            found["can_stop_at_once"] = [
+                True if other < limit else False if one > limit else UNKNOWN
+                for one, other in zip(slow.tolist(), fast.tolist(), strict=True)
+            ]
+        return found
+
+    def _relations(
+        self, boxes: EgoBoxes, now: OthersNow | None, items: Sequence[str]
+    ) -> dict[str, list[Any]]:
+        """The relations to others, by cell, and how slow all are around ego."""
+        names = self._names & RELATIONS
+        unknown = dict.fromkeys(items, UNKNOWN)
+        if now is None or self._frame is None:
+            return {name: [dict(unknown) for _ in boxes.s[0]] for name in names}
+        relations = Relations(boxes, now, self._frame)
+        flows = {name: relations.flow(FLOWS[name]) for name in self._names & FLOWS.keys()}
+        sure = relations.near & now.counts
+        rows = [(item, self._rows.get(item)) for item in items]
+        found: dict[str, list[Any]] = dict(flows)
+        for name, values in relations.words(names).items():
+            found[name] = [
+                {
+                    item: values[cell][row] if row is not None and sure[cell, row] else UNKNOWN
+                    for item, row in rows
+                }
+                for cell in range(len(values))
+            ]
+        return found

@@ -1,0 +1,123 @@
+"""Bounds of ego's place, speed and body in the cells of a layer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.partition import NavigationGraph
+from rulec.partition.cells.cell_model import Layer, Reach
+from rulec.scenario import MotionBounds
+
+Floats: TypeAlias = NDArray[float64]
+Bounds: TypeAlias = tuple[Floats, Floats]
+"""The least and the greatest, a row for each cell."""
+
+_FASTEST_MPS = 100.0
+_WINDOW_S = 0.5
+"""Extracted speeds are means from so long before to so long after."""
+
+_BEND_RAD = np.radians(6.0)
+"""The directions of two lines along one road differ by less, where it bends."""
+
+_GRIP_MPS2, _SLIP_S = 10.0, 0.3
+"""What gains or loses more speed than this, for so long, is taken to slip off its track."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EgoBoxes:
+    """Bounds for each cell when its layer begins.
+
+    ``s`` and ``d`` (m) are those of ego's centre, ``speed`` that along the road and ``mean_speed``
+    the one that extraction finds, whatever its direction, less than 0 as far as it may be wrong
+    (m/s). Half its body's extents along and across the road (m) are for all headings that ego may
+    have.
+    """
+
+    s: Bounds
+    d: Bounds
+    speed: Bounds
+    mean_speed: Bounds
+    half_length: Bounds
+    half_width: Bounds
+
+
+def ego_boxes(graph: NavigationGraph, error_mps: float) -> Iterator[EgoBoxes]:
+    """The bounds in each layer; speeds over a second are known to ``error_mps``."""
+    motion = graph.bounds
+    size = body_size(graph)
+    last = len(graph.layers) - 1
+    for number, layer in enumerate(graph.layers):
+        reach = graph.reach[number] if graph.reach else (None,) * len(layer.cells)
+        before = min(number * graph.step_s, _WINDOW_S)
+        after = min((last - number) * graph.step_s, _WINDOW_S)
+        yield _boxes(layer, reach, size, _mean_margins(motion, before, after, error_mps))
+
+
+def body_size(graph: NavigationGraph) -> tuple[float, float]:
+    """Ego's length and width (m): as recorded, else those of the bounds, else of a car."""
+    ego, bounds = graph.scenario.ego, graph.bounds or graph.scenario.ego.bounds or MotionBounds()
+    return ego.length or bounds.length, ego.width or bounds.width
+
+
+def _mean_margins(
+    motion: MotionBounds | None, before: float, after: float, error_mps: float
+) -> tuple[float, float]:
+    """How far a mean of speed, with what it may be wrong, may be below and above the speed."""
+    if motion is None or not before + after:
+        return _FASTEST_MPS, _FASTEST_MPS
+    gains, loses, seconds = motion.acceleration, motion.braking, before + after
+    below = (gains * before**2 + loses * after**2) / 2 / seconds
+    above = (loses * before**2 + gains * after**2) / 2 / seconds
+    most = max(gains, loses)
+    wrong = error_mps / seconds + most * abs(after - before) / 2
+    wrong += max(most - _GRIP_MPS2, 0.0) * _SLIP_S / seconds
+    return below + wrong, above + wrong
+
+
+def _boxes(
+    layer: Layer,
+    reach: tuple[Reach | None, ...],
+    size: tuple[float, float],
+    margins: tuple[float, float],
+) -> EgoBoxes:
+    rows = []
+    for cell, own in zip(layer.cells, reach, strict=True):
+        if own is None:
+            box = cell.bounds
+            rows.append((box.s_min, box.s_max, box.d_min, box.d_max, 0.0, _FASTEST_MPS, 0.0, 100.0))
+        else:
+            sideways = max(abs(own.lateral_speed[0]), abs(own.lateral_speed[1]))
+            rows.append((*own.s, *own.d, *own.speed, 0.0, sideways))
+    s0, s1, d0, d1, slow, fast, _, sideways = np.array(rows).reshape(-1, 8).T
+    slow = np.maximum(slow, 0.0)
+    # No heading is farther from the road's than 45°, nor than the speeds along and across it tell
+    turned = np.minimum(np.arctan2(sideways, np.maximum(slow, 1e-9)), np.pi / 4) + _BEND_RAD
+    half, side = size[0] / 2, size[1] / 2
+    lengths = _extents(half, side, turned)
+    widths = _extents(side, half, turned)
+    most = np.hypot(fast, sideways)
+    means = slow - margins[0], most + margins[1]
+    return EgoBoxes(
+        s=(s0, s1),
+        d=(d0, d1),
+        speed=(slow, fast),
+        mean_speed=means,
+        half_length=lengths,
+        half_width=widths,
+    )
+
+
+def _extents(along: float, across: float, turned: Floats) -> Bounds:
+    """The least and the greatest half extent of a rectangle turned by up to an angle (rad)."""
+    at_most = along * np.cos(turned) + across * np.sin(turned)
+    widest = np.minimum(turned, np.arctan2(across, along))
+    return (
+        np.minimum(along, at_most),
+        along * np.cos(widest) + across * np.sin(widest),
+    )

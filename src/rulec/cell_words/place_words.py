@@ -1,0 +1,322 @@
+"""Words that a place decides, or the time, or that nothing on the road gives a reason for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.cell_words.ego_boxes import EgoBoxes, Floats
+from rulec.cell_words.probe_drives import EVERY_M, LaneProbe, ProbeDrives
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
+
+Words: TypeAlias = dict[str, Any]
+"""Name -> its value, or for one about objects object -> value."""
+
+OF_SCENE = frozenset({"ego_type", "ego_length", "wet", "icy", "visibility", "raining", "night"})
+"""The same at all places and times."""
+
+OF_OTHERS = frozenset(
+    {
+        "two_wheeled",
+        "parked",
+        "stopped",
+        "oncoming",
+        "goes_across",
+        "in_the_road",
+        "boarding",
+        "leaving_stop",
+        "warning_lights",
+        "hazard_lights",
+        "on_call",
+        "turning_far",
+        "about_to_overtake",
+        "on_shoulder",
+        "leads_elsewhere",
+    }
+)
+"""About others at a time, wherever ego is."""
+
+OF_PLACE = frozenset(
+    {
+        "limit",
+        "built_up",
+        "road_class",
+        "one_way",
+        "divided",
+        "lane_kind",
+        "tunnel",
+        "tracks_at_kerb",
+        "lanes",
+        "lane",
+        "lane_number",
+        "marked_lanes",
+        "surface",
+        "driving_side",
+        "junction_zone",
+        "crossing_zone",
+        "crossing_kind",
+        "level_crossing_zone",
+        "guarded",
+        "no_overtaking_sign",
+        "give_way_sign",
+        "stop_sign",
+        "turn_on_red_sign",
+        "no_turn_on_red_sign",
+        "narrowing",
+        "merged",
+        "light",
+    }
+)
+"""Decided by where ego is along the road, and in which lane."""
+
+DISTANCES = frozenset({"distance_to_crossing", "distance_to_junction"})
+
+NEEDS_JUNCTION = frozenset(
+    {
+        "enters_junction",
+        "turn",
+        "unregulated_junction",
+        "own_road_ends",
+        "other_road_ends",
+        "conflict_from_left",
+        "conflict_from_right",
+        "conflict_with_rail",
+        "in_way_of_oncoming",
+        "turns_in_way_of",
+        "enters_roundabout",
+        "roundabout_signed",
+        "conflict_on_roundabout",
+        "crosses_side_road",
+        "came_up_beside",
+        "crosses_light_line",
+        "crosses_stop_line",
+        "enters_level_crossing",
+        "exit_clear",
+    }
+)
+"""The same everywhere on a road without junctions, crossings and level crossings."""
+
+NEEDS_CROSSING = frozenset({"crossing_use", "stopped_for_pedestrian", "nearest_to_crossing"})
+"""The same everywhere on a road without pedestrian crossings."""
+
+_AT_ZONE: Mapping[str, Any] = {"enters_junction": False, "turn": "straight_on"}
+"""What they are where ego is not at a junction."""
+
+_LOOSE_M = 2.0
+"""Places of two roads through one place are no farther apart along them."""
+
+_NEXT_LANE_M = 0.5
+"""A lane is left so far beyond its mark at most, the tolerance of marks included."""
+
+
+def common(values: Iterable[Any]) -> Any:
+    """The value that is any of some."""
+    found = list(dict.fromkeys(values))
+    if len(found) == 1:
+        return found[0]
+    if found and all(isinstance(value, str | OneOf) for value in found):
+        return OneOf(frozenset().union(*map(_among, found)))
+    if found and all(type(value) in (float, int, Interval) for value in found):
+        ends = [_ends(value) for value in found]
+        return Interval(min(low for low, _ in ends), max(high for _, high in ends))
+    return UNKNOWN
+
+
+def _among(value: str | OneOf) -> frozenset[str]:
+    return value.values if isinstance(value, OneOf) else frozenset({value})
+
+
+def _ends(value: float | Interval) -> tuple[float, float]:
+    return (value.low, value.high) if isinstance(value, Interval) else (value, value)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Lane:
+    """What is said along a lane, in runs of places of which the same is said.
+
+    ``s`` are the places, ``run`` the number of each one's run, ``said`` what is said in each.
+    """
+
+    probe: LaneProbe
+    s: Floats
+    run: NDArray[intp]
+    said: tuple[Words, ...]
+
+
+class PlaceWords:
+    """The words of cells that do not depend on how ego moves, nor on where others are beside it."""
+
+    def __init__(self, probes: ProbeDrives, names: frozenset[str]) -> None:
+        self._probes = probes
+        self._names = names & OF_PLACE
+        self._distances = names & DISTANCES
+        self._straight = probes.origin.lanes.straight
+        self._lanes = [_runs(probe, self._names) for probe in probes.lanes]
+        self._known: dict[object, Words] = {}
+
+    def of_cells(self, boxes: EgoBoxes) -> list[Words]:
+        """The words of each cell of a layer, shared where they are the same."""
+        low = boxes.s[0] - _LOOSE_M
+        high = boxes.s[1] + _LOOSE_M
+        first = np.searchsorted(self._straight, boxes.d[0] - _NEXT_LANE_M, "right") - 1
+        last = np.searchsorted(self._straight, boxes.d[1] + _NEXT_LANE_M, "left") - 1
+        top = len(self._straight) - 2
+        rows = zip(
+            low.tolist(),
+            high.tolist(),
+            np.clip(first, 0, top).tolist(),
+            np.clip(last, 0, top).tolist(),
+            strict=True,
+        )
+        return [self._between(*row) for row in rows]
+
+    def _between(self, low: float, high: float, first: int, last: int) -> Words:
+        """The words for all places between two, in a range of lanes."""
+        spans = []
+        reached = dict.fromkeys(range(first, last + 1), False)
+        for number, lane in enumerate(self._lanes):
+            if first <= lane.probe.lane <= last and lane.s[0] <= high and lane.s[-1] >= low:
+                begin = max(int(np.searchsorted(lane.s, low, "right")) - 1, 0)
+                end = min(int(np.searchsorted(lane.s, high, "left")), len(lane.s) - 1)
+                whole = lane.s[0] <= low and lane.s[-1] >= high
+                reached[lane.probe.lane] |= whole
+                spans.append((number, int(lane.run[begin]), int(lane.run[end])))
+        key = tuple(spans), all(reached.values())
+        if key not in self._known:
+            self._known[key] = self._said_in(*key)
+        found = self._known[key]
+        if self._distances:
+            found = {**found, **self._ways(spans, low, high)}
+        return found
+
+    def _said_in(self, spans: tuple[tuple[int, int, int], ...], whole: bool) -> Words:
+        said = [
+            self._lanes[number].said[run]
+            for number, first, last in spans
+            for run in range(first, last + 1)
+        ]
+        if not whole or not said:
+            return dict.fromkeys(self._names, UNKNOWN)
+        words = {name: common(one[name] for one in said) for name in self._names}
+        if words.get("light", UNKNOWN) != "no_light" and "light" in words:
+            words["light"] = UNKNOWN  # another one at other times
+        return words
+
+    def _ways(self, spans: Sequence[tuple[int, int, int]], low: float, high: float) -> Words:
+        ways: Words = {}
+        for name in self._distances:
+            values = [
+                self._lanes[number].probe.states[place].get(name, UNKNOWN)
+                for number, _, _ in spans
+                for place in np.flatnonzero(
+                    (self._lanes[number].s >= low - EVERY_M)
+                    & (self._lanes[number].s <= high + EVERY_M)
+                ).tolist()
+            ]
+            ways[name] = common(values)
+        return ways
+
+
+def _runs(probe: LaneProbe, names: frozenset[str]) -> _Lane:
+    profiles = [
+        tuple((name, state.get(name, UNKNOWN)) for name in sorted(names)) for state in probe.states
+    ]
+    new = [True, *(one != other for one, other in pairwise(profiles))]
+    run = np.cumsum(new) - 1
+    said = tuple(dict(profile) for profile, begins in zip(profiles, new, strict=True) if begins)
+    return _Lane(probe, probe.s, run, said)
+
+
+@dataclass(frozen=True, eq=False)
+class SceneWords:
+    """The words of a whole scene, and those of a time.
+
+    ``nothing_there`` says whether no junction, crossing or level crossing is on the road, as far as
+    ego may get, and beyond; ``no_crossing`` the same of pedestrian crossings alone.
+    """
+
+    probes: ProbeDrives
+    names: frozenset[str]
+    no_junction: bool
+    no_crossing: bool
+
+    @cached_property
+    def everywhere(self) -> Words:
+        """Words about the world that are the same in all cells."""
+        words: Words = {}
+        for name in self.names & OF_SCENE:
+            words[name] = common(self._values(name))
+        for name in self._guarded:
+            values = list(self._values(name))
+            if values and not any(isinstance(value, Mapping) for value in values):
+                words[name] = common(values)
+        if "emergency_vehicle_near" in self.names:
+            kinds = {body.type for body in self.probes.recording.participants}
+            words["emergency_vehicle_near"] = UNKNOWN if "priorityVehicle" in kinds else False
+        return words
+
+    @cached_property
+    def about_all(self) -> Words:
+        """Words about others that are the same of all of them in all cells: name -> value."""
+        return {
+            name: common(
+                inner
+                for value in self._values(name)
+                if isinstance(value, Mapping)
+                for inner in value.values()
+            )
+            for name in self._guarded
+            if any(isinstance(value, Mapping) for value in self._values(name))
+        }
+
+    @cached_property
+    def _guarded(self) -> frozenset[str]:
+        names = frozenset[str]()
+        if self.no_junction:
+            names |= NEEDS_JUNCTION
+        if self.no_crossing:
+            names |= NEEDS_CROSSING
+        return names & self.names
+
+    def _values(self, name: str) -> Iterable[Any]:
+        probes = [*(own.states for own in self.probes.lanes)]
+        probes += [own.states for own in self.probes.timed]
+        return (state[name] for states in probes for state in states if name in state)
+
+    def of_others(self, states: Sequence[int]) -> dict[str, dict[str, Any]]:
+        """What is said of others in states of the scene's time, all drives agreeing."""
+        found: dict[str, dict[str, list[Any]]] = {}
+        begin = self.probes.origin.start.step
+        for probe in self.probes.timed:
+            for number in states:
+                place = number + begin - probe.first
+                if not 0 <= place < len(probe.states):
+                    continue
+                for name in self.names & OF_OTHERS & probe.states[place].keys():
+                    for item, value in probe.states[place][name].items():
+                        found.setdefault(name, {}).setdefault(item, []).append(value)
+        return {
+            name: {item: common(values) for item, values in own.items()}
+            for name, own in found.items()
+        }
+
+
+def settled_by_place(words: Words, names: frozenset[str]) -> Words:
+    """What follows of other words from those of a place."""
+    found: Words = {}
+    if words.get("junction_zone") is False:
+        found |= {name: value for name, value in _AT_ZONE.items() if name in names}
+    if words.get("light") == "no_light" and "crosses_light_line" in names:
+        found["crosses_light_line"] = False
+    if words.get("stop_sign") is False and "crosses_stop_line" in names:
+        found["crosses_stop_line"] = False
+    if words.get("level_crossing_zone") is False and "enters_level_crossing" in names:
+        found["enters_level_crossing"] = False
+    return found

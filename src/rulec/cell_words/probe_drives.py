@@ -1,0 +1,176 @@
+"""Drives that ask extraction for its words: along every lane, and at several speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import ceil
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.cell_words.ego_boxes import Floats, body_size
+from rulec.extraction.candidate_drives import CandidateDrives
+from rulec.extraction.recording_verdicts import names_read
+from rulec.extraction.to_trace import Drive, TraceWriter
+from rulec.extraction.traffic_thresholds import USUAL
+from rulec.partition import NavigationGraph
+from rulec.recordings.recording import HEADINGS, Participant, Recording, Side
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.scenario.recorded.scene_origin import SceneOrigin
+
+EVERY_M = 1.0
+"""Places along a lane are asked for so far apart."""
+
+_BEFORE_M, _BEYOND_M = 30.0, 30.0
+_SLOWER_MPS, _FASTER_MPS = 10.0, 10.0
+
+Row: TypeAlias = tuple[Floats, Floats, Floats]
+"""s and d (m) in the scene, and the direction from the road's (rad), state by state."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LaneProbe:
+    """What extraction says of a drive along the middle of a lane.
+
+    ``s`` (m) are the scene's coordinates of its ``states``, ascending.
+    """
+
+    lane: int
+    s: Floats
+    states: Sequence[Mapping[str, Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TimedProbe:
+    """What extraction says of a drive through the time of the graph.
+
+    The first of its ``states`` is at ``first``, a time step of the recording.
+    """
+
+    first: int
+    states: Sequence[Mapping[str, Any]]
+    objects: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ProbeDrives:
+    """The drives of a scene, and what they are made in.
+
+    ``told`` are the names that the recording tells, ``side`` is that of traffic.
+    """
+
+    among: CandidateDrives
+    origin: SceneOrigin
+    lanes: tuple[LaneProbe, ...]
+    timed: tuple[TimedProbe, ...]
+    told: frozenset[str]
+
+    @property
+    def recording(self) -> Recording:
+        """The recording."""
+        return self.origin.recording
+
+    def column(self, seconds: float) -> float:
+        """The column of a scene's time in arrays of all steps, maybe between two."""
+        step = self.origin.start.step + seconds / self.recording.step_s
+        return step - self.among.span[0]
+
+
+def driver(origin: SceneOrigin) -> Participant:
+    """Ego as a participant without states: whose part it takes, else a car of a new name."""
+    for body in origin.recording.participants:
+        if body.id == origin.start.participant:
+            return replace(body, states={}, outlines={}, lamps={})
+    taken = {body.id for body in origin.recording.participants}
+    name = "ego"
+    while name in taken:
+        name += "_"
+    return Participant(name, "car", False, {}, {})
+
+
+def body_along(graph: NavigationGraph, origin: SceneOrigin, row: Row, speed: Floats) -> Participant:
+    """Ego's body at places of the scene, a state for each time step from time 0 on."""
+    s, d, turned = row
+    places, directions = origin.places(s, d)
+    rows = np.column_stack((places, directions + turned, speed, np.zeros(len(s))))
+    first = origin.start.step
+    steps = np.arange(first, first + len(s), dtype=np.int64)
+    track = Track(steps, rows, *body_size(graph))
+    ego = driver(origin)
+    return replace(ego, states=TrackStates(track), outlines=TrackOutlines(track))
+
+
+def world_of(origin: SceneOrigin, ego: Participant, side: Side, steps: int) -> CandidateDrives:
+    """The others of the recording, for drives of ego of so many steps."""
+    recording, first = origin.recording, origin.start.step
+    others = tuple(body for body in recording.participants if body.id != origin.start.participant)
+    own = [list(body.outlines) for body in others if not body.standing]
+    ends = [(min(there), max(there)) for there in own if there]
+    span = (
+        min([first, *(low for low, _ in ends)]),
+        max([first + steps, *(high for _, high in ends)]),
+    )
+    complete = recording.complete | {HEADINGS}
+    among = replace(recording, participants=(*others, ego), complete=complete)
+    return CandidateDrives(among, side, USUAL, span)
+
+
+def probe_drives(
+    graph: NavigationGraph, origin: SceneOrigin, rules: CompiledRulebook, side: Side
+) -> ProbeDrives:
+    """Ask extraction for all the words that rules read."""
+    step_s = origin.recording.step_s
+    reach = [own.s for row in graph.reach for own in row if own is not None]
+    low = min((s for s, _ in reach), default=graph.scenario.road.s[0]) - _BEFORE_M
+    high = max((s for _, s in reach), default=graph.scenario.road.s[1]) + _BEYOND_M
+    rows = list(_along_lanes(origin, low, high))
+    lanes = [lane for lane, _ in rows]
+    bodies = [
+        body_along(graph, origin, row, np.full(len(row[0]), EVERY_M / step_s)) for _, row in rows
+    ]
+    count = ceil((len(graph.layers) - 1) * graph.step_s / step_s - 1e-9) + 1
+    for row, speed in _through_time(graph, count, step_s):
+        bodies.append(body_along(graph, origin, row, speed))
+    longest = max(len(body.states) for body in bodies)
+    among = world_of(origin, bodies[0], side, longest)
+    writer = TraceWriter(rules.vocabulary, names_read(rules))
+    found = list(among.of(bodies, writer))
+    lane_probes, timed, told = [], [], set[str]()
+    for number, drives in enumerate(found):
+        own = [drive for drive in drives if isinstance(drive, Drive)]
+        for drive in own:
+            told |= drive.words
+            begins = drive.first_step - origin.start.step
+            if number < len(lanes):
+                s = rows[number][1][0][begins : begins + drive.arrays.n_states]
+                lane_probes.append(LaneProbe(lanes[number], s, drive.trace.states))
+            elif len(own) == 1:
+                trace = drive.trace
+                timed.append(TimedProbe(drive.first_step, trace.states, trace.objects))
+    return ProbeDrives(among, origin, tuple(lane_probes), tuple(timed), frozenset(told))
+
+
+def _along_lanes(origin: SceneOrigin, low: float, high: float) -> Iterator[tuple[int, Row]]:
+    """Along the middle of each lane, wherever it is, in runs."""
+    straight = origin.lanes.straight
+    s = np.arange(low, high + EVERY_M, EVERY_M)
+    existing = origin.lanes.existing_at(s + origin.ego_s)
+    for lane in range(len(straight) - 1):
+        edges = np.flatnonzero(np.diff(existing[:, lane], prepend=False, append=False))
+        for first, end in edges.reshape(-1, 2).tolist():
+            if end - first > 2:
+                middle = np.full(end - first, float(straight[lane] + straight[lane + 1]) / 2)
+                yield lane, (s[first:end], middle, np.zeros(end - first))
+
+
+def _through_time(
+    graph: NavigationGraph, count: int, step_s: float
+) -> Iterator[tuple[Row, Floats]]:
+    """Along ego's place across the road, at its speed, slower and faster."""
+    ego = graph.scenario.ego
+    times: Floats = np.arange(count, dtype=np.float64) * step_s
+    own = ego.speed or 0.0
+    for speed in (own, max(own - _SLOWER_MPS, 0.0), own + _FASTER_MPS):
+        yield (ego.s + speed * times, np.full(count, ego.d), np.zeros(count)), np.full(count, speed)

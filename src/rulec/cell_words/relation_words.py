@@ -1,0 +1,252 @@
+"""Words about ego and another one, bounded for all places that ego may have in a cell.
+
+Each set or interval contains what extraction finds for any of them; see
+``extraction/signals/relations.py`` for what the words mean.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from rulec.cell_words.ego_boxes import Bounds, EgoBoxes, Floats
+from rulec.cell_words.road_frame import Flags, OthersNow, RoadFrame
+from rulec.extraction.drive_context import KMH
+from rulec.extraction.signals.measured_numbers import LONGEST_S
+from rulec.extraction.traffic_thresholds import USUAL
+from rulec.scenario.paper_words import LATERALS, STATIONS
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
+
+RELATIONS = frozenset(
+    {
+        "station",
+        "lateral",
+        "gap",
+        "lateral_gap",
+        "speed_difference",
+        "time_headway",
+        "time_to_collision",
+        "safe_gap",
+        "ahead_for",
+        "precedes",
+        "one_between",
+    }
+)
+
+BEHIND, BESIDE, IN_FRONT = 1, 2, 4
+RIGHT, SAME, LEFT = 1, 2, 4
+_ALL = 7
+_HAIR_M = 0.02
+_MAP_M = 2.0
+"""So far aside the map may be of where everybody drives."""
+
+FLOWS = {
+    "congested": USUAL.congested_kmh,
+    "walking_pace_flow": USUAL.walking_pace_kmh,
+}
+"""Word -> the median speed (km/h) below which traffic is called so."""
+
+
+class Relations:
+    """The relations of ego in each cell of a layer (rows) to each of the others (columns)."""
+
+    def __init__(self, boxes: EgoBoxes, others: OthersNow, frame: RoadFrame) -> None:
+        self._boxes, self._others, self._frame = boxes, others, frame
+        self._straight = frame.probes.origin.lanes.straight
+        self._ahead = others.s[0] - frame.loose_s, others.s[1] + frame.loose_s
+        # Front and rear of ego, at their least and greatest
+        half = boxes.half_length
+        self._front = _column(boxes.s[0] + half[0]), _column(boxes.s[1] + half[1])
+        self._rear = _column(boxes.s[0] - half[1]), _column(boxes.s[1] - half[0])
+        self.near: Flags = self._gaps()[1] <= USUAL.near_m
+        """Is each surely so near that it counts?"""
+        self.stations = self._stations()
+        self.laterals = self._laterals()
+
+    def _stations(self) -> np.ndarray[Any, np.dtype[np.int8]]:
+        (front, far_front), (rear, far_rear) = self._front, self._rear
+        (low, high), apart = self._others.s, self._frame.apart_s
+        found = np.where(front <= low + apart, BEHIND, 0)
+        found |= np.where((far_front > low - apart) & (rear < high + apart), BESIDE, 0)
+        found |= np.where(far_rear >= high - apart, IN_FRONT, 0)
+        return found.astype(np.int8)
+
+    def _laterals(self) -> np.ndarray[Any, np.dtype[np.int8]]:
+        """By lanes: whom ego's middle is beside, and who reaches into none of its lanes.
+
+        Who is hardly in its lane, but in the way of its body, is in the lane.
+        """
+        boxes, others, straight = self._boxes, self._others, self._straight
+        low, high = _column(boxes.d[0]) + _HAIR_M, _column(boxes.d[1]) - _HAIR_M
+        width = _column(boxes.half_width[1]) + self._frame.loose_d
+        touches, count = others.perhaps.any(axis=1), others.perhaps.shape[1]
+        first = np.where(touches, others.perhaps.argmax(axis=1), 0)
+        last = np.where(touches, count - 1 - others.perhaps[:, ::-1].argmax(axis=1), count - 1)
+        right_edge = np.where(touches, straight[first], others.d[0])
+        left_edge = np.where(touches, straight[last + 1], others.d[1])
+        right = (high <= right_edge) & (
+            (others.d[0] >= high - _HAIR_M) | (high + width < others.d[0])
+        )
+        left = (low >= left_edge) & ((others.d[1] <= low + _HAIR_M) | (low - width > others.d[1]))
+        middle = (others.d[0] + others.d[1]) / 2
+        found = np.where(high < middle, RIGHT | SAME, np.where(low > middle, SAME | LEFT, _ALL))
+        found = np.where(right, RIGHT, np.where(left, LEFT, found))
+        return np.where(self._surely_same(), SAME, found).astype(np.int8)
+
+    def _surely_same(self) -> Flags:
+        """Flags of who takes up half of ego's way wherever in the cell it is."""
+        others, loose, straight = self._others, self._frame.loose_d, self._straight
+        width = _column(self._boxes.half_width[0])
+        ends = [_column(end) for end in self._boxes.d]
+        overlaps = [
+            np.minimum(end + width, others.d[1]) - np.maximum(end - width, others.d[0])
+            for end in ends
+        ]
+        narrower = np.minimum(2 * width, others.d[1] - others.d[0])
+        lanes, some = others.lanes, others.lanes.any(axis=1)
+        first = np.where(some, lanes.argmax(axis=1), 0)
+        last = np.where(some, lanes.shape[1] - 1 - lanes[:, ::-1].argmax(axis=1), -1)
+        inside = (ends[0] + _HAIR_M >= straight[first]) & (ends[1] - _HAIR_M <= straight[last + 1])
+        same: Flags = some & inside & (np.minimum(*overlaps) - loose > narrower / 2)
+        return same
+
+    def _gaps(self) -> Bounds:
+        """The least and the greatest gap (m), below 0 beside each other."""
+        (low, high), (front, far_front), (rear, far_rear) = self._ahead, self._front, self._rear
+        least = np.maximum(low - far_front, rear - high)
+        inward = self._others.s[0] + self._frame.loose_s, self._others.s[1] - self._frame.loose_s
+        return least, np.maximum(inward[0] - front, far_rear - inward[1])
+
+    def words(self, names: frozenset[str]) -> Mapping[str, list[list[Any]]]:
+        """Name -> its values, by cell and other one."""
+        found: dict[str, list[list[Any]]] = {}
+        if "station" in names:
+            found["station"] = _texts(self.stations, STATIONS)
+        if "lateral" in names:
+            found["lateral"] = _texts(self.laterals, LATERALS)
+        near, far = (np.maximum(gap, 0.0) for gap in self._gaps())
+        if "gap" in names:
+            found["gap"] = _intervals(near, far)
+        if "lateral_gap" in names:
+            found["lateral_gap"] = _intervals(*self._aside())
+        if "speed_difference" in names:
+            found["speed_difference"] = _intervals(*self._differences())
+        if "time_headway" in names:
+            found["time_headway"] = _intervals(*self._headways(near, far))
+        ahead = self._may_be_ahead()
+        if "safe_gap" in names:
+            found["safe_gap"] = _truths(~ahead | (near > self._safe_distance()), True)
+        if "precedes" in names:
+            found["precedes"] = _truths(~ahead, False)
+        if "one_between" in names:
+            # Whoever is ahead in ego's lane may be nearer than one in another lane
+            nobody = np.broadcast_to(~ahead.any(axis=1, keepdims=True), ahead.shape)
+            found["one_between"] = _truths(nobody, False)
+        if "ahead_for" in names:
+            nothing = np.zeros(ahead.shape)
+            found["ahead_for"] = _intervals(nothing, np.where(ahead, LONGEST_S, 0.0))
+        if "time_to_collision" in names:
+            found["time_to_collision"] = _intervals(
+                np.where(ahead, 0.0, LONGEST_S), np.full(ahead.shape, LONGEST_S)
+            )
+        return found
+
+    def flow(self, below_kmh: float) -> list[Any]:
+        """Whether traffic around ego is slower than this in the median, by cell."""
+        others, limit = self._others, below_kmh / KMH
+        near, far = self._gaps()
+        may = others.may_go_along & (near <= USUAL.near_m)
+        must = others.goes_along & (far <= USUAL.flow_reach_m)
+        low, high = (np.maximum(speed, 0.0) for speed in others.along)
+        slow, fast = self._boxes.mean_speed
+        may_be_slow = (may & (low < limit)).sum(axis=1) + (slow < limit)
+        may_be_fast = (may & (high >= limit)).sum(axis=1) + (fast >= limit)
+        is_slow = (must & (high < limit)).sum(axis=1) + (fast < limit)
+        is_fast = (must & (low >= limit)).sum(axis=1) + (slow >= limit)
+        no = (may.sum(axis=1) + 1 < USUAL.fewest) | (is_fast > may_be_slow)
+        yes = (must.sum(axis=1) + 1 >= USUAL.fewest) & (is_slow > may_be_fast)
+        return [
+            True if one else False if other else UNKNOWN
+            for one, other in zip(yes.tolist(), no.tolist(), strict=True)
+        ]
+
+    def _aside(self) -> Bounds:
+        boxes, others = self._boxes, self._others
+        loose = self._frame.loose_d + self._frame.stretched
+        wide, narrow = _column(boxes.half_width[1]), _column(boxes.half_width[0])
+        low, high = _column(boxes.d[0]), _column(boxes.d[1])
+        least = np.maximum(others.d[0] - high - wide, low - wide - others.d[1]) - loose
+        most = np.maximum(others.d[0] - low - narrow, high - narrow - others.d[1]) + loose
+        return np.maximum(least, 0.0), np.maximum(most, 0.0)
+
+    def _differences(self) -> Bounds:
+        standing = USUAL.standing_kmh / KMH
+        low, high = (np.asarray(speed) for speed in self._others.along)
+        # Who may stand has no speed
+        still = (np.minimum(np.abs(low), np.abs(high)) < standing) | (low * high < 0)
+        low, high = (
+            np.where(still, np.minimum(low, 0.0), low),
+            np.where(still, np.maximum(high, 0.0), high),
+        )
+        slow, fast = self._boxes.mean_speed
+        return (_column(slow) - high) * KMH, (_column(fast) - low) * KMH
+
+    def _headways(self, near: Floats, far: Floats) -> Bounds:
+        slow, fast = (_column(speed) for speed in self._boxes.mean_speed)
+        standing = USUAL.standing_kmh / KMH
+        may_stand = slow < 2 * standing
+        longest = np.where(may_stand, LONGEST_S, far / np.maximum(slow, standing))
+        shortest = near / np.maximum(fast, standing)
+        return np.minimum(shortest, LONGEST_S), np.minimum(longest, LONGEST_S)
+
+    def _may_be_ahead(self) -> Flags:
+        """Flags of who may be ahead in ego's lane, as wrong as places and the map may be."""
+        boxes, others, aside = self._boxes, self._others, _MAP_M + self._frame.place_m
+        low, high = _column(boxes.d[0]) - aside, _column(boxes.d[1]) + aside
+        before = self._front[0] <= others.s[0] + self._frame.loose_s
+        ahead: Flags = before & (others.d[0] < high) & (others.d[1] > low)
+        return ahead
+
+    def _safe_distance(self) -> Floats:
+        fast = _column(self._boxes.mean_speed[1])
+        slowest = np.maximum(self._others.along[0], 0.0)
+        safe: Floats = USUAL.reaction_s * fast + (fast**2 - slowest**2) / (2 * USUAL.braking_mps2)
+        return safe + self._frame.place_m
+
+
+def _column(values: Floats) -> Floats:
+    return values[:, None]
+
+
+def _texts(bits: np.ndarray[Any, Any], texts: Sequence[str]) -> list[list[Any]]:
+    values = [_one_of(code, texts) for code in range(_ALL + 1)]
+    return [[values[code] for code in row] for row in bits.tolist()]
+
+
+def _one_of(code: int, texts: Sequence[str]) -> Any:
+    among = [text for number, text in enumerate(texts) if code >> number & 1]
+    if len(among) == 1:
+        return among[0]
+    return UNKNOWN if len(among) in (0, len(texts)) else OneOf(frozenset(among))
+
+
+def _intervals(low: Floats, high: Floats) -> list[list[Any]]:
+    low = np.floor(low * 100 + 1e-6) / 100
+    high = np.maximum(np.ceil(high * 100 - 1e-6) / 100, low)
+    return [
+        [
+            UNKNOWN
+            if one != one or other != other
+            else one
+            if one == other
+            else Interval(one, other)
+            for one, other in zip(*rows, strict=True)
+        ]
+        for rows in zip(low.tolist(), high.tolist(), strict=True)
+    ]
+
+
+def _truths(known: Flags, value: bool) -> list[list[Any]]:
+    return [[value if one else UNKNOWN for one in row] for row in known.tolist()]

@@ -1,0 +1,61 @@
+"""What a recorded scene was made of, and the way back from its coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.recordings.recording import Points, Recording
+from rulec.scenario.recorded.ego_start import EgoStart
+from rulec.scenario.recorded.lane_coordinates import Lanes
+from rulec.scenario.recorded.reference_line import ReferenceLine
+
+_Values = NDArray[float64]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SceneOrigin:
+    """A recording and ego's start in it, with the line and the lanes along it.
+
+    ``ego_s`` is how far (m) along the line ego starts, ``way`` are the lanelets of its road.
+    """
+
+    recording: Recording
+    start: EgoStart
+    line: ReferenceLine
+    lanes: Lanes
+    ego_s: float
+    way: tuple[str, ...]
+
+    def places(self, s: _Values, d: _Values) -> tuple[Points, _Values]:
+        """Places (x, y in m, a row each) of a scene's coordinates, and the road's direction there.
+
+        Directions (rad) are interpolated along the line's pieces, as those of feet are.
+        """
+        line, along = self.line, s + self.ego_s
+        piece = np.clip(np.searchsorted(line.arc, along, "right") - 1, 0, len(line.arc) - 1)
+        ahead, part = line.ahead[piece], (along - line.arc[piece]) / line.lengths[piece]
+        slope = line.first[piece] + line.change[piece] * part
+        # Who is at d has its foot where the interpolated perpendicular leads through it
+        across = self._across(along, d) / np.hypot(1.0, slope)
+        foot = line.start[piece] + ahead * (along - line.arc[piece])[:, None]
+        left = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
+        found = foot + left * across[:, None] - ahead * (across * slope)[:, None]
+        return found, np.arctan2(ahead[:, 1], ahead[:, 0]) + np.arctan(slope)
+
+    def _across(self, along: _Values, d: _Values) -> _Values:
+        """How far (m) left of the line straightened places are."""
+        lanes, straight = self.lanes, self.lanes.straight
+        bounds = -lanes.from_bounds(np.column_stack((along, np.zeros(len(along)))))
+        lane = np.clip(np.searchsorted(straight, d, "right") - 1, 0, len(straight) - 2)
+        row = np.arange(len(d))
+        low, high = bounds[row, lane], bounds[row, lane + 1]
+        wide = straight[lane + 1] - straight[lane]
+        inside = low + (d - straight[lane]) / wide * (high - low)
+        beyond = np.where(d < straight[0], low + d - straight[lane], high + d - straight[lane + 1])
+        outside = (d < straight[0]) | (d > straight[-1])
+        across: _Values = np.where(outside, beyond, inside)
+        return across

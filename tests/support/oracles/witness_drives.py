@@ -1,0 +1,134 @@
+"""Trajectories of maneuvers as drives that were recorded, and what these say in the layers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import islice, pairwise
+from math import ceil, floor
+
+import numpy as np
+
+from rulec.cell_words.probe_drives import body_along, world_of
+from rulec.extraction.recording_verdicts import names_read
+from rulec.extraction.to_trace import Drive, TraceWriter
+from rulec.planning.ranking.cheapest import cheapest
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
+
+_EDGE_M = 0.02
+
+
+def witnesses(found, most):
+    """Maneuvers that violate nothing for sure, the cheapest first, each with its trajectory."""
+    paths = (path.nodes for path in islice(cheapest(found.possible), 40 * most))
+    driven = ((nodes, found._search.of(nodes)) for nodes in paths)
+    return list(islice((pair for pair in driven if pair[1] is not None), most))
+
+
+def sampled(states, step_s, count):
+    """Place and speed, along and across, at multiples of a step."""
+    rows = []
+    for time in np.arange(count) * step_s:
+        (t0, s0, v0, d0, w0), (t1, _, v1, _, w1) = next(
+            pair for pair in pairwise(states) if time <= pair[1][0] + 1e-9
+        )
+        x, piece = time - t0, t1 - t0
+        along, across = (v1 - v0) / piece, (w1 - w0) / piece
+        rows.append(
+            (
+                s0 + v0 * x + along * x * x / 2,
+                v0 + along * x,
+                d0 + w0 * x + across * x * x / 2,
+                w0 + across * x,
+            )
+        )
+    return np.array(rows)
+
+
+def drives_of(found, trajectories):
+    """For each trajectory its drive and the number of the drive's state at time 0; None without."""
+    graph, origin = found.graph, found.graph.scenario.account.origin
+    step_s = origin.recording.step_s
+    count = round((len(graph.layers) - 1) * graph.step_s / step_s) + 1
+    bodies = []
+    for trajectory in trajectories:
+        s, v, d, w = sampled(trajectory.states, step_s, count).T
+        turned = np.where(v > 0.05, np.arctan2(w, np.maximum(v, 1e-6)), 0.0)
+        row = s, d, np.clip(turned, -np.pi / 4, np.pi / 4)
+        bodies.append(body_along(graph, origin, row, np.hypot(v, w)))
+    among = world_of(origin, bodies[0], found.rules.traffic or "right", count)
+    writer = TraceWriter(found.rules.vocabulary, names_read(found.rules))
+    for drives in among.of(bodies, writer):
+        own = [drive for drive in drives if isinstance(drive, Drive)]
+        # One that leaves the map in between has several
+        yield own[0] if len(own) == 1 and own[0].first_step == origin.start.step else None
+
+
+def in_layers(found, drive):
+    """A drive's trace with its states in the layers alone, as a complete one.
+
+    None if the layers are not among its states.
+    """
+    graph = found.graph
+    per_layer = graph.step_s / found.graph.scenario.account.origin.recording.step_s
+    every, trace = round(per_layer), drive.trace
+    if abs(per_layer - every) > 1e-6 or len(trace.states) < every * (len(graph.layers) - 1) + 1:
+        return None
+    last = len(graph.layers) - 1
+    spans = {name: trace.present.get(name, (0, every * last)) for name in trace.objects}
+    spans = {
+        name: (ceil(first / every), min(floor(end / every), last))
+        for name, (first, end) in spans.items()
+    }
+    spans = {name: (first, end) for name, (first, end) in spans.items() if first <= end}
+    return replace(
+        trace,
+        step_s=graph.step_s,
+        states=tuple(
+            {
+                name: {item: x for item, x in value.items() if item in spans}
+                if isinstance(value, dict)
+                else value
+                for name, value in state.items()
+            }
+            for state in trace.states[::every][: last + 1]
+        ),
+        objects={name: kind for name, kind in trace.objects.items() if name in spans},
+        present={name: span for name, span in spans.items() if span != (0, last)},
+        ends="complete",
+    )
+
+
+def on_an_edge(found, nodes, trajectory):
+    """Whether ego is on the border of a cell, across the road, when a layer begins."""
+    graph = found.graph
+    places = sampled(trajectory.states, graph.step_s, len(graph.layers))[:, 2]
+    return any(
+        min(abs(d - edge) for box in layer.cells[node].boxes for edge in (box.d_min, box.d_max))
+        < _EDGE_M
+        for layer, node, d in zip(graph.layers, nodes, places, strict=True)
+    )
+
+
+def contradicting(found, nodes, trace):
+    """What cells say that a trace through them contradicts: layer, name, object, both values."""
+    for layer, (node, theirs) in enumerate(zip(nodes, trace.states, strict=True)):
+        for name, value in found.paths.states[layer][node].items():
+            own = value.items() if isinstance(value, dict) else [(None, value)]
+            for item, said in own:
+                known = theirs.get(name, UNKNOWN)
+                if isinstance(known, dict):
+                    known = known.get(item, UNKNOWN)
+                if not contains(said, known):
+                    yield layer, name, item, said, known
+
+
+def contains(said, known):
+    """Whether a value that is known is among those that a cell leaves open."""
+    if said is UNKNOWN or known is UNKNOWN:
+        return True
+    if isinstance(said, OneOf):
+        return known in said.values
+    low, high = (known.low, known.high) if isinstance(known, Interval) else (known, known)
+    if isinstance(said, Interval):
+        return said.low - 1e-6 <= low and high <= said.high + 1e-6
+    return said == known
