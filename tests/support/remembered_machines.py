@@ -20,14 +20,14 @@ _SCRIPT, _WORKER, ASKED = compiler._WORKER, compiler._worker, compiler.answers_t
 def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
     """``compiler.answers_to``, but for what this process or one beside it has asked before.
 
-    They keep machines in ``folder``; those of the second compiler need no process, in which it
-    would have to be loaded each time. Whatever fails is asked anew, and so is everything while a
+    They keep machines in ``folder``; the second compiler needs no process, in which it would have
+    to be loaded each time. Whatever fails is asked anew, and so is everything while a
     test has put another worker in the place of Spot's, or is about how it is confined.
     """
 
-    def kept(job: Job) -> Path:
-        compiler_asked = os.environ.get(compiler_choice.VARIABLE, "").encode()
-        return folder / sha256(compiler_asked + pickle.dumps(job)).hexdigest()
+    def kept(job: Job, choice: str | None) -> Path:
+        compiler_asked = choice or os.environ.get(compiler_choice.VARIABLE, "")
+        return folder / sha256(compiler_asked.encode() + pickle.dumps(job)).hexdigest()
 
     def answers_to(
         jobs: Sequence[Job], *, more_will_come: bool = False, choice: str | None = None
@@ -35,16 +35,19 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
         is_usual = compiler._WORKER is _SCRIPT and compiler._worker is _WORKER
         if not is_usual or compiler._REQUIRE_CONFINED in os.environ or not jobs:
             return ASKED(jobs, more_will_come=more_will_come, choice=choice)
-        if choice == compiler_choice.DIAGRAMS:
-            return [answer_to(job, diagram_compiler.COMPILER) for job in jobs], ""
-        known = [file.read_bytes() if file.exists() else b"" for file in map(kept, jobs)]
+        files = [kept(job, choice) for job in jobs]
+        known = [file.read_bytes() if file.exists() else b"" for file in files]
         unknown = [job for job, found in zip(jobs, known, strict=True) if not found]
-        asked, spot = ASKED(unknown) if unknown else ([], "")
+        if choice == compiler_choice.DIAGRAMS:
+            asked, spot = [answer_to(job, diagram_compiler.COMPILER) for job in unknown], ""
+        else:
+            asked, spot = ASKED(unknown) if unknown else ([], "")
         for job, answer in zip(unknown, asked, strict=True):
             if isinstance(answer, Done):
-                part = kept(job).with_suffix(f".{os.getpid()}")
+                file = kept(job, choice)
+                part = file.with_suffix(f".{os.getpid()}")
                 part.write_bytes(pickle.dumps((answer, spot)))
-                part.replace(kept(job))
+                part.replace(file)
         rest = iter(asked)
         answers: list[Done | Failed | None] = []
         for found in known:
