@@ -45,6 +45,7 @@ FORMULAS = [
     ("p Until q", "Until", "write `until` or `U`"),
     ("nevr p", "p", "did you mean `never`?"),
     ("onse p", "p", "did you mean `once`?"),
+    ("eventualy f", "f", "did you mean `eventually`?"),
     ("p sinc q", "sinc", "did you mean `since`?"),
     ("p than q", "than", "did you mean `then`?"),
     ("p and then q", "then", "`then` stands alone between two phases: write `p then q`"),

@@ -116,8 +116,8 @@ _NEXT_LANE_M = 0.5
 """A lane is left so far beyond its mark at most, the tolerance of marks included."""
 
 
-def common(values: Iterable[Any]) -> Any:
-    """The value that is any of some."""
+def hull(values: Iterable[Any]) -> Any:
+    """The least that is known if the value is any of some: their hull."""
     found = list(dict.fromkeys(values))
     if len(found) == 1:
         return found[0]
@@ -204,7 +204,7 @@ class PlaceWords:
         ]
         if not whole or not said:
             return dict.fromkeys(self._names, UNKNOWN)
-        words = {name: common(one[name] for one in said) for name in self._names}
+        words = {name: hull(one[name] for one in said) for name in self._names}
         if words.get("light", UNKNOWN) != "no_light" and "light" in words:
             words["light"] = UNKNOWN  # another one at other times
         return words
@@ -220,7 +220,7 @@ class PlaceWords:
                     & (self._lanes[number].s <= high + EVERY_M)
                 ).tolist()
             ]
-            ways[name] = common(values)
+            ways[name] = hull(values)
         return ways
 
 
@@ -252,11 +252,11 @@ class SceneWords:
         """Words about the world that are the same in all cells."""
         words: Words = {}
         for name in self.names & OF_SCENE:
-            words[name] = common(self._values(name))
+            words[name] = hull(self._values(name))
         for name in self._guarded:
             values = list(self._values(name))
             if values and not any(isinstance(value, Mapping) for value in values):
-                words[name] = common(values)
+                words[name] = hull(values)
         if "emergency_vehicle_near" in self.names:
             kinds = {body.type for body in self.probes.recording.participants}
             words["emergency_vehicle_near"] = UNKNOWN if "priorityVehicle" in kinds else False
@@ -266,7 +266,7 @@ class SceneWords:
     def about_all(self) -> Words:
         """Words about others that are the same of all of them in all cells: name -> value."""
         return {
-            name: common(
+            name: hull(
                 inner
                 for value in self._values(name)
                 if isinstance(value, Mapping)
@@ -303,7 +303,7 @@ class SceneWords:
                     for item, value in probe.states[place][name].items():
                         found.setdefault(name, {}).setdefault(item, []).append(value)
         return {
-            name: {item: common(values) for item, values in own.items()}
+            name: {item: hull(values) for item, values in own.items()}
             for name, own in found.items()
         }
 

@@ -130,7 +130,8 @@ def _misspelt(scene: ParseContext) -> str:
     if token.text.casefold() == "infinite":
         return ""  # it is much like `finite` and means the opposite
     words = {word for word in map(spelling, scene.accepted) if word in RESERVED | CONTEXTUAL}
-    near = did_you_mean(token.text, words)
+    # One letter is a name, such as `f` behind `eventualy`, and no word misspelt.
+    near = did_you_mean(token.text, words) if len(token.text) > 1 else ""
     if near or before is None or before.text in RESERVED or not scene.operator:
         return near
     return did_you_mean(before.text, UNARY_OPERATORS)
