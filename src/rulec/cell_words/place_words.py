@@ -82,6 +82,7 @@ NEEDS_JUNCTION = frozenset(
     {
         "enters_junction",
         "turn",
+        "all_way_stop",
         "unregulated_junction",
         "own_road_ends",
         "other_road_ends",

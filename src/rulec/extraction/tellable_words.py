@@ -9,7 +9,8 @@ from rulec.extraction.to_trace import Drive
 
 _EITHER = frozenset(
     (
-        *("acceleration", "distance_to_junction", "distance_to_stop_line", "hazard_lights"),
+        *("acceleration", "all_way_stop", "distance_to_junction", "distance_to_stop_line"),
+        "hazard_lights",
         *("cause_to_brake", "driving_side", "impedes_traffic", "joins_road", "nearest_to_crossing"),
         *("on_shoulder", "reversing", "turns_in_way_of", "u_turn"),
         *("lane_number", "other_arrived_first", "time_to_collision", "time_to_stop_line"),
@@ -56,7 +57,7 @@ _SUMO_ONLY = frozenset(
 _SIGNED = frozenset(
     (
         *("crosses_stop_line", "give_way_sign", "limit", "on_priority_road", "stop_sign"),
-        *("distance_to_stop_line", "time_to_stop_line", "turn_on_red_sign"),
+        *("all_way_stop", "distance_to_stop_line", "time_to_stop_line", "turn_on_red_sign"),
     )
 )
 _LAMPS = frozenset(("hazard_lights", "indicator", "warning_lights"))
@@ -84,7 +85,7 @@ _BY_LAMPS = _LAMPS
 _BY_SIGNS_AND_LINES = frozenset(
     (
         *("crosses_stop_line", "give_way_sign", "lane_kind", "on_priority_road", "stop_sign"),
-        *("distance_to_stop_line", "time_to_stop_line", "turn_on_red_sign"),
+        *("all_way_stop", "distance_to_stop_line", "time_to_stop_line", "turn_on_red_sign"),
     )
 )
 """highD has neither signs nor stop lines, and no more of its ramps than their marks."""

@@ -141,3 +141,27 @@ def test_without_lights_and_stop_signs_nobody_knows_of_lines():
 def test_the_way_to_a_junction():
     found = line_signals(context(road(), 50, 96, 99, 118, 125)).world["distance_to_junction"]
     assert found.tolist() == pytest.approx([48, 2, 0, 0, 1000], abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("own", "other", "comes_from", "all_stop", "unknown"),
+    [
+        ("STOP", ["STOP"], 4, True, False),
+        ("STOP_4_WAY", [], 4, True, False),
+        ("STOP", [], 4, False, False),
+        ("STOP", ["YIELD"], 4, False, False),
+        ("STOP", [], None, False, True),
+    ],
+    ids=["both", "a plate says so", "one", "the other gives way", "nobody knows the other"],
+)
+def test_where_all_have_to_stop(own, other, comes_from, all_stop, unknown):
+    before = () if comes_from is None else (comes_from,)
+    across = [
+        lanelet(4, [(110, -90), (110, -10)], successors=(5,), signs=frozenset(other)),
+        lanelet(5, [(110, -10), (110, 10)], predecessors=before, types=INSIDE, junction="x"),
+    ]
+    lanes = road(None, [own], *(across if comes_from else across[1:]))
+    found = junction_signals(context(lanes, 80, 90, 102))
+    assert found.world["all_way_stop"].tolist() == [all_stop] * 3
+    assert found.unknown["all_way_stop"].tolist() == [unknown] * 3
+    assert map_signals(context(lanes, 80, 90, 99)).world["stop_sign"].all()

@@ -21,9 +21,8 @@ def _kinds():
         town = more | {"demand": lights, "ends_s": 70}
         junction = more | {"demand": crowded, "ends_s": 65}
         signs = junction | {"book": "gb" if hand else "fr"}
-        # Where all have to stop who came first goes first. No book of left-hand traffic knows that:
-        # California's judges a mirror image
-        all_stop = junction | {"book": "us-ca"}
+        # Where all have to stop who came first goes first in California, and nobody in Britain
+        all_stop = junction | {"book": "gb" if hand else "us-ca"}
         yield WorldKind(name=f"grid{hand}", layout="lights", **town)
         yield WorldKind(name=f"spider{hand}", layout="spider", **town)
         yield WorldKind(name=f"wide_grid{hand}", layout="wide_lights", **town)

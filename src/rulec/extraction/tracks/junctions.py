@@ -24,7 +24,9 @@ _SIDE_M = 0.4
 
 _SHORT_M = 30.0
 _TURNED = np.radians(45.0)
-_REGULATING = frozenset({"YIELD", "STOP", "STOP_4_WAY", "PRIORITY", "RIGHT_OF_WAY"})
+ALL_STOP = "STOP_4_WAY"
+STOP_SIGNS = frozenset({"STOP", ALL_STOP})
+_REGULATING = STOP_SIGNS | {"YIELD", "PRIORITY", "RIGHT_OF_WAY"}
 
 Interval = tuple[float, float]
 
@@ -230,6 +232,20 @@ def _regulated(
         for entry in (*entries, *lanelets)
     )
     return True if signed else None
+
+
+def all_have_to_stop(recording: Recording, junction: Junction) -> bool | None:
+    """True if all who come to a junction on a road have a stop sign; None if that is not told.
+
+    Of roads that begin at the map's edge nobody knows the signs.
+    """
+    ways = [way for way in junction.ways if not way.on_rails]
+    signs = [{sign for entry in approaches(recording, way) for sign in entry.signs} for way in ways]
+    if any(ALL_STOP in one for one in signs):
+        return True
+    if not all("STOP" in one for one, way in zip(signs, ways, strict=True) if way.entries):
+        return False
+    return True if all(way.entries for way in ways) else None
 
 
 def _may_be_lit(recording: Recording, ways: tuple[JunctionWay, ...]) -> bool:

@@ -6,15 +6,15 @@ import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
-from rulec.extraction.signals.map.priority_signals import own_passages
+from rulec.extraction.signals.map.priority_signals import approach, own_passages
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.junctions import STOP_SIGNS, all_have_to_stop
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Light, ObservedLight
 from rulec.trace.plain_arrays import distinct
 
-STOP_SIGNS = frozenset({"STOP", "STOP_4_WAY"})
 _LINE_REACH_M = 40.0
 _SLOWEST_MPS = 5.0
 """Who stands at the end of a drive goes on so fast."""
@@ -69,10 +69,27 @@ def _turns(context: DriveContext) -> SignalColumns:
 
 
 def _stop_signs(context: DriveContext) -> SignalColumns:
-    if not ("STOP" in context.recording.complete or STOP_SIGNS & map_contents(context).signs):
+    if not _tells_stop_signs(context):
         return SignalColumns()
     crosses, may_cross = _crosses_stop_line(context)
     return SignalColumns({"crosses_stop_line": crosses}, unknown={"crosses_stop_line": may_cross})
+
+
+def _all_way_stop(context: DriveContext) -> SignalColumns:
+    """What the signs at the roads to the junction that ego nears or is in say."""
+    if not _tells_stop_signs(context):
+        return SignalColumns()
+    all_stop, unknown = np.zeros((2, context.states), dtype=bool)
+    for passage in own_passages(context):
+        junction = context.surroundings.passages.junctions[passage.junction]
+        stop = all_have_to_stop(context.recording, junction)
+        all_stop[approach(context, passage)] = stop is True
+        unknown[approach(context, passage)] = stop is None
+    return SignalColumns({"all_way_stop": all_stop}, unknown={"all_way_stop": unknown})
+
+
+def _tells_stop_signs(context: DriveContext) -> bool:
+    return bool(STOP_SIGNS & (context.recording.complete | map_contents(context).signs))
 
 
 def _traffic_lights(context: DriveContext) -> SignalColumns:
@@ -288,5 +305,6 @@ _PASSES: Passes = {
     ("enters_junction",): _enters_junction,
     ("turn", "preparing_to_leave"): _turns,
     ("crosses_stop_line",): _stop_signs,
+    ("all_way_stop",): _all_way_stop,
     ("light", "crosses_light_line"): _traffic_lights,
 }

@@ -6,7 +6,7 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.map.junction_signals import STOP_SIGNS, stop_line
+from rulec.extraction.signals.map.junction_signals import stop_line
 from rulec.extraction.signals.measured_numbers import LONGEST_S, moves, own_speed
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
@@ -15,6 +15,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.junctions import STOP_SIGNS
 from rulec.extraction.tracks.tracks import Floats
 from rulec.recordings.recording import Lanelet
 from rulec.trace.plain_arrays import distinct

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Set
 
 import numpy as np
 from numpy import intp
@@ -21,6 +21,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.junctions import STOP_SIGNS
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet
 from rulec.trace.plain_arrays import distinct
@@ -28,14 +29,14 @@ from rulec.trace.plain_arrays import distinct
 NO_LIMIT_KMH = 1000.0
 NO_CROSSING_M = 1000.0
 
-_SIGNS = {
-    "YIELD": ("give_way_sign", True),
-    "STOP": ("stop_sign", True),
-    "NO_OVERTAKING_START": ("no_overtaking_sign", False),
-    "GREEN_ARROW": ("turn_on_red_sign", True),
-    "NO_TURN_ON_RED": ("no_turn_on_red_sign", True),
+_SIGNS: Mapping[str, tuple[Set[str], bool]] = {
+    "give_way_sign": ({"YIELD"}, True),
+    "stop_sign": (STOP_SIGNS, True),
+    "no_overtaking_sign": ({"NO_OVERTAKING_START"}, False),
+    "turn_on_red_sign": ({"GREEN_ARROW"}, True),
+    "no_turn_on_red_sign": ({"NO_TURN_ON_RED"}, True),
 }
-"""Sign -> signal, and whether it is for the line at the lanelet's end."""
+"""Signal -> its signs, and whether they are for the line at the lanelet's end."""
 
 _SURFACES = {
     "busLane": "bus_lane",
@@ -77,35 +78,35 @@ def _signs(context: DriveContext) -> SignalColumns:
     known = map_contents(context).signs | context.recording.complete
     return SignalColumns(
         {
-            name: _holds_to_line(context, sign)
+            name: _holds_to_line(context, signs)
             if at_line
-            else own_lanelets(context).flags(_has_sign(sign))
-            for sign, (name, at_line) in _SIGNS.items()
-            if sign in known
+            else own_lanelets(context).flags(_has_sign(signs))
+            for name, (signs, at_line) in _SIGNS.items()
+            if signs & known
         }
     )
 
 
-def _has_sign(sign: str) -> Callable[[Lanelet], bool]:
-    return lambda lanelet: sign in lanelet.signs
+def _has_sign(signs: Set[str]) -> Callable[[Lanelet], bool]:
+    return lambda lanelet: bool(signs & lanelet.signs)
 
 
 def _is_of(kind: str) -> Callable[[Lanelet], bool]:
     return lambda lanelet: kind in lanelet.types
 
 
-def _holds_to_line(context: DriveContext, sign: str) -> Flags:
-    """Flags of states in which a sign holds up to its line.
+def _holds_to_line(context: DriveContext, signs: Set[str]) -> Flags:
+    """Flags of states in which a sign of these holds up to its line.
 
     By where ego's front was one state before, so that it still holds when ego crosses the line.
     """
     front = context.ego_extents.s_max[0]
     before, holds = np.append(front[:1], front[:-1]), np.zeros(context.states, dtype=bool)
     for piece, row in enumerate(context.road.rows):
-        if any(lanelet is not None and sign in lanelet.signs for lanelet in row):
+        if any(lanelet is not None and signs & lanelet.signs for lanelet in row):
             begins = float(context.road.borders[piece])
             for lane in distinct(context.ego_lane).tolist():
-                if sign in context.road.lanelet(piece, lane).signs:
+                if signs & context.road.lanelet(piece, lane).signs:
                     _, line = stop_line(context, piece, lane)
                     there = (before >= begins) & (before <= line)
                     holds |= there & (context.ego_lane == lane)
@@ -196,5 +197,5 @@ _PASSES: Passes = {
     ("distance_to_crossing",): _distance_to_crossing,
     ("crossing_zone",): _crossing_zone,
     ("limit",): _limit,
-    tuple(name for name, _ in _SIGNS.values()): _signs,
+    tuple(_SIGNS): _signs,
 }

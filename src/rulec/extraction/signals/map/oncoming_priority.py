@@ -9,10 +9,10 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import JunctionWay, approaches
+from rulec.extraction.tracks.junctions import STOP_SIGNS, JunctionWay, approaches
 from rulec.recordings.recording import Points, Recording
 
-_GIVES_WAY = frozenset({"YIELD", "STOP", "STOP_4_WAY"})
+_GIVES_WAY = STOP_SIGNS | {"YIELD"}
 
 _CLEARED_S = 2.0
 """A light that has been red for so long when one gets into the junction was red at its line."""

@@ -74,10 +74,10 @@ def _conflicts(context: DriveContext) -> SignalColumns:
             other_inside[max(met.first, entered) : met.last + 1] = True
         for side in filter(None, _might_come(context, passage)):
             if side != _ONCOMING or turns_far(context, passage):
-                unknown[side][_approach(context, passage)] = True
+                unknown[side][approach(context, passage)] = True
         if not passage.sure:
             for name in _CONFLICTS:
-                unknown[name][_approach(context, passage)] = True
+                unknown[name][approach(context, passage)] = True
     unknown[_RING] |= without_junction(context)
     world: dict[str, SignalColumn] = {**conflicts}
     world |= {"arrived_together": together, "other_in_junction": other_inside}
@@ -102,7 +102,7 @@ def own_passages(context: DriveContext) -> tuple[Passage, ...]:
     return tuple(x for x in passages if x.last >= begins and x.first < ends)
 
 
-def _approach(context: DriveContext, passage: Passage) -> slice:
+def approach(context: DriveContext, passage: Passage) -> slice:
     """The states from which on ego nears the junction until it is through it.
 
     It does so after it has entered the one before: who is in its way is so at one of them.
@@ -122,7 +122,7 @@ def _roads(context: DriveContext) -> SignalColumns:
     for passage in own_passages(context):
         junction, span = (
             context.surroundings.passages.junctions[passage.junction],
-            _approach(context, passage),
+            approach(context, passage),
         )
         unregulated, own, others, priority = _ROADS
         columns[unregulated][span] = junction.regulated is False
@@ -161,7 +161,7 @@ def _ending_roads(junction: Junction, passage: Passage) -> tuple[bool, bool]:
 def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
     """Those who are in ego's way at a junction, or might be."""
     passages, shift = context.surroundings.passages, first_column(context)
-    span = _approach(context, own)
+    span = approach(context, own)
     latest = own.last + round(context.thresholds.held_up_s / context.recording.step_s)
     for other in passages.through[own.junction]:
         if other.row == own.row or other.last < span.start + shift or other.first > latest:
