@@ -108,6 +108,21 @@ def test_the_gap_to_one_that_ego_parts_from_soon_is_moot(leaves_at, unknown):
     assert signals.unknown["safe_gap"][0, 0] == unknown
 
 
+@pytest.mark.parametrize(("speed", "unknown"), [(5.0, False), (20.0, True)])
+def test_one_that_leaves_in_a_junction_may_stop_before(speed, unknown):
+    """It is clear of ego's way 10 m ahead; did it brake, it would stop within 1.6 m, or 25 m."""
+    step_m = speed / 2
+    places = {k: (10 + step_m * k, 4.0 if step_m * k >= 10 else 0.0) for k in range(10)}
+    ego = vehicle(7, {k: (2 * step_m * k, 0.0) for k in range(10)}, speed=2 * speed)
+    there = [straight("1", -100, 15, successors=(2,), width=12.0)]
+    inside = frozenset({"intersection"})
+    there += [straight("2", 15, 300, predecessors=(1,), types=inside, junction="x", width=12.0)]
+    found = recording(there, [ego, vehicle(8, places, speed=speed)])
+    signals = participant_signals(context_of(found, route=("1", "2")))
+    assert not signals.about["safe_gap"][0, 0]
+    assert signals.unknown["safe_gap"][0, 0] == unknown
+
+
 @pytest.mark.parametrize("way", [1, -1])
 @pytest.mark.parametrize(("across", "unknown"), [(0.4, True), (0.1, False)])
 def test_the_gap_to_one_that_ego_swings_out_from_is_moot(across, unknown, way):

@@ -1,4 +1,4 @@
-"""For how long others have been ahead in ego's lane, as far as that can be known.
+"""For how long others have been ahead in ego's lane, as far as that can be known, and yet will be.
 
 Where the tolerance of places decides who is in the lane, the time began some time in between. Who
 came into the lane before anybody saw it needed some time to get where it is now. If it moves
@@ -19,11 +19,16 @@ from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
     latest,
+    next_state,
     rounded,
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.trace.plain_arrays import distinct
+
+_AWAY_MPS = 0.3
 
 
 def following_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -76,6 +81,63 @@ def _before(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -
     slows = limits.cutting_in_mps2
     time: Floats = (np.sqrt(speed**2 + 2 * slows * way) - speed) / slows
     return time
+
+
+def parts_soon(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Flags of those whose lane is not ego's at some state within ``parting_s``.
+
+    Or who are clear of ego at its side then, as on a broad lane; or who are lost from sight before,
+    and go aside by ``_AWAY_MPS``, or ego does when they are seen last, such that it may be clear of
+    them then. Where ways part in a junction nobody is clear of one that stops before. Of these
+    rows, False in all others.
+    """
+    horizon = round(context.thresholds.parting_s / context.recording.step_s)
+    parts, rows = np.zeros(context.relevant.shape, dtype=bool), distinct(rows)
+    way_across = relations.way_across(context)[rows]
+    apart = context.extents.lane[rows] != context.ego_extents.lane
+    apart |= way_across > context.thresholds.touching_m
+    apart &= context.relevant[rows]
+    states = np.arange(context.states)
+    seen, own = context.relevant[rows], context.ego_extents
+    others = context.extents.part(rows, slice(None))
+    inside, stopped = _in_junctions(context, others), _would_stand(context, rows)
+    none = context.states + horizon
+    parts[rows] = next_state(apart & ~inside, none) <= states + horizon
+    parts[rows] |= next_state(apart & inside, none) <= np.minimum(stopped, states + horizon)
+    side = np.sign(others.d_min + others.d_max - (own.d_min + own.d_max))
+    gone = next_state(~seen, none)
+    last = np.clip(gone - 1, 0, context.states - 1)
+    away, still = (
+        np.take_along_axis(values, last, axis=1) for values in (-own.across * side, way_across)
+    )
+    left_s = (states + horizon - last) * context.recording.step_s
+    swings_out = (away >= _AWAY_MPS) & (still + away * left_s > -context.tolerances.place_m)
+    until = np.where(np.take_along_axis(inside, last, axis=1), stopped, states + horizon)
+    lost = gone <= np.minimum(until, states + horizon)
+    parts[rows] |= seen & lost & ((others.across * side >= _AWAY_MPS) | swings_out)
+    return parts
+
+
+def _in_junctions(context: DriveContext, others: RoadExtents) -> Flags:
+    """Flags of bodies in the junctions of ego's road."""
+    inside = np.zeros(others.s_min.shape, dtype=bool)
+    for start, end in context.road.junctions:
+        inside |= (others.s_max >= start) & (others.s_min < end)
+    return inside
+
+
+def _would_stand(context: DriveContext, rows: NDArray[intp]) -> NDArray[intp]:
+    """The state in which these rows get to where they would stop, did they brake from now on.
+
+    One past the last where they do not get there while they are seen.
+    """
+    tracks, states = context.tracks.part(rows, slice(0, None)), np.arange(context.states)
+    steps = np.nan_to_num(np.hypot(np.diff(tracks.x), np.diff(tracks.y)))
+    ways = np.append(np.zeros((len(rows), 1)), steps.cumsum(axis=1), axis=1)
+    fastest = np.nan_to_num(tracks.speed + tracks.speed_error)
+    stops = ways + fastest**2 / (2 * context.thresholds.braking_mps2)
+    found = [np.searchsorted(*one) for one in zip(ways, stops, strict=True)]
+    return np.maximum(np.array(found, dtype=intp).reshape(stops.shape), states)
 
 
 _PASSES: Passes = {("ahead_for",): _ahead_for}

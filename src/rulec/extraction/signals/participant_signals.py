@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.following_signals import parts_soon
 from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
 from rulec.extraction.signals.measured_numbers import (
     LONGEST_S,
@@ -26,19 +27,15 @@ from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
     latest,
-    next_state,
     rounded,
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
-from rulec.trace.plain_arrays import distinct
 
 _ALONG = 0.5
 """The sine of the angle to the road up to which one heads along it."""
-
-_AWAY_MPS = 0.3
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
@@ -139,7 +136,7 @@ def _safe_gap(context: DriveContext) -> SignalColumns:
     aside = relations.way_across(context)[cells] - limits.touching_m
     room = np.where(stands, aside, -np.inf)
     may_pass_by, follows = np.abs(room) < place, room <= 0
-    moot = may_pass_by | (follows & _parts_soon(context, cells[0])[cells])
+    moot = may_pass_by | (follows & parts_soon(context, cells[0])[cells])
     speed = np.maximum(context.ego_extents.along[0], 0.0)
     react_m = speed[cells[1]] * limits.reaction_s
     stops = _stood_before(context)[cells] & (short - react_m <= 0)
@@ -157,36 +154,6 @@ def _stood_before(context: DriveContext) -> Flags:
     moved = latest(~stands & ~np.isnan(context.extents.s_min))
     stood: Flags = stands & ((moved < 0) | (np.arange(context.states) - moved > steps))
     return stood
-
-
-def _parts_soon(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those whose lane is not ego's at some state within ``parting_s``.
-
-    Or who are clear of ego at its side then, as on a broad lane; or who are lost from sight before,
-    and go aside by ``_AWAY_MPS``, or ego does when they are seen last, such that it may be clear of
-    them then. Of these rows, False in all others.
-    """
-    horizon = round(context.thresholds.parting_s / context.recording.step_s)
-    parts, rows = np.zeros(context.relevant.shape, dtype=bool), distinct(rows)
-    way_across = relations.way_across(context)[rows]
-    apart = context.extents.lane[rows] != context.ego_extents.lane
-    apart |= way_across > context.thresholds.touching_m
-    apart &= context.relevant[rows]
-    states = np.arange(context.states)
-    parts[rows] = next_state(apart, context.states + horizon) <= states + horizon
-    seen, own = context.relevant[rows], context.ego_extents
-    others = context.extents.part(rows, slice(None))
-    side = np.sign(others.d_min + others.d_max - (own.d_min + own.d_max))
-    gone = next_state(~seen, context.states + horizon)
-    last = np.clip(gone - 1, 0, context.states - 1)
-    away, still = (
-        np.take_along_axis(values, last, axis=1) for values in (-own.across * side, way_across)
-    )
-    left_s = (states + horizon - last) * context.recording.step_s
-    swings_out = (away >= _AWAY_MPS) & (still + away * left_s > -context.tolerances.place_m)
-    lost = gone <= states + horizon
-    parts[rows] |= seen & lost & ((others.across * side >= _AWAY_MPS) | swings_out)
-    return parts
 
 
 def gap_beside_safe_distance(context: DriveContext) -> tuple[Floats, Floats]:
