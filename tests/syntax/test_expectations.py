@@ -10,7 +10,8 @@ from rulec.syntax.messages.parse_context import in_words
 
 GRAMMAR = Lark(
     grammar_file("rulec.lark").read_text(encoding="utf-8"),
-    parser="lalr",
+    parser=None,
+    lexer="basic",
     start="file",
 )
 TOKENS = {one.name: one for one in GRAMMAR.terminals if one.name not in GRAMMAR.ignore_tokens}

@@ -5,15 +5,12 @@ from pathlib import Path
 
 import pytest
 from hypothesis import assume, given
-from lark import Lark
 from lark.exceptions import UnexpectedInput
 
-from rulec.resources import grammar_file
 from support.builders.printed_files import print_file
+from support.builders.whole_grammar import whole_grammar
 from support.generators.syntax_trees import files
 
-GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
-WHOLE = Lark(GRAMMAR, parser="lalr", lexer="contextual", start="file")
 PROGRAMS = Path(__file__).parent.parent / "programs"
 
 
@@ -23,12 +20,12 @@ def test_the_whole_grammar_takes_what_is_printed(file):
     # Between pieces a line's end matters, which the grammar does not see: a name on the line behind
     # a number could be its unit.
     assume(not re.search(r"\d\s*\n\s*[^\W\d]\w*(\(.*\))? is one of", text))
-    WHOLE.parse(text)
+    whole_grammar().parse(text)
 
 
 @pytest.mark.parametrize("path", sorted(PROGRAMS.glob("good/*.rules")), ids=lambda path: path.stem)
 def test_the_whole_grammar_takes_good_programs(path):
-    WHOLE.parse(path.read_text(encoding="utf-8"))
+    whole_grammar().parse(path.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize(
@@ -40,4 +37,4 @@ def test_the_whole_grammar_takes_good_programs(path):
 )
 def test_the_whole_grammar_rejects_bad_syntax(name):
     with pytest.raises(UnexpectedInput):
-        WHOLE.parse((PROGRAMS / "bad" / f"{name}.rules").read_text(encoding="utf-8"))
+        whole_grammar().parse((PROGRAMS / "bad" / f"{name}.rules").read_text(encoding="utf-8"))

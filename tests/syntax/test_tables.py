@@ -1,6 +1,7 @@
 """The parser's tables: of this grammar, the same wherever they are made, and dispensable."""
 
 import json
+from functools import cache
 from pathlib import Path
 
 import lark
@@ -16,7 +17,6 @@ from support.generators.syntax_trees import formulas
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
 FILE = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
-ANEW = at_work._made(GRAMMAR)
 
 
 def test_the_tables_are_up_to_date():
@@ -34,12 +34,17 @@ def test_the_tables_are_those_in_use():
     )
 
 
+@cache
+def anew():
+    return at_work._made(GRAMMAR)
+
+
 @given(formulas, st.data())
 def test_both_parsers_read_and_refuse_alike(formula, data):
     text = print_whole(formula)
-    assert at_work._lark().parse(text, start="formula") == ANEW.parse(text, start="formula")
+    assert at_work._lark().parse(text, start="formula") == anew().parse(text, start="formula")
     some = text[: data.draw(st.integers(0, len(text)))]
-    assert outcome(at_work._lark(), some) == outcome(ANEW, some)
+    assert outcome(at_work._lark(), some) == outcome(anew(), some)
 
 
 def outcome(parser, text):
