@@ -7,7 +7,7 @@ handful of unknowns and of inequalities.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain, pairwise, product
@@ -27,6 +27,10 @@ class LinearBound:
     strict: bool = False
 
 
+class TooManyBoundsError(Exception):
+    """Elimination would make more inequalities than its caller has time for."""
+
+
 def solve(
     system: Sequence[LinearBound],
     unknowns: Sequence[Term],
@@ -35,17 +39,22 @@ def solve(
     near_bounds: Set[Term] = frozenset(),
     *,
     any_number: bool = False,
+    on_elimination: Callable[[int], None] | None = None,
 ) -> dict[Term, Fraction] | None:
     """Solve a system by numbers with short decimals, or by ``any_number``; None if there are none.
 
     The last of the ``unknowns`` is given its number first: the ``preferred`` one where it fits,
     else zero, which for those in ``near_bounds`` is no better than others, or one near a bound. The
     system is not searched again if the first numbers tried for ``whole`` unknowns leave no room.
+    ``on_elimination`` is told beforehand how many inequalities an elimination makes, and may raise
+    ``TooManyBoundsError``.
     """
     stages: list[tuple[Term, list[LinearBound]]] = []
     rest = list(system)
     for unknown in unknowns:
         stages.append((unknown, [bound for bound in rest if bound.coefficients.get(unknown)]))
+        if on_elimination is not None:
+            on_elimination(_n_eliminated(unknown, rest))
         rest = _eliminate(unknown, rest)
     if any(bound.limit < 0 or (bound.strict and bound.limit == 0) for bound in rest):
         return None
@@ -87,6 +96,12 @@ def _rest(bound: LinearBound, solution: Mapping[Term, Fraction]) -> Fraction:
     return bound.limit - sum(
         (factor * solution[name] for name, factor in factors if name in solution), Fraction(0)
     )
+
+
+def _n_eliminated(unknown: Term, system: Sequence[LinearBound]) -> int:
+    n_above = sum(bound.coefficients.get(unknown, 0) > 0 for bound in system)
+    n_below = sum(bound.coefficients.get(unknown, 0) < 0 for bound in system)
+    return len(system) - n_above - n_below + n_above * n_below
 
 
 def _eliminate(unknown: Term, system: Sequence[LinearBound]) -> list[LinearBound]:

@@ -35,6 +35,41 @@ def test_every_point_has_one_that_stands_for_it(box, planes, x, y):
     assert all(box[n][0] <= one[n] <= box[n][1] for one in found for n in NUMBERS)
 
 
+@given(
+    st.tuples(*[st.none() | intervals] * 2), st.lists(planes, max_size=7), st.tuples(small, small)
+)
+def test_lines_across_a_plane_leave_out_no_cell(ends, lines, anywhere):
+    box = dict(zip(NUMBERS, ends, strict=True))
+    point = {
+        n: at if box[n] is None else min(max(at, box[n][0]), box[n][1])
+        for n, at in zip(NUMBERS, anywhere, strict=True)
+    }
+    found = [sides(lines, one) for one in sample_points(box, lines)]
+    assert sides(lines, point) in found
+    assert len(found) == len(set(found))
+
+
+def test_many_lines_are_as_many_cells_as_counted_by_hand():
+    """Lines of which no two are parallel and no three meet: n lines, n(n-1)/2 points where two
+    cross, n * n pieces of lines, n(n+1)/2 + 1 areas (Steiner 1826)."""
+    n = 30
+    lines = [
+        LinearPlane({NUMBERS[0]: Fraction(-2 * k), NUMBERS[1]: Fraction(1)}, Fraction(-(k**2)))
+        for k in range(n)
+    ]
+    found = {sides(lines, one) for one in sample_points(dict.fromkeys(NUMBERS), lines)}
+    assert len(found) == n * (n - 1) // 2 + n * n + n * (n + 1) // 2 + 1
+
+
+def test_cells_of_too_many_numbers_are_not_looked_for():
+    numbers = [QuantityTerm(name, ()) for name in "abcdef"]
+    planes = [
+        LinearPlane({x: Fraction((k + 1) ** n) for n, x in enumerate(numbers)}, Fraction(k))
+        for k in range(12)
+    ]
+    assert sample_points(dict.fromkeys(numbers), planes) is None
+
+
 @given(boxes, planes)
 def test_one_plane_has_a_point_on_each_side_that_there_is(box, plane):
     found = [sides([plane], one) for one in sample_points(box, [plane])]

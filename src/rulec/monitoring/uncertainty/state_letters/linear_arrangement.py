@@ -1,7 +1,8 @@
 """Points that stand for all numbers, as far as linear comparisons can tell them apart.
 
 Comparisons of sums with limits cut the space of a few unknown numbers into cells (an arrangement of
-hyperplanes). One point of each is found by Fourier-Motzkin elimination, exactly.
+hyperplanes). One point of each is found exactly: of two numbers by cutting a rectangle, of more by
+Fourier-Motzkin elimination.
 """
 
 from __future__ import annotations
@@ -12,10 +13,14 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from rulec.logic.formula import Term
-from rulec.witnesses.fourier_motzkin import LinearBound, solve
+from rulec.monitoring.uncertainty.state_letters.planar_cells import PlanarLine, points_of_cells
+from rulec.witnesses.fourier_motzkin import LinearBound, TooManyBoundsError, solve
 
 MOST_POINTS = 1 << 12
 """Of more cells no points are given."""
+
+MOST_BOUNDS = 1 << 18
+"""So many inequalities are made by elimination in all for the cells of three or more numbers."""
 
 Point = dict[Term, Fraction]
 _Interval = tuple[Fraction, Fraction]
@@ -34,7 +39,7 @@ def sample_points(
     """A point in every cell of an arrangement, its planes being cells of their own.
 
     ``bounds`` has every number, with the closed interval in which it lies, or None for any. None
-    for more than ``MOST_POINTS`` cells.
+    for more than ``MOST_POINTS`` cells, or if finding them takes more than ``MOST_BOUNDS``.
     """
     if len(bounds) == 1:
         ((number, interval),) = bounds.items()
@@ -47,6 +52,8 @@ def sample_points(
     boxed = {number: interval for number, interval in bounds.items() if interval is not None}
     if len(cutting) <= 1 and len(boxed) == len(bounds):
         return list(_beside(cutting, boxed))
+    if len(bounds) == 2:
+        return _in_a_plane(bounds, cutting)
     within = [
         bound
         for number, interval in bounds.items()
@@ -57,11 +64,39 @@ def sample_points(
         )
     ]
     points = []
-    for point in _cells(within, cutting, list(bounds)):
-        points.append(point)
-        if len(points) > MOST_POINTS:
-            return None
+    try:
+        for point in _cells(within, cutting, list(bounds), _Work(MOST_BOUNDS)):
+            points.append(point)
+            if len(points) > MOST_POINTS:
+                return None
+    except TooManyBoundsError:
+        return None
     return points
+
+
+class _Work:
+    """Counts the inequalities that elimination makes."""
+
+    def __init__(self, most: int) -> None:
+        self._left = most
+
+    def __call__(self, n_bounds: int) -> None:
+        self._left -= n_bounds
+        if self._left < 0:
+            raise TooManyBoundsError
+
+
+def _in_a_plane(
+    bounds: Mapping[Term, _Interval | None], planes: Sequence[LinearPlane]
+) -> list[Point] | None:
+    first, second = bounds
+    none = Fraction(0)
+    lines = [
+        PlanarLine(coefficients.get(first, none), coefficients.get(second, none), limit)
+        for coefficients, limit in planes
+    ]
+    points = points_of_cells((bounds[first], bounds[second]), lines, MOST_POINTS)
+    return None if points is None else [{first: x, second: y} for x, y in points]
 
 
 def _cuts(plane: LinearPlane, bounds: Mapping[Term, _Interval | None]) -> bool:
@@ -115,9 +150,12 @@ def _on_a_line(limits: Set[Fraction], interval: tuple[Fraction, Fraction] | None
 
 
 def _cells(
-    within: list[LinearBound], planes: Sequence[LinearPlane], numbers: Sequence[Term]
+    within: list[LinearBound],
+    planes: Sequence[LinearPlane],
+    numbers: Sequence[Term],
+    work: _Work,
 ) -> Iterator[Point]:
-    point = solve(within, numbers, {}, any_number=True)
+    point = solve(within, numbers, {}, any_number=True, on_elimination=work)
     if point is None:
         return
     if not planes:
@@ -131,4 +169,4 @@ def _cells(
         [below, above],
         [LinearBound(opposite, -limit, strict=True)],
     ):
-        yield from _cells([*within, *side], others, numbers)
+        yield from _cells([*within, *side], others, numbers, work)

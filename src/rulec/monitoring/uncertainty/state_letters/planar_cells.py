@@ -1,0 +1,133 @@
+"""Points in all cells into which lines cut a rectangle, exactly.
+
+The rectangle's faces (its inside, its edges without their ends, its corners) are cut by one line
+after the other, each into what is below the line, on it, and above it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from functools import cache
+from itertools import combinations, product
+from typing import NamedTuple, TypeAlias
+
+Corner: TypeAlias = tuple[Fraction, Fraction]
+Range: TypeAlias = tuple[Fraction, Fraction]
+_Face: TypeAlias = tuple[Corner, ...]
+"""A convex face by its corners in order around it, which are none of it unless it is one."""
+
+
+class PlanarLine(NamedTuple):
+    """Where ``x * point[0] + y * point[1]`` is ``limit``."""
+
+    x: Fraction
+    y: Fraction
+    limit: Fraction
+
+    def beyond(self, point: Corner) -> Fraction:
+        """How far the sum is above the limit."""
+        return self.x * point[0] + self.y * point[1] - self.limit
+
+
+def points_of_cells(
+    ranges: tuple[Range | None, Range | None], lines: Sequence[PlanarLine], most: int
+) -> list[Corner] | None:
+    """A point in every cell of a closed rectangle, what is on a line being cells of their own.
+
+    A range that is None has no ends. None if there are more cells than ``most``.
+    """
+    faces: list[tuple[tuple[int, ...], _Face]]
+    faces = [((), face) for face in _faces(*_closed(ranges, lines))]
+    for line in lines:
+        beyond = cache(line.beyond)
+        faces = [
+            ((*sides, side), part) for sides, face in faces for side, part in _parts(face, beyond)
+        ]
+        # A cell has some faces on the rectangle's edges besides its own.
+        if len(faces) > 8 * most:
+            return None
+    cells = dict(faces)  # the last face of each
+    if len(cells) > most:
+        return None
+    return [(_mean([x for x, _ in face]), _mean([y for _, y in face])) for face in cells.values()]
+
+
+def _mean(numbers: Sequence[Fraction]) -> Fraction:
+    return sum(numbers, Fraction(0)) / len(numbers)
+
+
+def _faces(first: Range, second: Range) -> Iterator[_Face]:
+    for across, up in product(_faces_of_range(first), _faces_of_range(second)):
+        below, *above = [tuple([(x, y) for x in across]) for y in up]
+        yield below + tuple(one for row in above for one in reversed(row))
+
+
+def _faces_of_range(ends: Range) -> list[tuple[Fraction, ...]]:
+    low, high = ends
+    return [(low,)] if low == high else [(low,), (high,), (low, high)]
+
+
+def _parts(face: _Face, beyond: Callable[[Corner], Fraction]) -> list[tuple[int, _Face]]:
+    """What of a face is below a line (-1), on it (0) and above it (1)."""
+    heights = [beyond(corner) for corner in face]
+    is_below, is_above = min(heights) < 0, max(heights) > 0
+    if not (is_below and is_above):
+        return [(is_above - is_below, face)]
+    below: list[Corner] = []
+    on_line: list[Corner] = []
+    above: list[Corner] = []
+    for n, (corner, height) in enumerate(zip(face, heights, strict=True)):
+        if height <= 0:
+            below.append(corner)
+        if height >= 0:
+            above.append(corner)
+        if height == 0:
+            on_line.append(corner)
+        after = (n + 1) % len(face)
+        if height * heights[after] < 0 and (len(face) > 2 or after > n):
+            share = height / (height - heights[after])
+            (x, y), (to_x, to_y) = corner, face[after]
+            crossing = x + share * (to_x - x), y + share * (to_y - y)
+            for part in (below, on_line, above):
+                part.append(crossing)
+    return [(-1, tuple(below)), (0, tuple(on_line)), (1, tuple(above))]
+
+
+def _closed(
+    ranges: tuple[Range | None, Range | None], lines: Sequence[PlanarLine]
+) -> tuple[Range, Range]:
+    """The ranges, those without ends so wide that they meet every cell.
+
+    Each cell has a point where two lines (or edges) cross, or, if all are parallel, a line beside
+    it; so it is enough that such points lie inside.
+    """
+    across, up = ranges
+    if across is not None and up is not None:
+        return across, up
+    one, none = Fraction(1), Fraction(0)
+    edges = [PlanarLine(one, none, end) for end in across or ()]
+    edges += [PlanarLine(none, one, end) for end in up or ()]
+    drawn = [line for line in (*lines, *edges) if line.x or line.y]
+    points = [(none, none), *map(_nearest_to_origin, drawn)]
+    points += [x for pair in combinations(drawn, 2) if (x := _crossing(*pair)) is not None]
+    return across or _around([x for x, _ in points]), up or _around([y for _, y in points])
+
+
+def _around(numbers: Sequence[Fraction]) -> Range:
+    return min(numbers) - 1, max(numbers) + 1
+
+
+def _nearest_to_origin(line: PlanarLine) -> Corner:
+    share = line.limit / (line.x**2 + line.y**2)
+    return share * line.x, share * line.y
+
+
+def _crossing(one: PlanarLine, other: PlanarLine) -> Corner | None:
+    """Where two lines cross (Cramer's rule); None where they are parallel."""
+    area = one.x * other.y - other.x * one.y
+    if not area:
+        return None
+    x = one.limit * other.y - other.limit * one.y
+    y = one.x * other.limit - other.x * one.limit
+    return x / area, y / area
