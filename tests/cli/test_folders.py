@@ -1,5 +1,6 @@
 """Folders, patterns and what a project excludes, in the verbs that take sources; ``--watch``."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -125,3 +126,89 @@ def test_standard_input_is_not_watched(project, capsys):
     status, _, err = run(capsys, "check", "-", "--watch")
     assert status == 2
     assert "`-` is standard input and does not change" in err
+
+
+def test_a_document_of_each_goes_to_a_folder(project, capsys):
+    both = run(capsys, "doc", "laws", "-o", "documents/")
+    assert both == (0, "wrote documents/one.html\nwrote documents/two.html\n", "")
+    alone = run(capsys, "doc", "./laws/one.rules")[1]
+    assert Path("documents/one.html").read_text() == alone
+    markdown = ("-o", "documents", "--output-format", "markdown")
+    assert run(capsys, "doc", "./laws/one.rules", *markdown)[1] == "wrote documents/one.md\n"
+    status, _, err = run(capsys, "doc", "laws")
+    assert (status, "give a folder for their documents, as in `-o laws/`" in err) == (2, True)
+
+
+@pytest.mark.parametrize("verb", ["doc", "compile"])
+def test_two_of_one_name_are_not_written_over_each_other(verb, project, capsys):
+    Path("laws/old/one.rules").write_text(BOOK.format("one"))
+    status, out, err = run(capsys, verb, "laws", "-o", "out/")
+    assert (status, out) == (2, "")
+    assert "`laws/one.rules` and `laws/old/one.rules` would be written to the same files" in err
+
+
+def test_each_is_compiled_into_a_folder_of_its_own(project, capsys):
+    status, out, _ = run(capsys, "compile", "laws", "-o", "out", "--no-certificate")
+    wrote = [
+        f"wrote out/{book}/{file}" for book in ("one", "two") for file in ("r.hoa", f"{book}.json")
+    ]
+    assert (status, out.splitlines()) == (0, wrote)
+    Path("laws/one.rules").write_text("rulebook one\nuse nothing\n")
+    status, out, err = run(capsys, "compile", "laws", "-o", "again", "--no-certificate")
+    assert (status, "R0703" in err, Path("again/two/two.json").exists()) == (2, True, True)
+
+
+def test_one_that_is_named_is_compiled_into_the_folder_itself(project, capsys):
+    run(capsys, "compile", "./laws/one.rules", "-o", "out", "--no-certificate")
+    assert sorted(path.name for path in Path("out").iterdir()) == ["one.json", "r.hoa"]
+
+
+def test_a_rule_is_shown_as_it_is_in_each(project, capsys):
+    Path("laws/old/two.rules").write_text(BOOK.format("two").replace("rule r", "rule q"))
+    status, out, err = run(capsys, "show", "laws", "r")
+    assert (status, err) == (0, "rulec: two has no rule `r`; it has `q`\n")
+    assert "hard rule r\n" in out
+    assert "hard rule q\n" not in out
+    lines = run(capsys, "show", "laws", "--json")[1].splitlines()
+    assert [json.loads(line)["rulebook"] for line in lines] == ["one", "two"]
+    status, out, err = run(capsys, "show", "laws", "s")
+    assert (status, out, "has no rule `s`" in err) == (2, "", True)
+    status, _, err = run(capsys, "show", "laws", "r", "--automaton", "text")
+    assert (status, "an automaton is of one rule" in err) == (2, True)
+
+
+def test_a_rule_of_another_rulebook_is_named(capsys):
+    assert "nl has no rule `R3`; there is one in esterle2019" in run(capsys, "show", "nl", "R3")[2]
+
+
+def test_verdicts_by_the_rulebooks_of_a_folder(project, capsys):
+    Path("states.jsonl").write_text('{"id": "t", "states": [{"p": true}]}\n')
+    status, out, _ = run(capsys, "verify", "states.jsonl", "-r", "laws")
+    assert status == 0
+    assert ["by", "one", "two"] in [line.split() for line in out.splitlines()]
+
+
+def test_maneuvers_of_several_scenarios_by_several_rulebooks(project, capsys):
+    books = ("-r", "esterle2019", "-r", "nl")
+    fields = ("scenario", "rulebook", "traces", "satisfying", "open", "violating")
+    status, out, _ = run(capsys, "maneuvers", "s1", "s2", *books)
+    rows = [line.split() for line in out.splitlines()[-4:]]
+    assert status == 0
+    lines = run(capsys, "maneuvers", "s1", "s2", *books, "--json")[1].splitlines()
+    assert rows == [[f"{json.loads(line)[field]}" for field in fields] for line in lines]
+    alone = json.loads(run(capsys, "maneuvers", "s2", "-r", "esterle2019", "--json")[1])
+    assert rows[2] == [f"{alone[field]}" for field in fields]
+
+
+def test_a_scenario_that_is_not_there_stops_no_other(project, capsys):
+    status, out, err = run(capsys, "maneuvers", "s9", "s1", "-r", "esterle2019")
+    assert (status, "there is no scenario `s9`" in err) == (2, True)
+    assert out.splitlines()[-1].split()[0] == "s1"
+    run(capsys, "maneuvers", "s9", "s8", "-r", "esterle2019", "-o", "counts.txt")
+    assert not Path("counts.txt").exists()
+
+
+def test_all_scenarios_of_a_folder(project, capsys):
+    Path("drives").mkdir()
+    status, _, err = run(capsys, "maneuvers", "drives", "-r", "esterle2019")
+    assert (status, "there is no recorded traffic in this folder" in err) == (2, True)

@@ -156,12 +156,19 @@ def print_left_alone(left_alone: Sequence[LeftAlone], *, verbose: bool) -> None:
 
 
 def sources_of_rulebooks(references: Sequence[str], lack: str) -> tuple[str, ...]:
-    """Rulebooks by name or path, those in folders and of patterns in place of these.
+    """Rulebooks as ``rulebooks_named`` has them, none of which may be compiled.
 
-    ``lack`` is why none can be compiled, such as ``"cannot be audited"``. Raises RulecError R0733
-    where a folder has none.
+    ``lack`` is why, such as ``"cannot be audited"``.
     """
     only_sources(references, lack)
+    return rulebooks_named(references)
+
+
+def rulebooks_named(references: Sequence[str]) -> tuple[str, ...]:
+    """Rulebooks by name or path, those in folders and of patterns in place of these.
+
+    Raises RulecError R0733 where a folder has none.
+    """
     if not any(has_magic(reference) or os.path.isdir(reference) for reference in references):  # noqa: PTH112
         return tuple(references)
     # Sources below folders, 10 ms: not for --help.
@@ -172,6 +179,23 @@ def sources_of_rulebooks(references: Sequence[str], lack: str) -> tuple[str, ...
         raise RulecError(on_the_way.refused)
     print_left_alone(on_the_way.left_alone, verbose=False)
     return tuple(names)
+
+
+def told_apart(references: Sequence[str]) -> dict[str, str]:
+    """Rulebooks by the names that their files have without endings.
+
+    Raises:
+        click.UsageError: two of them are called the same.
+    """
+    named: dict[str, str] = {}
+    for reference in references:
+        other = named.setdefault(Path(reference).stem, reference)
+        if other != reference:
+            raise click.UsageError(
+                f"`{other}` and `{reference}` would be written to the same files; "
+                "give each a call of its own, with a folder of its own"
+            )
+    return named
 
 
 def counted(number: int, noun: str, several: str = "") -> str:

@@ -26,6 +26,13 @@ class SearchedFolder:
     recordings: int
     others: int
 
+    @property
+    def in_words(self) -> str:
+        """Such as ``3 recordings in drives, 1 other file passed over``."""
+        found = f"{self.recordings:,} recording{'' if self.recordings == 1 else 's'} in {self.path}"
+        others = f"{self.others:,} other file{'' if self.others == 1 else 's'}"
+        return f"{found}, {others} passed over" if self.others else found
+
 
 @dataclass(frozen=True, slots=True)
 class InputFiles:

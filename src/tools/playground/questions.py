@@ -16,6 +16,7 @@ from typing import Any, TypeAlias
 import rulec
 from rulec.monitoring.explain.explanation import explain
 from rulec.report.findings import diagnostics_json
+from rulec.report.json_document import as_builtins
 from rulec.report.rulebooks import diff_json, rule_json
 from rulec.report.tests import example_json
 from rulec.report.verdicts import verdict_json
@@ -71,7 +72,7 @@ def _format(question: Question) -> Any:
 def _rules(question: Question) -> Any:
     """The rules in English."""
     book = rulec.load_rulebook(_written(question))
-    return json.loads(rule_json.as_json(book.name, book.rules, book.vocabulary, None))
+    return as_builtins(rule_json.as_document(book.name, book.rules, book.vocabulary, None))
 
 
 def _test(question: Question) -> Any:

@@ -9,9 +9,10 @@ from typing import Literal
 
 import click
 
+from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_standard_output
-from rulec.cli.output import open_session
+from rulec.cli.output import errors_told, open_session, rulebooks_named, told_apart
 from rulec.report.text.console import print_line
 
 _WRITTEN = (".hoa", ".json")
@@ -28,7 +29,7 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
 
 
 @click.command()
-@shared.rulebook_argument
+@shared.rulebooks_argument()
 @shared.steps_option(
     "The step of the traces to be judged, in s: a decimal, or a fraction such as 1/3; several "
     "times for several steps. It matters to rules with bounds in seconds.  [default: that of "
@@ -67,7 +68,7 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
 )
 @shared.at_option
 def command(
-    rulebook: str,
+    rulebooks: tuple[str, ...],
     *,
     output: str,
     steps_s: Sequence[Fraction],
@@ -76,15 +77,16 @@ def command(
     prove: bool,
     no_certificate: bool,
     at: str,
-) -> None:
-    """Compile RULEBOOK: a name, or the path of a source.
+) -> int:
+    """Compile each RULEBOOK: a name, or the path of a source.
 
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
     RULEBOOK.json, which every other command takes in place of the source and which runs without
     Spot. With `--emit c` it writes header, source, Makefile and CMakeLists.txt of a monitor in C99
     instead, with `--emit rust` a crate, with `--emit ros2` a package around the C;
     with `--emit ltl` all formulas for Spot, PRISM and nuXmv, and what their propositions mean. Each
-    file appears whole or not at all.
+    file appears whole or not at all. Of several rulebooks, of a folder and of a pattern each has a
+    folder of its own in DIR.
     """
     if (objects or prove) and emit in ("automata", "ltl"):
         name = "--objects" if objects else "--prove"
@@ -95,17 +97,29 @@ def command(
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     refuse_standard_output(output)
-    if "/" in rulebook and Path(rulebook).suffix in _WRITTEN:
-        # What is written is called after rules, which are not known yet.
-        refuse_overwriting([Output(str(Path(output, Path(rulebook).name)), "")], [rulebook])
+    for rulebook in rulebooks:
+        if "/" in rulebook and Path(rulebook).suffix in _WRITTEN:
+            # What is written is called after rules, which are not known yet.
+            refuse_overwriting([Output(str(Path(output, Path(rulebook).name)), "")], [rulebook])
     session = open_session(at)
-    if emit == "ltl":
-        paths = session.write_ltl(rulebook, output, steps_s[0] if steps_s else None)
-    elif emit == "automata":
-        compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
-        paths = session.write_compiled(compiled, output, certificate=not no_certificate)
-    else:
-        compiled = session.compile_rulebook(rulebook, step_s=steps_s or None)
-        paths = session.write_monitor(compiled, output, objects, prove=prove, language=emit)
-    for path in paths:
-        print_line(f"wrote {path}")
+    step_s = steps_s[0] if steps_s else None
+    books = rulebooks_named(rulebooks)
+    # Several call their rules the same.
+    folders = {book: Path(output, name) for name, book in told_apart(books).items()}
+    if books == rulebooks and len(books) == 1:
+        folders = dict.fromkeys(books, Path(output))
+    written = 0
+    for book, folder in folders.items():
+        with errors_told():
+            if emit == "ltl":
+                paths = session.write_ltl(book, folder, step_s)
+            elif emit == "automata":
+                compiled = session.compile_rulebook(book, step_s=steps_s or None)
+                paths = session.write_compiled(compiled, folder, certificate=not no_certificate)
+            else:
+                compiled = session.compile_rulebook(book, step_s=steps_s or None)
+                paths = session.write_monitor(compiled, folder, objects, prove=prove, language=emit)
+            for path in paths:
+                print_line(f"wrote {path}")
+            written += 1
+    return ExitStatus.after(answered=written == len(folders), failed=False)

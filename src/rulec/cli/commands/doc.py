@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Literal, TypeAlias, cast
 
 import click
 
+from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.output import open_session, put_answer
+from rulec.cli.output import errors_told, open_session, put_answer, sources_of_rulebooks, told_apart
+from rulec.files import make_folder
 from rulec.logic.sentences.language import LANGUAGES, LanguageCode
 
 Format: TypeAlias = Literal["html", "markdown"]
 
 
+_ENDINGS = endings_of("html", "markdown")
+
+
 @click.command()
-@shared.rulebook_argument
+@shared.rulebooks_argument()
 @output_options(
-    endings_of("html", "markdown"),
+    _ENDINGS,
     "the document",
     former="--format",
     instead="A browser prints the page and saves it as PDF.",
+    folders=True,
 )
 @click.option(
     "--language",
@@ -30,13 +37,29 @@ Format: TypeAlias = Literal["html", "markdown"]
     help="The language of its sentences and headings. What an author wrote stays as it is.",
 )
 @shared.at_option
-def command(rulebook: str, to: Output, language: str, at: str) -> None:
-    """Write a RULEBOOK (a name, or the path of a source) as a document for lawyers.
+def command(rulebooks: tuple[str, ...], to: Output, language: str, at: str) -> int:
+    """Write each RULEBOOK (a name, or the path of a source) as a document for lawyers.
 
     It has every rule with its provision, in plain language, as a formula and by its examples, in
     the page with pictures; what was changed of inherited rules and what was left out; values,
-    definitions, words and an index.
+    definitions, words and an index. Of several, `-o DIR/` writes DIR/NAME.html for each.
     """
-    shared.only_sources([rulebook], "cannot be made a document of")
-    session = open_session(at)
-    put_answer(session.doc(rulebook, cast("Format", to.form), cast("LanguageCode", language)), to)
+    books = sources_of_rulebooks(rulebooks, "cannot be made a document of")
+    form, tongue = cast("Format", to.form), cast("LanguageCode", language)
+    if not to.is_folder:
+        if len(books) > 1:
+            raise click.UsageError(
+                f"these are {len(books)} rulebooks, and a document is of one: give a folder for "
+                "their documents, as in `-o laws/`"
+            )
+        put_answer(open_session(at).doc(books[0], form, tongue), to)
+        return ExitStatus.OK
+    folder = Path(to.path)
+    make_folder(folder)
+    written = 0
+    for name, book in told_apart(books).items():
+        with errors_told():
+            path = str(folder / f"{name}{_ENDINGS[form][0]}")
+            put_answer(open_session(at).doc(book, form, tongue), Output(path, form))
+            written += 1
+    return ExitStatus.after(answered=written == len(books), failed=False)

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,12 +17,28 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.output import errors_told, put_answer, read_machines
+from rulec.cli.output import (
+    answer_lines,
+    errors_told,
+    print_written,
+    read_machines,
+    rulebooks_named,
+)
+from rulec.report.findings.diagnostics_text import print_diagnostics
+from rulec.report.text.console import print_remark
+
+if TYPE_CHECKING:
+    from rulec.planning import Maneuvers
+    from rulec.recordings.recording_inputs import InputFiles
+    from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
 
 
 @click.command()
-@scenario_options.graph_options
-@shared.rulebook_option()
+@scenario_options.scenarios_argument
+@scenario_options.cell_options
+@shared.rulebook_option(
+    shared.RULEBOOK_HELP + " May be given several times, for counts side by side.", multiple=True
+)
 @shared.number_option("--list", "n_listed", "List the N cheapest satisfying maneuvers.")
 @shared.number_option(
     "--rank",
@@ -54,22 +74,19 @@ from rulec.cli.output import errors_told, put_answer, read_machines
 @output_options(endings_of("text", "json"), "the answer")
 @shared.at_option
 def command(
-    scenario: str,
-    rulebook: str,
-    n_listed: int | None,
-    n_ranked: int | None,
-    why: bool,
-    n_classes: int | None,
-    worlds: bool,
+    scenarios: tuple[str, ...],
+    rulebooks: tuple[str, ...],
     after: Path | None,
     strict: bool,
     to: Output,
     at: str,
     **options: Any,
 ) -> int:
-    """Count the maneuvers of SCENARIO (a name or a file) that satisfy every hard rule.
+    """Count the maneuvers of each SCENARIO (a name or a file) that satisfy every hard rule.
 
-    If none does, the least violating ones are shown.
+    If none does, the least violating ones are shown. A folder is all recordings in and below it,
+    and a pattern, in which `*` is wild, all files that are called so. Of several scenarios, or by
+    several rulebooks, there is a table at the end, and in JSON a line for each.
 
     With --after they go on where a past has ended: its last state comes one step before the
     scenario begins. What was violated for good by then is said, and not counted against them.
@@ -77,51 +94,125 @@ def command(
     Where not all is known, those that keep them whatever that may be are satisfying, and those that
     may keep them open; the list has both, and ranks suppose the worst.
 
-    Exit status: 0 there is a satisfying or an open maneuver, 1 there is none, 2 it could not be
-    answered, or no hard rule be judged.
+    Exit status: 0 there is a satisfying or an open maneuver in each, 1 in some there is none, 2 it
+    could not be answered, or no hard rule be judged.
     """
     # Maneuvers, 130 ms: not for --help.
-    from rulec.planning.probability.rule_probability import alternative_counts, rule_probabilities
     from rulec.planning.trace_history import read_past
-    from rulec.report.maneuvers.maneuver_report import ManeuverAnswers, as_text
+    from rulec.report.maneuvers.maneuver_table import ManeuverCounts
+    from rulec.report.maneuvers.maneuver_table import as_text as table_of
 
     begin = time.perf_counter()
-    rules = read_machines(rulebook, at)
+    books = rulebooks_named(rulebooks)
+    inputs = _inputs(scenarios)
+    several = len(books) * len(inputs.paths) > 1
+    machines = [read_machines(book, at) for book in dict.fromkeys(books)]
     past = None if after is None else read_past(after)
-    reading = scenario_options.scene_reading(options, rules.vocabulary)
-    scene = scenario_options.read_scene(scenario, options)
-    maneuvers = rulec.find_maneuvers(scene, rules, after=past, **reading, **options)
-    listed = None if n_listed is None else maneuvers.cheapest(n_listed, perhaps=True)
-    best = None
-    legal = maneuvers.satisfying + maneuvers.open
-    if not legal and n_ranked is None:
-        with errors_told():
-            best = maneuvers.best()
-    ranked = None if n_ranked is None else maneuvers.ranked(n_ranked)
-    shown = [*(listed or ()), *(rank.maneuver for rank in (*(best or ()), *(ranked or ())))]
-    uncertain = any(obstacle.alternatives for obstacle in scene.obstacles)
-    uncertain = uncertain or (worlds and to.form == "json")
-    answers = ManeuverAnswers(
-        listed=listed,
-        best=best,
-        ranked=ranked,
-        chances={maneuver.nodes: rule_probabilities(maneuvers, maneuver) for maneuver in shown}
-        if uncertain
-        else {},
-        verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or ()}
-        if maneuvers.in_doubt
-        else {},
-        worlds=alternative_counts(maneuvers) if worlds else None,
-        prunings=maneuvers.prunings() if why else None,
-        classes=None if n_classes is None else (maneuvers.classes(), maneuvers.variants(n_classes)),
+    asked = ManeuverQuestions(*(options.pop(field) for field in ManeuverQuestions.__slots__))
+    counts: list[ManeuverCounts] = []
+    failed = False
+    for problem in inputs.problems:
+        print_diagnostics(problem.diagnostics)
+    with answer_lines(to) as write:
+        for path, rules in product(inputs.paths, machines):
+            with errors_told() if several else nullcontext():
+                own = dict(options)
+                reading = scenario_options.scene_reading(own, rules.vocabulary)
+                scene = scenario_options.read_scene(path, own)
+                maneuvers = rulec.find_maneuvers(scene, rules, after=past, **reading, **own)
+                shown = asked.answered(maneuvers, to.form)
+                seconds = time.perf_counter() - begin
+                begin += seconds
+                write(_shown(maneuvers, shown, seconds, to.form, several=several))
+                counts.append(ManeuverCounts.of(path, maneuvers))
+                failed |= not (maneuvers.satisfying + (0 if strict else maneuvers.open))
+        if not counts:
+            # No file is written.
+            raise click.exceptions.Exit(ExitStatus.NOT_ANSWERED)
+        if several and to.form == "text":
+            write(table_of(counts))
+    print_written(to.path, to)
+    answered = len(counts) == len(inputs.paths) * len(machines) and not inputs.problems
+    return ExitStatus.after(
+        answered=answered and all(one.is_judged for one in counts), failed=failed
     )
-    seconds = time.perf_counter() - begin
-    if to.form == "json":
+
+
+def _inputs(scenarios: Sequence[str]) -> InputFiles:
+    """The scenarios that are meant by names, files, folders and patterns."""
+    # Scenarios' formats and those of recordings, 80 ms: not for --help.
+    from rulec.recordings.recording_inputs import InputFiles, input_files
+    from rulec.scenario import available_scenarios
+
+    known = available_scenarios()
+    found = [
+        InputFiles((name,)) if name in known else input_files([name])
+        for name in dict.fromkeys(scenarios)
+    ]
+    for searched in (folder for inputs in found for folder in inputs.searched):
+        print_remark(f"rulec: {searched.in_words}")
+    return InputFiles(
+        tuple(dict.fromkeys(path for inputs in found for path in inputs.paths)),
+        problems=tuple(problem for inputs in found for problem in inputs.problems),
+    )
+
+
+def _shown(
+    maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float, form: str, *, several: bool
+) -> str:
+    if form == "json":
         # Its types take 2 ms to make, for which a text need not wait.
         from rulec.report.maneuvers.maneuver_json import as_json
 
-        put_answer(as_json(maneuvers, answers, seconds), to)
-    else:
-        put_answer(as_text(maneuvers, answers, seconds), to)
-    kept = maneuvers.satisfying if strict else legal
-    return ExitStatus.after(answered=maneuvers.judges, failed=not kept)
+        return as_json(maneuvers, answers, seconds)
+    # Maneuvers, 130 ms: they have been found.
+    from rulec.report.maneuvers.maneuver_report import as_text
+
+    return as_text(maneuvers, answers, seconds) + ("\n" if several else "")
+
+
+@dataclass(frozen=True, slots=True)
+class ManeuverQuestions:
+    """What is asked about the maneuvers of a scenario besides their numbers."""
+
+    n_listed: int | None
+    n_ranked: int | None
+    why: bool
+    n_classes: int | None
+    worlds: bool
+
+    def answered(self, maneuvers: Maneuvers, form: str) -> ManeuverAnswers:
+        """The answers, in JSON also what only uncertain scenes have in text."""
+        # Maneuvers, 130 ms: they have been found.
+        from rulec.planning.probability import rule_probability
+        from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
+
+        listed = None if self.n_listed is None else maneuvers.cheapest(self.n_listed, perhaps=True)
+        best = None
+        if not maneuvers.satisfying + maneuvers.open and self.n_ranked is None:
+            with errors_told():
+                best = maneuvers.best()
+        ranked = None if self.n_ranked is None else maneuvers.ranked(self.n_ranked)
+        shown = [*(listed or ()), *(rank.maneuver for rank in (*(best or ()), *(ranked or ())))]
+        uncertain = any(obstacle.alternatives for obstacle in maneuvers.graph.scenario.obstacles)
+        uncertain = uncertain or (self.worlds and form == "json")
+        classes = None
+        if self.n_classes is not None:
+            classes = (maneuvers.classes(), maneuvers.variants(self.n_classes))
+        return ManeuverAnswers(
+            listed=listed,
+            best=best,
+            ranked=ranked,
+            chances={
+                maneuver.nodes: rule_probability.rule_probabilities(maneuvers, maneuver)
+                for maneuver in shown
+            }
+            if uncertain
+            else {},
+            verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or ()}
+            if maneuvers.in_doubt
+            else {},
+            worlds=rule_probability.alternative_counts(maneuvers) if self.worlds else None,
+            prunings=maneuvers.prunings() if self.why else None,
+            classes=classes,
+        )

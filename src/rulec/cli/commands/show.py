@@ -2,29 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import fields, replace
+from glob import has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 import rulec
+from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rules
-from rulec.cli.output import put_answer, width_of
-from rulec.diagnostics import named, nearest_name
+from rulec.cli.output import errors_told, put_answer, rulebooks_named, width_of
+from rulec.diagnostics import nearest_name
+from rulec.report.text.console import print_remark
+from rulec.report.text.terminal_text import first_of
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.report.automata.automaton_model import Automaton
+    from rulec.report.rulebooks.rule_page import RulePage
     from rulec.rulebook.rulebook_model import Rule, Rulebook
+
+
+_MOST_NAMED = 6
+"""So many rules are named where one is asked for."""
 
 
 @click.command()
 @shared.rulebook_argument
-@click.argument("rule", required=False, shell_complete=complete_rules)
+@click.argument("others", nargs=-1, metavar="[RULEBOOK...] [RULE]", shell_complete=complete_rules)
 @click.option(
     "--automaton",
     type=click.Choice(["text", "dot", "svg"]),
@@ -38,49 +49,110 @@ if TYPE_CHECKING:
 @shared.at_option
 def command(
     rulebook: str,
-    rule: str | None,
+    others: tuple[str, ...],
     automaton: str | None,
     to: Output,
     at: str,
-) -> None:
+) -> int:
     """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, by examples.
 
     The sentence in English is made from the formula, and has one reading only. Without RULE every
-    rule is shown in brief, a rulebook's only one in full.
+    rule is shown in brief, a rulebook's only one in full. Of several RULEBOOKs, which may also be
+    folders and patterns, the RULE is shown as it is in each, in JSON in a line for each.
     """
+    books, rule = _asked((rulebook, *others))
+    if automaton is not None or to.form in ("dot", "svg"):
+        if len(books) > 1:
+            raise click.UsageError("an automaton is of one rule; give one RULEBOOK")
+        put_answer(_automaton_of(books[0], rule, to, at), to)
+        return ExitStatus.OK
+    if len(books) == 1:
+        put_answer(_shown(books[0], rule, to, at, several=False), to)
+        return ExitStatus.OK
+    shown: list[str] = []
+    missing: list[click.UsageError] = []
+    for book in books:
+        with errors_told(), _collected(missing):
+            text = _shown(book, rule, to, at, several=True)
+            shown.append(text if to.form == "json" else f"{book}\n\n{text}\n")
+    if missing and not shown:
+        raise missing[0]
+    put_answer("\n".join(shown), to)
+    for problem in missing:
+        print_remark(f"rulec: {problem.format_message()}")
+    # That a law has no such rule is an answer, too.
+    return ExitStatus.after(answered=len(shown) + len(missing) == len(books), failed=False)
+
+
+@contextmanager
+def _collected(problems: list[click.UsageError]) -> Iterator[None]:
+    try:
+        yield
+    except click.UsageError as problem:
+        problems.append(problem)
+
+
+def _asked(arguments: Sequence[str]) -> tuple[tuple[str, ...], str | None]:
+    """The rulebooks and the rule that are asked for; the last argument may be a rule."""
+    *before, last = arguments
+    if not before or _is_rulebook(last):
+        return rulebooks_named(arguments), None
+    return rulebooks_named(before), last
+
+
+def _is_rulebook(argument: str) -> bool:
+    # Looking for files and its messages, 3 ms: not for --help.
+    from rulec.rulebook.files.search_path import available_rulebooks
+
+    is_path = "/" in argument or argument.endswith((".rules", ".json")) or has_magic(argument)
+    return is_path or argument in available_rulebooks(search_path())
+
+
+def _shown(reference: str, name: str | None, to: Output, at: str, *, several: bool) -> str:
+    """A rule as text or JSON, or all in brief; of several rulebooks JSON is a line for each."""
     # Rules and automata, 60 ms: not for --help.
+    from rulec.report.json_document import as_indented, as_line
     from rulec.report.rulebooks import rule_json, rule_page
     from rulec.report.rulebooks.spoken_rules import spoken_book
 
-    is_automaton = automaton is not None or to.form in ("dot", "svg")
-    book, compiled = _read(rulebook, at)
-    chosen = _chosen(book, rule, rulebook)
-    width = width_of(to)
-    if chosen is None and is_automaton:
-        raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
-    page = None
-    if chosen is not None:
-        if compiled is None:
-            compiled = rulec.compile_rulebook(replace(book, rules=(chosen,)))
-        machine = next(rule for rule in compiled.rules if rule.name == chosen.name)
-        page = rule_page.page_of(chosen, machine, compiled.vocabulary)
+    book, compiled = _read(reference, at)
+    chosen = _chosen(book, name, reference)
+    page = None if chosen is None else _page(book, compiled, chosen)
     spoken = spoken_book(book)
     rules = spoken.rules
     if chosen is not None and page is not None:
         rules = tuple(rule for rule in spoken.rules if rule.name == chosen.name)
         page = replace(page, rule=rules[0])
     if to.form == "json":
-        text = rule_json.as_json(book.name, rules, book.vocabulary, page)
-    elif page is None:
-        text = "\n\n\n".join(
-            rule_page.summary(rule, book.name, book.vocabulary, width) for rule in rules
-        )
-    elif not is_automaton:
-        text = rule_page.as_text(page, book.name, book.vocabulary, width)
-    else:
-        name = f"{book.name} {page.rule.name}"
-        text = _automaton(page.automaton, to.form, name, width)
-    put_answer(text, to)
+        document = rule_json.as_document(book.name, rules, book.vocabulary, page)
+        return as_line(document) if several else as_indented(document)
+    width = width_of(to)
+    if page is not None:
+        return rule_page.as_text(page, book.name, book.vocabulary, width)
+    return "\n\n\n".join(
+        rule_page.summary(rule, book.name, book.vocabulary, width) for rule in rules
+    )
+
+
+def _automaton_of(reference: str, name: str | None, to: Output, at: str) -> str:
+    """The automaton of a rule, in the format that is wanted."""
+    book, compiled = _read(reference, at)
+    chosen = _chosen(book, name, reference)
+    if chosen is None:
+        raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
+    page = _page(book, compiled, chosen)
+    return _automaton(page.automaton, to.form, f"{book.name} {chosen.name}", width_of(to))
+
+
+def _page(book: Rulebook, compiled: CompiledRulebook | None, chosen: Rule) -> RulePage:
+    """All that there is to show of a rule."""
+    # Rules and automata, 60 ms: not for --help.
+    from rulec.report.rulebooks.rule_page import page_of
+
+    if compiled is None:
+        compiled = rulec.compile_rulebook(replace(book, rules=(chosen,)))
+    machine = next(rule for rule in compiled.rules if rule.name == chosen.name)
+    return page_of(chosen, machine, compiled.vocabulary)
 
 
 def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
@@ -108,10 +180,20 @@ def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
     if name not in by_name:
         if why := _why_absent(book, name, reference):
             raise click.UsageError(f"{book.name} has no rule `{name}`{why}")
-        near = nearest_name(name, by_name)
-        way_out = f"did you mean `{near}`?" if near else f"it has {_names(book)}"
-        raise click.UsageError(f"{book.name} has no rule `{name}`; {way_out}")
+        raise click.UsageError(f"{book.name} has no rule `{name}`; {_way_out(book, name)}")
     return by_name[name]
+
+
+def _way_out(book: Rulebook, name: str) -> str:
+    """The rule that may be meant, here or in another rulebook."""
+    # Looking for files and their rules, 60 ms: only for what is no rule.
+    from rulec.rulebook.files.catalogue import rulebooks_with_rule
+
+    if near := nearest_name(name, {rule.name for rule in book.rules}):
+        return f"did you mean `{near}`?"
+    if others := rulebooks_with_rule(name, search_path()):
+        return f"there is one in {first_of(others, _MOST_NAMED)}"
+    return f"it has {_names(book)}"
 
 
 def _why_absent(book: Rulebook, name: str, reference: str) -> str:
@@ -131,7 +213,9 @@ def _why_absent(book: Rulebook, name: str, reference: str) -> str:
 
 
 def _names(book: Rulebook) -> str:
-    return named([rule.name for rule in book.rules])
+    names = [f"`{rule.name}`" for rule in book.rules]
+    more = f"; `rulec show {book.name}` shows all" if len(names) > _MOST_NAMED else ""
+    return f"{first_of(names, _MOST_NAMED)}{more}"
 
 
 def _automaton(automaton: Automaton, output_format: str, name: str, width: int) -> str:

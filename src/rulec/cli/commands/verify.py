@@ -20,7 +20,7 @@ from rulec.cli.options.output_options import (
     output_options,
     refuse_overwriting,
 )
-from rulec.cli.output import counted, read_machines
+from rulec.cli.output import read_machines, rulebooks_named
 from rulec.cli.verdict_outputs import FORMATS, verdict_outputs
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, print_remark
@@ -118,7 +118,8 @@ def command(
     below it, and a pattern, in which `*` is wild, all files that are called so; of several there is
     a line each, and one table of all.
 
-    By several rulebooks, -r de -r fr, everything is judged by each, and a table compares them.
+    By several rulebooks, as in -r de -r fr or -r laws/, everything is judged by each, and a table
+    compares them.
 
     -o FILE writes the findings, one for each violation and for what is open or not judged: .jsonl,
     .csv, .parquet, .xml (JUnit), .sarif, .xqar (ASAM's Quality Checker) or .mcap (events beside the
@@ -132,9 +133,9 @@ def command(
 
     inputs = input_files(files)
     refuse_overwriting(to, inputs.paths)
-    if len(rulebooks) > 1 and STANDARD_OUTPUT in inputs.paths:
+    books = [read_machines(name, at) for name in dict.fromkeys(rulebooks_named(rulebooks))]
+    if len(books) > 1 and STANDARD_OUTPUT in inputs.paths:
         raise click.UsageError("standard input is read once; give a file, or one rulebook")
-    books = [read_machines(name, at) for name in dict.fromkeys(rulebooks)]
     form = scenario_options.trace_format(options)
     recordings = _recordings(inputs, form, named=options["input_format"] is not None)
     about = {name: value for name, value in options.items() if name != "assumed"}
@@ -163,9 +164,7 @@ def command(
     usual = 0 if is_json_alone or len(inputs.paths) > 1 or len(books) > 1 else 1
     to_explain = usual if n_explained is None else n_explained
     for searched in inputs.searched:
-        found = counted(searched.recordings, "recording")
-        more = f", {counted(searched.others, 'other file')} passed over" if searched.others else ""
-        print_remark(f"rulec: {found} in {searched.path}{more}")
+        print_remark(f"rulec: {searched.in_words}")
     if exposure and not any(one.form in TABLES for one in to):
         raise click.UsageError("--exposure is for tables: -o FILE.jsonl, FILE.csv, FILE.parquet.")
     with verdict_outputs(to, books[0], with_rows=exposure) as outputs:

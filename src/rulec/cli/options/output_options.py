@@ -74,6 +74,11 @@ class Output:
         """True unless it is standard output."""
         return self.path != STANDARD_OUTPUT
 
+    @property
+    def is_folder(self) -> bool:
+        """True for the path of a folder, there or to be made: one that ends with ``/``."""
+        return self.path.endswith("/") or os.path.isdir(self.path)  # noqa: PTH112
+
 
 class _Renamed(click.Option):
     """An option whose further names still work, and are no longer shown."""
@@ -109,6 +114,7 @@ def output_options(
     former: str = "",
     alias: str = "",
     instead: str = "",
+    folders: bool = False,
 ) -> Callable[[Decorated], Decorated]:
     """``-o FILE``, ``--output-format NAME`` and, where that may be ``json``, ``--json``.
 
@@ -122,6 +128,7 @@ def output_options(
         former: what ``--output-format`` was called.
         alias: the parameter of a further option that may name a format.
         instead: what to do where none of the formats is the one that is wanted.
+        folders: FILE may be a folder, for a file of each thing that is asked for.
     """
     default = next(iter(endings))
     has_json = "json" in endings
@@ -133,8 +140,9 @@ def output_options(
             required=required,
             multiple=True,
             metavar="FILE",
-            type=click.Path(dir_okay=False, allow_dash=True),
+            type=click.Path(dir_okay=folders, allow_dash=True),
             help=f"Write {what} to FILE, whose ending says the format; `-` is standard output."
+            + (" Several go to a folder, `DIR/`." if folders else "")
             + (" May be given several times." if multiple else "")
             + ("" if required else "  [default: standard output]"),
         ),
@@ -199,7 +207,7 @@ def chosen_format(
     }
     longest = max(fitting.values())
     said = [form for form, length in fitting.items() if length == longest > 0]
-    is_stream = path == STANDARD_OUTPUT or _is_device(Path(path))
+    is_stream = path == STANDARD_OUTPUT or _is_device(Path(path)) or Output(path, "").is_folder
     if named is not None:
         if said and named not in said and not is_stream:
             raise click.UsageError(

@@ -125,9 +125,8 @@ def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
     return load_scenario(file_named(scenario), choice)
 
 
-graph_options = combined(
+cell_options = combined(
     [
-        click.argument("scenario", shell_complete=complete_scenarios),
         click.option(
             "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
         ),
@@ -209,7 +208,20 @@ graph_options = combined(
         recording_options,
     ]
 )
-"""The scenario, and how it is cut into cells; the rest is what ``read_scene`` takes out again."""
+"""How scenarios are cut into cells; the rest is what ``read_scene`` takes out again."""
+
+graph_options = combined(
+    [click.argument("scenario", shell_complete=complete_scenarios), cell_options]
+)
+"""One scenario, and how it is cut into cells."""
+
+scenarios_argument = click.argument(
+    "scenarios",
+    nargs=-1,
+    required=True,
+    metavar="SCENARIO...",
+    shell_complete=complete_scenarios,
+)
 
 reading_options = combined(
     [

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from rulec.logic.printing import formula_text
 from rulec.logic.sentences.sentence_layout import in_one_line
 from rulec.report.automata.automaton_model import Fate, Transition
-from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
+from rulec.report.json_document import JsonDocument, JsonPart, filled
 from rulec.report.rulebooks.rule_page import RulePage, ShortestTrace, phrase_of, restrictions_of
 from rulec.rulebook.rulebook_model import Certainty, Rule, Strength, Variable
 from rulec.vocabulary import Vocabulary
@@ -68,13 +68,11 @@ class RulesDocument(JsonDocument, frozen=True, kw_only=True):
     rules: Sequence[RuleData]
 
 
-def as_json(
+def as_document(
     rulebook: str, rules: Sequence[Rule], vocabulary: Vocabulary, page: RulePage | None
-) -> str:
-    """Write the rules, with the whole page if there is only one."""
-    return as_indented(
-        RulesDocument(rulebook=rulebook, rules=[_rule(rule, vocabulary, page) for rule in rules])
-    )
+) -> RulesDocument:
+    """The rules, with the whole page if there is only one."""
+    return RulesDocument(rulebook=rulebook, rules=[_rule(rule, vocabulary, page) for rule in rules])
 
 
 def _rule(rule: Rule, vocabulary: Vocabulary, page: RulePage | None) -> RuleData:

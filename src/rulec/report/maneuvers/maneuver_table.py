@@ -1,0 +1,47 @@
+"""How many maneuvers satisfy rulebooks: of several scenarios, or by several rulebooks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rulec.planning import Maneuvers
+from rulec.report.text.terminal_text import shown_count, table_lines, visible
+
+
+@dataclass(frozen=True, slots=True)
+class ManeuverCounts:
+    """The numbers of a scenario's maneuvers by one rulebook; ``is_judged`` if a hard rule could."""
+
+    scenario: str
+    rulebook: str
+    maneuvers: int
+    satisfying: int
+    open: int
+    violating: int
+    is_judged: bool
+
+    @classmethod
+    def of(cls, scenario: str, maneuvers: Maneuvers) -> ManeuverCounts:
+        """The numbers of maneuvers, those of ``scenario`` as the command calls it."""
+        return cls(
+            scenario=scenario,
+            rulebook=maneuvers.rules.name,
+            maneuvers=maneuvers.traces,
+            satisfying=maneuvers.satisfying,
+            open=maneuvers.open,
+            violating=maneuvers.violating,
+            is_judged=maneuvers.judges,
+        )
+
+
+def as_text(counts: Sequence[ManeuverCounts]) -> str:
+    """A table with a row for each scenario and rulebook."""
+    rows = [("scenario", "by", "maneuvers", "satisfying", "open", "violating")]
+    for one in counts:
+        numbers = (one.satisfying, one.open, one.violating)
+        told = map(shown_count, numbers) if one.is_judged else ["not judged"] * len(numbers)
+        rows.append(
+            (visible(one.scenario), visible(one.rulebook), shown_count(one.maneuvers), *told)
+        )
+    return "\n".join(table_lines(rows, right=range(2, 6), ruled=[0]))
