@@ -1,5 +1,7 @@
 """Who broke which rule in a simulated world, by lanes, places and lights of the simulator."""
 
+from functools import partial
+
 from support.worlds.truths.crossing_truths import pedestrian_facts
 from support.worlds.truths.following_truths import following_facts
 from support.worlds.truths.light_truths import red_light_facts
@@ -9,6 +11,7 @@ from support.worlds.truths.priority_truths import (
     oncoming_facts,
     right_facts,
     roundabout_facts,
+    stop_give_way_facts,
 )
 from support.worlds.truths.speed_truths import speed_facts
 from support.worlds.truths.stop_truths import stop_facts
@@ -23,6 +26,8 @@ TRUTHS = {
     "give_way_sign": give_way_facts,
     "roundabout_priority": roundabout_facts,
     "stop_sign": stop_facts,
+    "stop_sign_give_way": partial(stop_give_way_facts, rule="stop_sign_give_way"),
+    "stop_sign_giving_way": partial(stop_give_way_facts, rule="stop_sign_giving_way"),
     "give_way_to_pedestrians": pedestrian_facts,
 }
 """Rule -> its facts in a world."""

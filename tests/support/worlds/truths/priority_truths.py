@@ -35,15 +35,24 @@ def right_facts(world):
 
 def give_way_facts(world):
     """Where a sign makes a road give way."""
+    yield from _signed_facts(world, "m", "give_way_sign")
+
+
+def stop_give_way_facts(world, rule):
+    """Where a road has to stop, and to give way then; where all have to nobody has priority."""
+    yield from _signed_facts(world, "s", rule)
+
+
+def _signed_facts(world, letter, rule):
     for crossing, other, grade, at in _conflicts(world):
         link = crossing.link
         side = abs(_comes_from(world, link, other.link))
         # Those who come from ahead have the same sign: that is another rule's. The ring of a
         # roundabout is the main road of each that leads to it, at whatever angle they meet
         to_ring = _enters_before(world, link, other.link)
-        if _gives_way(world, link) and (to_ring or _sideways(side, _ABOUT_DEG)):
+        if _all_are(world, link, letter) and (to_ring or _sideways(side, _ABOUT_DEG)):
             sure = grade and (to_ring or _sideways(side))
-            yield Fact(crossing.track.id, "give_way_sign", *at, sure, other.track.id)
+            yield Fact(crossing.track.id, rule, *at, sure, other.track.id)
 
 
 def _sideways(side_deg, more_deg=0.0):
@@ -193,10 +202,10 @@ def _heading(shape):
     return np.arctan2(*(shape[-1] - shape[-2])[::-1])
 
 
-def _gives_way(world, link):
-    """True if the whole road gives way: its way straight on does."""
+def _all_are(world, link, letter):
+    """True if the whole road has SUMO's letter of a sign: its way straight on does, too."""
     ways = [one for one in world.net.links.values() if one.start == link.start]
-    return all(one.state == "m" for one in ways)
+    return all(one.state == letter for one in ways)
 
 
 def _enters_before(world, link, other):

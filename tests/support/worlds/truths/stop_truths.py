@@ -1,6 +1,7 @@
 """Stop signs: whether who crosses the line has stood at it in the ten seconds before."""
 
 from support.worlds.facts import Fact, runs
+from support.worlds.truths.priority_truths import stop_give_way_facts
 
 _BEFORE_S = 10.0
 _STOOD_MPS, _ROLLED_MPS = 0.1, 0.4
@@ -12,8 +13,18 @@ _SIGNED = frozenset("sw")
 """SUMO's letters: a stop sign, and an all-way stop."""
 
 
+_AND_GIVES_WAY = frozenset({"gb", "fr"})
+"""Books whose rule on stop signs asks for both."""
+
+
 def stop_facts(world):
-    """Who crosses the line of a stop sign without having stood."""
+    """Who crosses the line of a stop sign without having stood, or before others if it must not."""
+    yield from _does_not_stop(world)
+    if world.book in _AND_GIVES_WAY:
+        yield from stop_give_way_facts(world, "stop_sign")
+
+
+def _does_not_stop(world):
     for crossing in world.crossings:
         if not _signed(world, crossing.link):
             continue
