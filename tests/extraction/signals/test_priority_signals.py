@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.map.priority_signals import priority_signals
-from rulec.extraction.tracks.junctions import junctions_of
+from rulec.extraction.tracks.junctions import approaches, junctions_of
 from rulec.recordings.recording import Recording
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.net import read_net
+from rulec.scenario.recorded.reference_line import turn
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
@@ -140,6 +141,37 @@ def test_ways_that_meet_are_the_foes_of_the_net(path):
             for other, its in enumerate(junction.ways):
                 if own != other and foes is not None:
                     assert (junction.meeting(own, other) is not None) == bool(foes & its.names)
+
+
+@pytest.mark.parametrize("path", NETS, ids=lambda path: path.name.split(".")[0])
+def test_who_yields_to_one_from_the_side_is_what_the_net_says(path):
+    """Signs, and sides where there are none, say what SUMO's `request` bits say, way by way."""
+    told = net_lanelets(read_net(path), 0.5)
+    drawn = Recording("drawn", 0.5, told, (), ())
+    pairs = 0
+    for junction in junctions_of(drawn):
+        for own, way in enumerate(junction.ways):
+            first, signed = told[way.lanelets[0].id].first, _gives_way(drawn, way)
+            for other, its in enumerate(junction.ways):
+                side_deg = np.degrees(turn(way.headings[0], its.headings[0]))
+                crosses = 30 <= abs(side_deg) <= 135 and junction.meeting(own, other)
+                # Lights say who goes first where there are some
+                if first is None or not crosses or _is_lit(drawn, way):
+                    continue
+                without_sign = not signed and not _gives_way(drawn, its)
+                assert (junction.regulated is False) == without_sign
+                yields = side_deg > 0 if without_sign else signed
+                assert bool(first & its.names) == yields
+                pairs += 1
+    assert pairs or path.name.startswith(("grid", "motorway", "spider", "zebra"))
+
+
+def _gives_way(drawn, way):
+    return any(entry.signs & {"YIELD", "STOP"} for entry in approaches(drawn, way))
+
+
+def _is_lit(drawn, way):
+    return any(entry.lights for entry in approaches(drawn, way))
 
 
 @pytest.mark.parametrize(
