@@ -22,14 +22,13 @@ from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.group_letters import GroupLetters
 from rulec.monitoring.online.prepared_rule import PreparedRule
-from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups
+from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups, RulesRead
 from rulec.monitoring.state_validation import check_state, has_partial_values
 from rulec.resource_limits import CHOICES
 from rulec.trace import State
 from rulec.vocabulary.vocabulary_model import choices
 
 if TYPE_CHECKING:
-    from rulec.monitoring.online.four_valued import LetterClass
     from rulec.monitoring.online.partial_states import PartialStateReader
     from rulec.monitoring.online.uncertain_steps import Edge
     from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters
@@ -164,7 +163,7 @@ class BoundRules:
             pass
         with suppress(LookupError, TypeError):
             return self._partial[known], known  # type: ignore[index]
-        letters, is_partial = self._careful_letters(state, number, place)
+        letters, is_partial = self._careful_letters(state, number, place, known)
         if not is_partial:
             return letters, known
         if known is None:
@@ -205,11 +204,16 @@ class BoundRules:
         return found
 
     def _careful_letters(
-        self, state: State, number: int, place: SourceLocation | None
+        self,
+        state: State,
+        number: int,
+        place: SourceLocation | None,
+        known: KnownState | None,
     ) -> tuple[Letters, bool]:
         """Letters read like ``verify`` does, with all cases and errors.
 
-        Also whether some value is partly known, or the past is not.
+        Also whether some value is partly known, or the past is not. Of a state that could be
+        encoded only those rules are read so that need it.
         """
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)
@@ -218,22 +222,36 @@ class BoundRules:
         check_counting_axioms(rulebook, 1, reader.view, name.format, place)
         is_partial = self.groups.is_partial or has_partial_values(state)
         partial = self._partial_state(state, (name, place)) if is_partial else None
-        found: dict[str, list[tuple[LetterClass, bool]]] = {}
+        found = self._known_letters(state, known)
         for bound_rule in self.rules:
             prepared = bound_rule.prepared
-            found[prepared.name] = [
-                (reader.word(prepared.rule, prepared.bound(items), 0, 0)[0], True)
-                if partial is None
-                else partial.letter_class(prepared, items)
-                for items in bound_rule.bindings
-            ]
-        letters = []
-        for group in self.groups.groups:
-            columns = [found[prepared.name] for prepared in group.rules]
-            for classes in zip(*columns, strict=True):
-                inexact = {number for number, (_, is_exact) in enumerate(classes) if not is_exact}
-                letters.append(group.letter(tuple([own for own, _ in classes]), inexact))
+            for place_, items in enumerate(bound_rule.bindings, bound_rule.places.start):
+                own = found[place_]
+                if isinstance(own, list) and own[bound_rule.number] is None:
+                    own[bound_rule.number] = (
+                        (reader.word(prepared.rule, prepared.bound(items), 0, 0)[0], True)
+                        if partial is None
+                        else partial.letter_class(prepared, items)
+                    )
+        groups = [group for group, bindings in self._bindings for _ in bindings]
+        letters = [
+            own if isinstance(own, int) else _letter(group, own)
+            for group, own in zip(groups, found, strict=True)
+        ]
         return letters, is_partial
+
+    def _known_letters(self, state: State, known: KnownState | None) -> Sequence[int | RulesRead]:
+        """What can be read of a state that is perhaps encoded, without a closer look."""
+        reader = None if known is None else self._readers[tuple(state)]
+        if known is not None and reader is not None:
+            return reader.known_letters(state, known[1])
+        return [[None] * len(group.rules) for group, own in self._bindings for _ in own]
+
+
+def _letter(group: RuleGroup, read: RulesRead) -> int:
+    classes = [own for own in read if own is not None]
+    inexact = {number for number, (_, is_exact) in enumerate(classes) if not is_exact}
+    return group.letter(tuple([own for own, _ in classes]), inexact)
 
 
 def _chosen(group: RuleGroup, cast: Cast, awake: Awake) -> tuple[Items, ...]:

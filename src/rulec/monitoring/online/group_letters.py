@@ -6,13 +6,14 @@ The letters for one state of the world, and for some values, are computed once a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from operator import itemgetter
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from rulec.monitoring.online.encoding import encoded_values
 from rulec.monitoring.online.encoding.encoded_values import Encoded, MonitorInput
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
-from rulec.monitoring.online.rule_group import RuleGroup
+from rulec.monitoring.online.rule_group import RuleGroup, RulesRead
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
@@ -28,6 +29,13 @@ _ReadColumn: TypeAlias = Callable[[State, Sequence[Encoded]], Sequence[Any]]
 
 _ReadLetters: TypeAlias = Callable[[State, Sequence[Encoded]], Iterable[int]]
 """From a state and its parts the letter of each of several bindings. Raises as ``letters``."""
+
+
+class _WorldReader(NamedTuple):
+    """Reader of a group's letters in one state of the world, and the letters known there."""
+
+    read: _ReadLetters
+    letters: _LetterTable
 
 
 class GroupLetters:
@@ -49,7 +57,7 @@ class GroupLetters:
             if isinstance(declaration, Enumeration) and (name, items) not in read:
                 values = frozenset([*declaration.values, encoded_values.MISSING, UNKNOWN])
                 self._unread.append((part, slice(place, place + 1), values))
-        self._by_world: dict[tuple[Encoded, ...], list[_ReadLetters]] = {}
+        self._by_world: dict[tuple[Encoded, ...], list[_WorldReader]] = {}
 
     def letters(self, state: State, parts: tuple[Encoded, ...]) -> list[int]:
         """The letter of each binding of each group, one after the other.
@@ -60,16 +68,35 @@ class GroupLetters:
             if not values.issuperset(parts[part][places]):
                 raise LookupError
         world = parts[: self.shape.n_world]
+        letters: list[int] = []
+        for read, _ in self._by_world.get(world) or self._in_world(world):
+            letters += read(state, parts)
+        return letters
+
+    def known_letters(self, state: State, parts: tuple[Encoded, ...]) -> Sequence[int | RulesRead]:
+        """The letter of each binding, or what those rules read that need no closer look."""
+        found: list[int | RulesRead] = []
+        for number in range(len(self._readers)):
+            found += self._known_of_group(number, state, parts)
+        return found
+
+    def _known_of_group(
+        self, number: int, state: State, parts: tuple[Encoded, ...]
+    ) -> list[int | RulesRead]:
+        reader = self._readers[number]
+        with suppress(LookupError, TypeError):
+            _, letters = self._in_world(parts[: self.shape.n_world])[number]
+            return [letters.as_far_as_known(key) for key in reader.keys(state, parts)]
+        return [reader.nothing_read() for _ in range(reader.n_bindings)]
+
+    def _in_world(self, world: tuple[Encoded, ...]) -> list[_WorldReader]:
         in_world = self._by_world.get(world)
         if in_world is None:
             if len(self._by_world) >= MOST:
                 self._by_world.clear()
             in_world = [reader.in_world(world) for reader in self._readers]
             self._by_world[world] = in_world
-        letters: list[int] = []
-        for read in in_world:
-            letters += read(state, parts)
-        return letters
+        return in_world
 
 
 class _LetterTable(dict[Any, int]):
@@ -91,26 +118,38 @@ class _LetterTable(dict[Any, int]):
         self._breakpoints = breakpoints
 
     def __missing__(self, key: Any) -> int:
-        encoded = (key,) if len(self._own) == 1 else key
-        digits = {
-            read: read.digit(value, self._breakpoints)
-            for read, value in zip(self._own, encoded, strict=True)
-        }
-        letter = self._group.letter_of({**self._others, **digits})
+        letter = self._group.letter_of(self._digits(key))
         if len(self) >= MOST:
             self.clear()
         self[key] = letter
         return letter
 
+    def as_far_as_known(self, key: Any) -> int | RulesRead:
+        """The letter, or if that takes a closer look what those rules read that do not need it."""
+        try:
+            return self[key]
+        except (LookupError, TypeError):
+            return self._group.read_by_rules(self._digits(key))
+
+    def _digits(self, key: Any) -> Mapping[MonitorInput, Any]:
+        own = self._own
+        if not own:
+            return self._others
+        encoded = (key,) if len(own) == 1 else key
+        digits = dict(self._others)
+        for read, value in zip(own, encoded, strict=True):
+            digits[read] = read.digit(value, self._breakpoints)
+        return digits
+
 
 class _GroupReader:
-    """Reader of a group's letters; ``read`` are the values it looks at."""
+    """Reader of a group's letters for ``n_bindings``; ``read`` are the values it looks at."""
 
     def __init__(self, group: RuleGroup, bindings: Sequence[Items], shape: StateShape) -> None:
         self.read = set[tuple[str, Items]]()
         self._group = group
         self._breakpoints = shape.breakpoints
-        self._n_bindings = len(bindings)
+        self.n_bindings = len(bindings)
         self._not_given: dict[MonitorInput, Any] = {}
         self._world: list[tuple[MonitorInput, int, int]] = []
         self._own: list[MonitorInput] = []
@@ -140,16 +179,19 @@ class _GroupReader:
                 self._world.append((read, *places[0]))
         self._whole = None if None in whole else [part for part in whole if part is not None]
 
-    def in_world(self, world: Sequence[Encoded]) -> _ReadLetters:
+    def in_world(self, world: Sequence[Encoded]) -> _WorldReader:
         """Reader of the letters of all bindings, for one world state."""
         digits = {
             read: read.digit(world[part][place], self._breakpoints)
             for read, part, place in self._world
         }
         others = {**self._not_given, **digits}
-        letter = _LetterTable(self._group, self._own, others, self._breakpoints).__getitem__
+        letters = _LetterTable(self._group, self._own, others, self._breakpoints)
+        return _WorldReader(self._reader_with(letters.__getitem__), letters)
+
+    def _reader_with(self, letter: Callable[[Any], int]) -> _ReadLetters:
         if not self._columns:
-            return lambda *_: (letter(()),) * self._n_bindings
+            return lambda *_: (letter(()),) * self.n_bindings
         if len(self._columns) == 1:
             (column,) = self._columns
             return lambda state, parts: map(letter, column(state, parts))
@@ -159,6 +201,17 @@ class _GroupReader:
         return lambda state, parts: map(
             letter, zip(*[column(state, parts) for column in self._columns], strict=True)
         )
+
+    def nothing_read(self) -> RulesRead:
+        """What is read of a binding that takes a closer look for each rule."""
+        return [None] * len(self._group.rules)
+
+    def keys(self, state: State, parts: Sequence[Encoded]) -> Sequence[Any]:
+        """By what the letter of each binding is known."""
+        columns = [column(state, parts) for column in self._columns]
+        if not columns:
+            return [()] * self.n_bindings
+        return columns[0] if len(columns) == 1 else list(zip(*columns, strict=True))
 
 
 def _whole_part(places: Sequence[tuple[int, int]], shape: StateShape) -> int | None:

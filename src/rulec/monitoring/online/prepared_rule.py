@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
@@ -34,6 +34,9 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
+
+MOST_CLASSES = 1 << 12
+"""Classes of a rule's letters that are kept before all are forgotten."""
 
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
@@ -107,6 +110,11 @@ class PreparedRule:
         return (*[read for read, _ in self.inputs], *self.values)
 
     @cached_property
+    def classes(self) -> ClassTable:
+        """The classes that the rule reads, by what is encoded of ``all_inputs``."""
+        return ClassTable(self)
+
+    @cached_property
     def constants(self) -> frozenset[str]:
         """Names that the rule reads and that never change."""
         read = (name for own in self.rule.machine.reads for name in names_of_read(own))
@@ -116,7 +124,7 @@ class PreparedRule:
         """Objects by the names of the variables that they stand for."""
         return dict(zip([variable.name for variable in self.rule.variables], items, strict=True))
 
-    def letter_class(self, digits: Sequence[Any]) -> tuple[LetterClass, bool]:
+    def letter_class(self, digits: tuple[Any, ...]) -> tuple[LetterClass, bool]:
         """The classes that the rule reads, and whether no more are said than are.
 
         ``digits`` are those of the ``inputs`` and then the ``values``, as encoded. Raises
@@ -125,27 +133,42 @@ class PreparedRule:
         if self._is_simple and not UNKNOWN_TYPES.isdisjoint(map(type, digits)):
             # The usual case where something is not known
             return self._walk.classes_alone(digits)
-        own = digits[: len(self.inputs)]
-        cubes, is_exact = _NO_CUBES
-        if self.entangled is not None and self.entangled.numbers:
-            values = digits[len(own) :]
-            cubes, is_exact = self.entangled.found[self._place(self.entangled, values)]
-            is_exact = is_exact and not self._has_unknown_constant(values)
-        is_known = UNKNOWN_TYPES.isdisjoint(map(type, own))
-        if not is_known or len(cubes) != 1 or any(x & (x - 1) for x in cubes[0]):
+        n_alone = len(self._weights)
+        own, values = digits[:n_alone], digits[n_alone:]
+        cubes, is_exact, letter = self._decided.get(values) or self._decided_by(values)
+        if letter is None or not UNKNOWN_TYPES.isdisjoint(map(type, own)):
             return self._walk.classes(own, cubes, is_exact=is_exact)
-        letter = sum(
-            [weight_of(digit) for (_, weight_of), digit in zip(self.inputs, own, strict=True)]
-        )
-        if cubes[0] and self.entangled is not None:
-            strides = [self._strides[n] for n in self.entangled.numbers]
-            letter += sum(
-                [x * (y.bit_length() - 1) for x, y in zip(strides, cubes[0], strict=True)]
-            )
+        for weight_of, digit in zip(self._weights, own, strict=True):
+            letter += weight_of(digit)
         letter_class = self.letters[letter]
         if letter_class == IMPOSSIBLE:
             raise LookupError
         return letter_class, is_exact
+
+    @cached_property
+    def _weights(self) -> tuple[DigitWeight, ...]:
+        return tuple([weight_of for _, weight_of in self.inputs])
+
+    @cached_property
+    def _decided(self) -> dict[tuple[Any, ...], _Decided]:
+        return {}
+
+    def _decided_by(self, values: tuple[Any, ...]) -> _Decided:
+        """What these values decide, which are often the same while others change."""
+        (cubes, is_exact), weight = _NO_CUBES, 0
+        if self.entangled is not None and self.entangled.numbers:
+            cubes, is_exact = self.entangled.found[self._place(self.entangled, values)]
+            is_exact = is_exact and not self._has_unknown_constant(values)
+            if len(cubes) == 1:
+                strides = [self._strides[n] for n in self.entangled.numbers]
+                digits = [x.bit_length() - 1 for x in cubes[0]]
+                weight = sum([x * y for x, y in zip(strides, digits, strict=True)])
+        is_known = len(cubes) == 1 and not any(x & (x - 1) for x in cubes[0])
+        decided = _Decided(cubes, is_exact, weight if is_known else None)
+        if len(self._decided) >= MOST_CLASSES:
+            self._decided.clear()
+        self._decided[values] = decided
+        return decided
 
     def _has_unknown_constant(self, values: Sequence[Any]) -> bool:
         return bool(self.constants) and any(
@@ -210,6 +233,36 @@ def _ends(edge: Edge) -> tuple[object, RunningVerdict]:
     return states, edge.verdict
 
 
+class ClassTable(dict[tuple[Any, ...], "LetterClass"]):
+    """The classes that a rule reads, by its inputs' digits, or values that are partly known.
+
+    ``inexact`` are those of which more classes are said to be possible than are: a constant that is
+    not known may be another one in each state.
+    """
+
+    def __init__(self, prepared: PreparedRule) -> None:
+        self._prepared = prepared
+        self.inexact: set[tuple[Any, ...]] = set()
+
+    def __missing__(self, digits: tuple[Any, ...]) -> LetterClass:
+        letter_class, is_exact = self._prepared.letter_class(digits)
+        if len(self) >= MOST_CLASSES:
+            self.clear()
+            self.inexact.clear()
+        if not is_exact:
+            self.inexact.add(digits)
+        self[digits] = letter_class
+        return letter_class
+
+
+class _Decided(NamedTuple):
+    """What entangled reads may be together, and if they can be but one thing its weight."""
+
+    cubes: Letters
+    is_exact: bool
+    weight: int | None
+
+
 class _Masks(dict[Any, int]):
     """The possible digits, as bits, of a read whose digit, or value if partly known, is given.
 
@@ -239,7 +292,20 @@ _NO_CUBES: tuple[Letters, bool] = ((),), True
 def prepared_rule(
     rule: CompiledRule, rulebook: CompiledRulebook, cut: OutcomeMachine | None = None
 ) -> PreparedRule:
-    """Prepare a rule; ``cut`` is its machine if the past is not known."""
+    """Prepare a rule; ``cut`` is its machine if the past is not known.
+
+    What has been prepared is remembered, with all that monitors have found out by it.
+    """
+    known: dict[object, PreparedRule] = rulebook.prepared.setdefault(PreparedRule, {})
+    key = rule.name, cut
+    if key not in known:
+        known[key] = _prepared_rule(rule, rulebook, cut)
+    return known[key]
+
+
+def _prepared_rule(
+    rule: CompiledRule, rulebook: CompiledRulebook, cut: OutcomeMachine | None
+) -> PreparedRule:
     vocabulary, reads = rulebook.vocabulary, local_reads(rule, rulebook)
     entangled = () if reads is None else reads.numbers
     alone = tuple([n for n in range(len(rule.machine.reads)) if n not in entangled])

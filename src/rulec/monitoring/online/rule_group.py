@@ -7,8 +7,8 @@ when they are first met.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping, Sequence, Set
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.monitoring.online.encoding.encoded_values import (
@@ -21,7 +21,7 @@ from rulec.monitoring.online.four_valued import (
     LetterClass,
     RunningVerdict,
 )
-from rulec.monitoring.online.prepared_rule import PreparedRule, prepared_rule
+from rulec.monitoring.online.prepared_rule import ClassTable, PreparedRule, prepared_rule
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES
 
 if TYPE_CHECKING:
@@ -31,9 +31,11 @@ if TYPE_CHECKING:
 MOST_CACHED = 1 << 18
 """Nodes, letters and transitions that are kept before all are forgotten."""
 
+RulesRead: TypeAlias = "list[tuple[LetterClass, bool] | None]"
+"""For each rule of a group the class that it reads, and whether no more is said than is.
 
-MOST_CLASSES = 1 << 12
-"""Classes of a rule's letters that are kept before all are forgotten."""
+None where that takes a closer look at a state.
+"""
 
 
 class OtherVerdictError(Exception):
@@ -90,28 +92,6 @@ class CacheSize:
     is_inexact = False
 
 
-class _ClassTable(dict[tuple[Any, ...], "LetterClass"]):
-    """The classes that a rule reads, by its inputs' digits, or values that are partly known.
-
-    ``inexact`` are those of which more classes are said to be possible than are: a constant that is
-    not known may be another one in each state.
-    """
-
-    def __init__(self, prepared: PreparedRule) -> None:
-        self._prepared = prepared
-        self.inexact: set[tuple[Any, ...]] = set()
-
-    def __missing__(self, digits: tuple[Any, ...]) -> LetterClass:
-        letter_class, is_exact = self._prepared.letter_class(digits)
-        if len(self) >= MOST_CLASSES:
-            self.clear()
-            self.inexact.clear()
-        if not is_exact:
-            self.inexact.add(digits)
-        self[digits] = letter_class
-        return letter_class
-
-
 class RuleGroup:
     """Rules whose variables are of the same types, in the same order.
 
@@ -131,9 +111,8 @@ class RuleGroup:
         self.inexact: dict[int, frozenset[str]] = {}
         self._letters: dict[tuple[tuple[LetterClass, ...], frozenset[int]], int] = {}
         self._nodes: dict[tuple[Edge, ...], GroupNode] = {}
-        self._tables = [
-            (_ClassTable(prepared), values_at(prepared.all_inputs)) for prepared in rules
-        ]
+        self._tables = [(prepared.classes, values_at(prepared.all_inputs)) for prepared in rules]
+        self._all_inexact = [table.inexact for table, _ in self._tables]
 
     def node(self, edges: tuple[Edge, ...]) -> GroupNode:
         """The node with these edges, one for each rule."""
@@ -164,15 +143,32 @@ class RuleGroup:
         Raises LookupError or TypeError if one is missing or wrong, if no state is such, or if it
         takes a look at the whole state.
         """
-        classes = tuple([table[pick(digits)] for table, pick in self._tables])
-        if not self.cache_size.is_inexact and not any(table.inexact for table, _ in self._tables):
+        read = [pick(digits) for _, pick in self._tables]
+        classes = tuple([table[own] for (table, _), own in zip(self._tables, read, strict=True)])
+        if not any(self._all_inexact):
             return self.letter(classes)
         inexact = frozenset(
             number
-            for number, (table, pick) in enumerate(self._tables)
-            if table.inexact and pick(digits) in table.inexact
+            for number, (inexact_here, own) in enumerate(zip(self._all_inexact, read, strict=True))
+            if inexact_here and own in inexact_here
         )
         return self.letter(classes, inexact)
+
+    def read_by_rules(self, digits: Mapping[MonitorInput, Any]) -> RulesRead:
+        """What each rule reads where inputs have these digits, or values that are partly known."""
+        return [_read_by_rule(table, pick, digits) for table, pick in self._tables]
+
+
+def _read_by_rule(
+    table: ClassTable,
+    pick: Callable[[Mapping[MonitorInput, Any]], tuple[Any, ...]],
+    digits: Mapping[MonitorInput, Any],
+) -> tuple[LetterClass, bool] | None:
+    try:
+        own = pick(digits)
+        return table[own], own not in table.inexact
+    except (LookupError, TypeError):
+        return None
 
 
 class RuleGroups:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -24,6 +25,7 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
     names_of_read,
     read_digits,
 )
+from rulec.monitoring.uncertainty.state_letters.reads_apart import ReadsApart
 from rulec.monitoring.uncertainty.state_letters.related_facts import (
     fits_or_not,
     is_of_one,
@@ -31,6 +33,7 @@ from rulec.monitoring.uncertainty.state_letters.related_facts import (
     related_facts,
 )
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
+    MissingValueError,
     Subject,
     subjects_in,
     subjects_of_read,
@@ -110,6 +113,9 @@ class EntangledReads:
         if not is_local and all(map(is_of_one, axioms)):
             asked = frozenset(binding.values())
             self._crowd = crowd_of(self._reads, self.subjects, asked, everybody.objects)
+        self._apart = None
+        if is_local:
+            self._apart = ReadsApart(self._reads, self.subjects, binding, axioms, everybody)
         self.found: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}
@@ -146,6 +152,10 @@ class EntangledReads:
     def _letters(
         self, values: Sequence[PartialValue | None], there: Mapping[str, str]
     ) -> tuple[Letters, bool]:
+        if self._apart is not None:
+            # What is missing first is found below.
+            with suppress(MissingValueError):
+                return self._apart.letters(values)
         given = with_values({}, dict(zip(self.subjects, values, strict=True)))
         state = StateView(given, there, self._everybody.vocabulary)
         digits = [read.in_state(self._binding, state) for read in self._ready]
