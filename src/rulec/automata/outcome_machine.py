@@ -12,8 +12,6 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Literal, TypeAlias
 
-import numpy as np
-
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.value_display import short_repr
 
@@ -53,20 +51,26 @@ class OutcomeMachine:
     @cached_property
     def lost(self) -> frozenset[int]:
         """The states from which every word is violated."""
-        successors, outputs = np.array(self.successors), np.array(self.outputs)
-        lost = (outputs == VIOLATED).all(axis=1)
-        while not np.array_equal(lost, still := lost & lost[successors].all(axis=1)):
-            lost = still
-        return frozenset(np.flatnonzero(lost).tolist())
+        return self._never_left(VIOLATED)
 
     @cached_property
     def safe(self) -> frozenset[int]:
         """The states from which every word is kept."""
-        successors, outputs = np.array(self.successors), np.array(self.outputs)
-        safe = (outputs == KEPT).all(axis=1)
-        while not np.array_equal(safe, still := safe & safe[successors].all(axis=1)):
-            safe = still
-        return frozenset(np.flatnonzero(safe).tolist())
+        return self._never_left(KEPT)
+
+    def _never_left(self, outcome: int) -> frozenset[int]:
+        """The states from which every word comes to this."""
+        before: dict[int, list[int]] = {}
+        for state, targets in enumerate(self.successors):
+            for target in set(targets):
+                before.setdefault(target, []).append(state)
+        waiting = [state for state, row in enumerate(self.outputs) if set(row) != {outcome}]
+        left = set(waiting)
+        for state in waiting:
+            fresh = set(before.get(state, ())) - left
+            left |= fresh
+            waiting += fresh
+        return frozenset(range(len(self.outputs))) - left
 
     @cached_property
     def above(self) -> tuple[int, ...]:
@@ -84,32 +88,26 @@ class OutcomeMachine:
     @property
     def _found_order(self) -> tuple[int, ...]:
         size = len(self.successors)
-        if size > MOST_COMPARED:
-            return tuple([1 << state for state in range(size)])
-        successors, outputs = np.array(self.successors), np.array(self.outputs, dtype=np.int8)
-        order = np.ones((size, size), dtype=bool)
-        for column in {column.tobytes(): column for column in outputs.T}.values():
-            order &= column[:, None] <= column[None, :]
-        targets = list({column.tobytes(): column for column in successors.T}.values())
-        while True:
-            before = order.sum()
-            for target in targets:
-                # Two takes are several times as fast as one index of two arrays.
-                order &= order.take(target, axis=0).take(target, axis=1)
-            if order.sum() == before:
-                rows = np.packbits(order, axis=1, bitorder="little")
-                return tuple([int.from_bytes(row.tobytes(), "little") for row in rows])
+        if size <= MOST_COMPARED:
+            try:
+                # NumPy, which a browser does not have: there sets are kept whole, which takes
+                # longer and comes to the same.
+                from rulec.automata.outcome_order import outcome_order
+
+                return outcome_order(self.successors, self.outputs)
+            except ModuleNotFoundError as error:
+                if error.name != "numpy":
+                    raise
+        return tuple([1 << state for state in range(size)])
 
     @cached_property
     def below(self) -> tuple[int, ...]:
         """For each state those, as bits, from which no word comes to more."""
-        size = len(self.above)
-        width = (size + 7) // 8
-        packed = b"".join([above.to_bytes(width, "little") for above in self.above])
-        rows = np.frombuffer(packed, dtype=np.uint8).reshape(size, width)
-        order = np.unpackbits(rows, axis=1, count=size, bitorder="little")
-        columns = np.packbits(order.T, axis=1, bitorder="little")
-        return tuple([int.from_bytes(column.tobytes(), "little") for column in columns])
+        found = [0] * len(self.above)
+        for state, above in enumerate(self.above):
+            for other in bits_of(above):
+                found[other] |= 1 << state
+        return tuple(found)
 
     def least(self, states: int) -> int:
         """The least of these states, all as bits; of equivalent ones the first."""

@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.thresholds import exact_step
@@ -20,6 +20,7 @@ from rulec.logic.semantics import extended_values
 from rulec.monitoring.bindings import Binding, binding_of
 from rulec.monitoring.explain.explained_states import states_to_explain
 from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
 from rulec.monitoring.explain.observed_states import ObservedStates, known_value
 from rulec.monitoring.implied_values import with_implied_values
 from rulec.monitoring.letter_reader import LetterReader
@@ -34,9 +35,6 @@ from rulec.trace import Trace, Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
-
-if TYPE_CHECKING:
-    from rulec.monitoring.explain.nearest_satisfying import Repair
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,9 +165,6 @@ def explain(
     whole = len(numbers) == len(stretch)
     repair = None
     if whole and repaired:
-        # NumPy, a tenth of a second: only where a repair is wanted.
-        from rulec.monitoring.explain.nearest_satisfying import nearest_satisfying
-
         repair = nearest_satisfying(rule.machine, observed.word(rule.machine))
     return Explanation(
         rule=rule,

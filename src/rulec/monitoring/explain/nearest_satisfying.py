@@ -10,9 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from math import prod
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import NamedTuple
 
 from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
@@ -23,11 +21,16 @@ from rulec.witnesses.state_synthesis import are_consistent
 Letter = tuple[int, ...]
 """The digit of each thing that a machine reads of a state, in its order."""
 
-_Near = tuple[NDArray[np.int64], NDArray[np.int64]]
-"""For each class of letters how far it is from a letter, and the number of its nearest one."""
+
+class _Near(NamedTuple):
+    """For each class of letters how far it is from a letter, and the number of its nearest one."""
+
+    distances: Sequence[int]
+    nearest: Sequence[int]
+
 
 _FAR = 1 << 40
-"""Further than any trace, and still far from what 64 bits hold."""
+"""Further than any trace."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,31 +73,74 @@ def nearest_satisfying(machine: MealyMonitor, word: Sequence[Letter]) -> tuple[R
 
 
 def _nearest(machine: MealyMonitor, near: Sequence[_Near]) -> list[int] | None:
-    successors = np.array(machine.successors)
-    # So far from being accepted is the rest of the word, by how much of it there is and the state.
-    last = np.where(np.array(machine.outputs), near[-1][0], _FAR)
-    costs = np.empty((len(near), len(successors)), dtype=np.int64)
-    costs[-1] = last.min(axis=1)
-    for place in range(len(near) - 2, -1, -1):
-        (near[place][0] + costs[place + 1][successors]).min(axis=1, out=costs[place])
-        np.minimum(costs[place], _FAR, out=costs[place])
-    if costs[0][0] >= _FAR:
+    beyond = _costs(machine, near)
+    if beyond[0][0] >= _FAR:
         return None
     letters, state = [], 0
     for place, (distances, nearest) in enumerate(near):
-        beyond = costs[place + 1][successors[state]] if place + 1 < len(near) else None
-        row = last[state] if beyond is None else distances + beyond
-        best = np.flatnonzero(row == row.min())
+        row = _totals(machine, state, distances, beyond[place + 1])
+        least = min(row)
+        best = [symbol for symbol, total in enumerate(row) if total == least]
         # Like the given word for as long as possible.
-        symbol = best[np.argmin(distances[best])]
-        letters.append(int(nearest[symbol]))
+        symbol = min(best, key=distances.__getitem__)
+        letters.append(nearest[symbol])
         state = machine.successors[state][symbol]
     return letters
 
 
+def _totals(
+    machine: MealyMonitor, state: int, distances: Sequence[int], beyond: Sequence[int]
+) -> list[int]:
+    """How far a word from a state on is from being accepted, by the class that it begins with.
+
+    ``beyond`` has it by state behind that letter; it is empty where the word ends.
+    """
+    if beyond:
+        targets = machine.successors[state]
+        return [one + beyond[target] for one, target in zip(distances, targets, strict=True)]
+    kept = machine.outputs[state]
+    return [one if is_kept else _FAR for one, is_kept in zip(distances, kept, strict=True)]
+
+
+def _costs(machine: MealyMonitor, near: Sequence[_Near]) -> list[Sequence[int]]:
+    """So far from being accepted is the rest of the word, by how much of it is over and the state.
+
+    A state's classes mostly lead to few others, of which the nearest class counts.
+    """
+    states = range(len(machine.successors))
+    last: Sequence[int] = ()
+    last = [min(_totals(machine, state, near[-1].distances, last)) for state in states]
+    costs: list[Sequence[int]] = [(), last]
+    ways: dict[int, list[list[tuple[int, int]]]] = {}
+    for place in range(len(near) - 2, -1, -1):
+        key = id(near[place])
+        if key not in ways:
+            ways[key] = [_ways(row, near[place].distances) for row in machine.successors]
+        if near[place] is near[place + 1] and len(costs) > 2 and costs[-1] == costs[-2]:
+            costs.append(costs[-1])
+            continue
+        beyond = costs[-1]
+        costs.append(
+            [
+                min(_FAR, *[distance + beyond[target] for target, distance in row])
+                for row in ways[key]
+            ]
+        )
+    return costs[::-1]
+
+
+def _ways(targets: Sequence[int], distances: Sequence[int]) -> list[tuple[int, int]]:
+    """The states that a state leads to, and how far the nearest class is that does."""
+    least: dict[int, int] = {}
+    for target, distance in zip(targets, distances, strict=True):
+        if distance < least.get(target, _FAR + 1):
+            least[target] = distance
+    return list(least.items())
+
+
 def _as_good(
     machine: MealyMonitor, state: int, symbol: int, rest: Sequence[int] | None
-) -> NDArray[np.bool_]:
+) -> tuple[bool, ...]:
     """The classes that do as well as one, read in a state.
 
     Those that lead to the same state; where nothing else is changed in the ``rest`` of the word,
@@ -102,90 +148,99 @@ def _as_good(
     """
     row = machine.successors[state]
     if rest is None:
-        return np.array([target == row[symbol] for target in row])
+        return tuple([target == row[symbol] for target in row])
     if not rest:
-        return np.array(machine.outputs[state])
-    return np.array([run(machine, rest, target)[0] for target in row])
+        return tuple(machine.outputs[state])
+    accepted = {target: run(machine, rest, target)[0] for target in set(row)}
+    return tuple([accepted[target] for target in row])
 
 
 class _LetterDistances:
-    """Letters of a machine as columns of digits, and their distances."""
+    """Letters of a machine by their numbers, and their distances."""
 
     def __init__(self, machine: MealyMonitor) -> None:
         self._reads = machine.reads
-        sizes = [read.size for read in self._reads]
-        self._strides = [prod(sizes[:n]) for n in range(len(sizes))]
-        numbers = np.arange(len(machine.letters))
-        self._digits = np.array(
-            [numbers // stride % size for stride, size in zip(self._strides, sizes, strict=True)]
-        ).reshape(len(sizes), len(numbers))
+        self._sizes = [read.size for read in self._reads]
+        self._strides = [prod(self._sizes[:n]) for n in range(len(self._sizes))]
         self._numbers = [n for n, read in enumerate(machine.reads) if isinstance(read, NumberRead)]
-        self._classes = np.array(machine.letters)
+        self._classes = list(machine.letters)
         self._n_classes = len(machine.successors[0])
         self._near: dict[Letter, _Near] = {}
+        self._differ: dict[Letter, Sequence[int]] = {}
         self._can_be: dict[Letter, bool] = {}
-        self._ways: dict[tuple[Letter, int, bytes], tuple[Cube, ...]] = {}
+        self._ways: dict[tuple[Letter, int, tuple[bool, ...]], tuple[Cube, ...]] = {}
 
     def number(self, letter: Letter) -> int:
         """The place of a letter among all."""
         return sum([stride * digit for stride, digit in zip(self._strides, letter, strict=True)])
 
+    def _digits(self, number: int, reads: Sequence[int]) -> tuple[int, ...]:
+        """What a letter says of some reads."""
+        return tuple([number // self._strides[n] % self._sizes[n] for n in reads])
+
     def near(self, letter: Letter) -> _Near:
         """The distances of the classes from a letter."""
         if letter not in self._near:
-            n_letters = len(self._classes)
-            ranks = self._differ(letter).sum(axis=0) * n_letters + np.arange(n_letters)
-            possible = self._classes != IMPOSSIBLE
-            best = np.full(self._n_classes, _FAR * n_letters)
-            np.minimum.at(best, self._classes[possible], ranks[possible])
-            self._near[letter] = best // n_letters, best % n_letters
+            best, nearest = [_FAR] * self._n_classes, [0] * self._n_classes
+            differs = enumerate(self._differs(letter))
+            for symbol, (number, distance) in zip(self._classes, differs, strict=True):
+                if symbol != IMPOSSIBLE and distance < best[symbol]:
+                    best[symbol], nearest[symbol] = distance, number
+            self._near[letter] = _Near(best, nearest)
         return self._near[letter]
 
-    def _differ(self, letter: Letter) -> NDArray[np.bool_]:
-        differ: NDArray[np.bool_] = self._digits != np.array(letter, dtype=np.int64)[:, np.newaxis]
-        return differ
+    def _differs(self, letter: Letter) -> Sequence[int]:
+        """In how many reads each letter differs from one."""
+        if letter not in self._differ:
+            found = b"\0"
+            for size, given in zip(self._sizes, letter, strict=True):
+                other = bytes([n + 1 for n in found])
+                found = b"".join([found if digit == given else other for digit in range(size)])
+            self._differ[letter] = found
+        return self._differ[letter]
 
     def exclude(self, letters: Sequence[int]) -> None:
         """Exclude these letters, and all with the same digits of numbers."""
-        numbers = self._digits[self._numbers]
-        for letter in letters:
-            self._classes[(numbers == numbers[:, [letter]]).all(axis=0)] = IMPOSSIBLE
+        wrong = {self._digits(letter, self._numbers) for letter in letters}
+        for number in range(len(self._classes)):
+            if self._digits(number, self._numbers) in wrong:
+                self._classes[number] = IMPOSSIBLE
         self._near.clear()
 
     def can_be(self, number: int) -> bool:
         """Tell whether some numbers have the digits of this letter."""
-        digits = tuple(self._digits[self._numbers, number].tolist())
+        digits = self._digits(number, self._numbers)
         if digits not in self._can_be:
             reads = [read for read in self._reads if isinstance(read, NumberRead)]
             self._can_be[digits] = are_consistent(list(zip(reads, digits, strict=True)))
         return self._can_be[digits]
 
-    def ways(self, given: Letter, number: int, does: NDArray[np.bool_]) -> tuple[Cube, ...]:
+    def ways(self, given: Letter, number: int, does: tuple[bool, ...]) -> tuple[Cube, ...]:
         """Cubes of equally good letters, as near to a given one."""
-        key = given, number, does.tobytes()
+        key = given, number, does
         if key not in self._ways:
             cubes = islice(self._all_ways(given, number, does), LIMITS.repairs_listed)
             self._ways[key] = tuple(cubes)
         return self._ways[key]
 
-    def _all_ways(self, given: Letter, number: int, does: NDArray[np.bool_]) -> Iterator[Cube]:
-        differ = self._differ(given)
-        as_near = differ.sum(axis=0) == differ[:, number].sum()
-        good = as_near & (self._classes != IMPOSSIBLE) & does[self._classes]
+    def _all_ways(self, given: Letter, number: int, does: tuple[bool, ...]) -> Iterator[Cube]:
+        differs = self._differs(given)
+        good = [
+            letter
+            for letter, symbol in enumerate(self._classes)
+            if differs[letter] == differs[number] and symbol != IMPOSSIBLE and does[symbol]
+        ]
         by_reads: dict[tuple[int, ...], list[int]] = {}
-        for letter in [number, *np.flatnonzero(good).tolist()]:
-            reads = tuple(np.flatnonzero(differ[:, letter]).tolist())
+        for letter in [number, *good]:
+            digits = self._digits(letter, range(len(given)))
+            reads = tuple([n for n, digit in enumerate(digits) if digit != given[n]])
             by_reads.setdefault(reads, []).append(letter)
         for reads, letters in sorted(by_reads.items()):
             yield from self._cubes(reads, letters)
 
     def _cubes(self, changed: tuple[int, ...], letters: Sequence[int]) -> Iterator[Cube]:
         """Cubes of letters with common changes, one cube if that is exact."""
-        rows = {
-            tuple(self._digits[changed, letter].tolist())
-            for letter in letters
-            if self.can_be(letter)
-        }
+        rows = {self._digits(letter, changed) for letter in letters if self.can_be(letter)}
         columns = [frozenset(digits) for digits in zip(*rows, strict=True)]
         if rows and prod(map(len, columns)) == len(rows):
             ways = [columns]

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 
-import numpy as np
-
-from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.automata.outcome_machine import KEPT, SetMonitor
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
 
@@ -45,11 +43,10 @@ def idle_letters(monitor: SetMonitor, diagram: LetterDiagram) -> IdleLetters:
         steps = (monitor.step(here, classes) for here in (monitor.start, home))
         return all(step.states == home and step.worst == KEPT for step in steps)
 
-    letters = np.array(machine.letters)
-    weights = np.bincount(letters[letters != IMPOSSIBLE], minlength=machine.n_classes)
-    singles = range(len(weights))
+    weights = Counter(machine.letters)
+    singles = range(machine.n_classes)
     homes = dict.fromkeys([monitor.start])
     homes |= dict.fromkeys(monitor.step(monitor.start, 1 << n).states for n in singles)
-    worth = {home: sum(int(weights[n]) for n in singles if stays(home, 1 << n)) for home in homes}
+    worth = {home: sum(weights[n] for n in singles if stays(home, 1 << n)) for home in homes}
     best = max(worth, key=worth.__getitem__)
     return IdleLetters(diagram, lambda classes: stays(best, classes))

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import groupby
-
-import numpy as np
-from numpy.typing import NDArray
+from operator import or_
 
 from rulec.automata.outcome_machine import OutcomeMachine
 
@@ -21,8 +19,12 @@ class Prospects:
     """
 
     def __init__(self, machine: OutcomeMachine) -> None:
-        self._successors = np.array(machine.successors, dtype=np.intp)
-        self._outcomes = (1 << np.array(machine.outputs)).astype(np.uint8)
+        # By classes of letters, of which one is looked at after the other.
+        self._successors = list(zip(*machine.successors, strict=True))
+        self._outcomes = [
+            bytes([1 << outcome for outcome in column])
+            for column in zip(*machine.outputs, strict=True)
+        ]
         self._forget()
 
     def _forget(self) -> None:
@@ -56,13 +58,17 @@ class Prospects:
 
     def _number(self, after: int, classes: int) -> int:
         symbols = [n for n in range(classes.bit_length()) if classes >> n & 1]
-        outcomes: NDArray[np.uint8]
         if after < 0:
-            outcomes = self._outcomes[:, symbols]
+            columns = {self._outcomes[symbol] for symbol in symbols}
         else:
-            table = np.frombuffer(self._tables[after], dtype=np.uint8)
-            outcomes = table[self._successors[:, symbols]]
-        joined = np.bitwise_or.reduce(outcomes, axis=1).tobytes()
+            behind = self._tables[after].__getitem__
+            columns = {
+                bytes(map(behind, targets))
+                for targets in {self._successors[symbol] for symbol in symbols}
+            }
+        joined, *others = columns
+        for column in others:
+            joined = bytes(map(or_, joined, column))
         number = self._numbers.setdefault(joined, len(self._tables))
         if number == len(self._tables):
             self._tables.append(joined)

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from functools import cached_property
-from itertools import groupby, product, zip_longest
+from itertools import groupby, product
 from math import prod
 from typing import NamedTuple, TypeAlias
-
-import numpy as np
-from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -47,7 +44,6 @@ MOST_REPETITIONS = 1 << 12
 """A letter is repeated no more often than this."""
 
 _MOST_REMEMBERED = 1 << 14
-_BITS = 64
 _NAMES: Mapping[tuple[int, int], OutcomeName] = {
     (KEPT, KEPT): "kept",
     (VIOLATED, VIOLATED): "violated",
@@ -323,29 +319,19 @@ class UncertainMachine:
         targets = {machine.successors[state][symbol] for state, symbol in pairs}
         return machine.least(sum(1 << target for target in targets))
 
-    @cached_property
-    def _table(self) -> NDArray[np.intp]:
-        """The classes by the digits of reads; the last read, which counts most, is the first."""
-        return np.array(self.machine.letters).reshape([read.size for read in self._reads[::-1]])
-
     def _classes_in_the_dark(self, untold: frozenset[str]) -> frozenset[int]:
         """The least sets of classes, as bits, that letters may have, by the reads that are told.
 
         What all words of larger ones come to, all words of a smaller one do, too.
         """
-        table, reads = self._table, self._reads[::-1]
-        dark = tuple(
-            [n for n, read in enumerate(reads) if not untold.isdisjoint(names_of_read(read))]
-        )
-        masks: list[int] = []
-        for first in range(0, self.machine.n_classes, _BITS):
-            bits = np.zeros(_BITS + 1, dtype=np.uint64)
-            bits[:_BITS] = np.uint64(1) << np.arange(_BITS, dtype=np.uint64)
-            inside = (table >= first) & (table < first + _BITS)
-            part = bits[np.where(inside, table - first, _BITS)]
-            united = np.bitwise_or.reduce(part, axis=dark).ravel().tolist()
-            masks = [mask | more << first for mask, more in zip_longest(masks, united, fillvalue=0)]
-        every = frozenset(masks) - {0}
+        diagram = self.classes.diagram
+        reached = frozenset({diagram.start})
+        for n in range(len(self._reads) - 1, -1, -1):
+            digits = [1 << digit for digit in range(self._reads[n].size)]
+            if not untold.isdisjoint(names_of_read(self._reads[n])):
+                digits = [sum(digits)]
+            reached = frozenset(diagram.step(n, here, mask) for here in reached for mask in digits)
+        every = frozenset(nodes >> 1 for nodes in reached) - {0}
         return frozenset(x for x in every if not any(y & x == y != x for y in every))
 
 
