@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+import rulec
 from tools.playground.parts import HERE
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -135,6 +136,78 @@ def test_a_rule_that_is_changed_changes_its_verdict(page):
     page.expect("#judge .summary").to_have_text("2 traces: 2 satisfied, 0 violated")
 
 
+def test_a_violation_is_told_with_margins_and_what_would_have_kept_the_rule(page):
+    page.write(rulebooks(TUTORIAL)[-1])
+    page.judge(DRIVES)
+    page.expect("#judge .violation").to_have_count(2)
+    first = page.page.locator("#judge .violation").first
+    assert "at state 1: ego is beside c1 and the lateral gap from ego to c1" in first.inner_text()
+    (kept,) = first.locator(".repair").all_inner_texts()
+    assert kept.startswith("kept if state 1 says: not beside(c) or lateral_gap(c) >=")
+    (row,) = first.locator("tbody tr", has_text="lateral_gap(c) <").last.all()
+    assert row.locator("td").all_inner_texts() == ["F 10.0 >= 1.5", "T 1.2 < 1.5"]
+
+
+def test_a_trace_with_unknown_values_is_open_and_says_on_what(page):
+    page.write(rulebooks(README)[0])
+    trace = {"objects": {"v1": "vehicle"}, "states": []}
+    trace["states"] = [{"position": {"v1": place}} for place in ("b", None, "f")]
+    page.judge(json.dumps(trace))
+    page.expect("#judge .summary").to_have_text("1 trace: 0 satisfied, 0 violated, 1 open")
+    page.expect("#judge h3").to_have_text("line 1: open")
+    page.expect("#judge .open").to_contain_text("for v = v1: open, depends on position: violated")
+
+
+def test_files_stand_side_by_side(page, chromium, address):
+    page.page.get_by_label("Start from").select_option(
+        "Three files: words, a depot, and one upon it"
+    )
+    group = page.page.get_by_role("group", name="Files")
+    assert group.get_by_role("button").all_inner_texts() == [
+        "yard.rules",
+        "depot.rules",
+        "depot_north.rules",
+    ]
+    page.expect("#count").to_have_text("nothing found")
+    page.ask("Traces")
+    page.expect("#judge .summary").to_have_text("1 trace: 0 satisfied, 1 violated")
+    page.page.get_by_label("Judged by").select_option("depot.rules")
+    page.expect("#judge .summary").to_have_text("1 trace: 1 satisfied, 0 violated")
+    group.get_by_role("button", name="depot.rules").click()
+    depot = page.source.input_value()
+    assert depot.startswith("rulebook depot\n")
+    page.page.get_by_label("Judged by").select_option("this rulebook")
+    page.write(depot.replace("= 10 km/h", "= 7 km/h"))
+    page.expect("#judge .summary").to_have_text("1 trace: 0 satisfied, 1 violated")
+    with opened(chromium, address, page.page.url.removeprefix(address)) as other:
+        other.expect("#judge .summary").to_have_text("1 trace: 0 satisfied, 1 violated")
+        assert other.page.locator("#files button").count() == 3
+    page.page.get_by_role("button", name="yard.rules").click()
+    page.page.get_by_role("button", name="Remove file").click()
+    page.expect("#found").to_contain_text("yard")
+    page.page.get_by_role("button", name="New file").click()
+    assert page.source.input_value().startswith("vocabulary words1 {")
+    page.expect("#count").to_have_text("nothing found")
+
+
+def test_files_are_opened_compiled_ones_too(page, tmp_path):
+    yard, depot, _ = rulebooks((ROOT / "docs/own_rulebooks.md").read_text(encoding="utf-8"))
+    for name, text in (("yard", yard), ("depot", depot)):
+        (tmp_path / f"{name}.rules").write_text(text, encoding="utf-8")
+    (tmp_path / "ride.jsonl").write_text('{"objects": {}, "states": [{"speed": 11}]}')
+    rulec.write_compiled(rulec.compile(tmp_path / "depot.rules"), tmp_path)
+    page.page.get_by_label("Start from").select_option("A first rule")
+    names = ("ride.jsonl", "depot.json")
+    page.page.get_by_label("Open …").set_input_files([tmp_path / name for name in names])
+    assert page.page.get_by_label("Judged by").input_value() == "depot.json"
+    page.expect("#judge .violation").to_contain_text("keep_to_the_limit [Depot manual 4.1]")
+    page.page.get_by_label("Open …").set_input_files(
+        [tmp_path / "yard.rules", tmp_path / "depot.rules"]
+    )
+    page.expect("#files button").to_have_text(["quiet_lane.rules", "yard.rules", "depot.rules"])
+    page.expect("#count").to_have_text("nothing found")
+
+
 def test_countries_are_compared_and_the_witness_is_judged(page):
     page.compare("de", "nl", "bus_leaving")
     page.expect("#compare .summary").to_contain_text("1 shared rule: 1 stricter")
@@ -189,11 +262,12 @@ def test_everything_can_be_done_from_the_keyboard(chromium, address):
     with opened(chromium, address) as page:
         keys = page.page.keyboard
         order = []
-        for _ in range(8):
+        for _ in range(10):
             keys.press("Tab")
             order.append(page.page.evaluate("() => document.activeElement.id"))
-        assert order[:4] == ["start", "tidy", "share", "source"]
-        assert "tab-test" in order[4:]
+        assert order[:3] == ["start", "tidy", "share"]
+        assert order[4:7] == ["add", "open", "source"]
+        assert "tab-test" in order[7:]
         page.source.focus()
         keys.press("Control+End")
         keys.type("\nhard rule broken { require never surprise }")
@@ -251,6 +325,11 @@ def test_the_page_is_accessible_and_fits(chromium, address, axe, screen, theme):
         page.compare("de", "nl", "bus_leaving")
         page.expect("#compare .result").to_contain_text("de is stricter")
         check(page, axe, f"{screen}-{theme}-compare")
+        title = "Three files: words, a depot, and one upon it"
+        page.page.get_by_label("Start from").select_option(title)
+        page.judge('{"objects": {}, "states": [{"speed": null}, {"reversing": true}]}')
+        page.expect("#judge .open").to_contain_text("depends on speed")
+        check(page, axe, f"{screen}-{theme}-files")
 
 
 def check(page, axe, name):

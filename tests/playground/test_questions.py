@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import rulec
 from tools.playground.__main__ import samples
 from tools.playground.parts import HERE, LIBRARIES
 
@@ -130,10 +131,96 @@ def test_what_is_wrong_is_an_answer_too(browser):
     assert verdict["findings"][0]["code"] == "R0501"
 
 
-def test_a_trace_of_which_not_all_is_known_is_refused(browser):
-    trace = '{"objects": {"c1": "cyclist"}, "states": [{"lateral_gap": {"c1": null}}]}'
-    question = {"source": ATLANTIS["source"], "book": "", "traces": trace}
-    assert "`rulec verify`" in browser.ask("judge", **question)["refused"]
+def test_a_violation_is_told_in_words_and_what_would_have_kept_the_rule(browser):
+    question = {"source": ATLANTIS["source"], "traces": ATLANTIS["traces"]}
+    cyclist, _ = browser.ask("judge", book="", **question)["result"]
+    told = cyclist["violations"][0]["explanation"]
+    assert told["in_words"] == (
+        "at state 1: ego is beside c1 and the lateral gap from ego to c1 is 1.2 m"
+    )
+    assert told["kept_if"] == ["kept if state 1 says: not beside(c) or lateral_gap(c) >= 1.5 m"]
+    margins = {part["formula"]: part["margins"] for part in told["parts"]}
+    assert margins["lateral_gap(c) < 1.5 m"] == ["10.0 >= 1.5", "1.2 < 1.5"]
+    assert margins["beside(c)"] == []
+
+
+GAP = """\
+rulebook gap
+use road
+hard rule keep_off(c: cyclist) {
+  require never (beside(c) and lateral_gap(c) < 1.5 m)
+}
+"""
+
+
+def test_of_a_trace_of_which_not_all_is_known_is_said_what_it_depends_on(browser):
+    trace = {
+        "objects": {"c1": "cyclist"},
+        "states": [{"station": {"c1": None}, "lateral_gap": {"c1": 1}}],
+    }
+    question = {"source": GAP, "book": "", "traces": json.dumps(trace)}
+    (verdict,) = browser.ask("judge", **question)["result"]
+    assert verdict["satisfied"] is None
+    (doubt,) = verdict["open"]
+    assert (doubt["rule"], doubt["binding"]) == ("keep_off", {"c": "c1"})
+    assert doubt["depends_on"] == ["station"]
+    assert doubt["in_words"].startswith("open, depends on station: violated if station = beside")
+    untold = {**trace, "told": ["lateral_gap"], "states": [{"lateral_gap": {"c1": 1}}]}
+    (verdict,) = browser.ask("judge", **{**question, "traces": json.dumps(untold)})["result"]
+    assert [(one["rule"], one["untold"]) for one in verdict["not_judged"]] == [
+        ("keep_off", ["station"])
+    ]
+
+
+def test_a_trace_that_is_cut_may_still_keep_a_duty(browser):
+    duty = "rulebook duty\nsignal horn\nhard rule honk { require eventually horn }\n"
+    trace = '{"objects": {}, "ends": "cut", "states": [{"horn": false}]}'
+    (verdict,) = browser.ask("judge", source=duty, book="", traces=trace)["result"]
+    assert [one["because"] for one in verdict["open"]] == [["not over"]]
+
+
+def test_numbers_within_bounds_are_explained_too(browser):
+    trace = {
+        "objects": {"c1": "cyclist"},
+        "states": [{"station": {"c1": "beside"}, "lateral_gap": {"c1": {"from": 1.0, "to": 1.4}}}],
+    }
+    question = {"source": GAP, "book": "", "traces": json.dumps(trace)}
+    (verdict,) = browser.ask("judge", **question)["result"]
+    (violation,) = verdict["violations"]
+    (gap,) = [fact for fact in violation["explanation"]["facts"] if "lateral" in fact["reads"]]
+    assert gap["values"] == [{"from": 1.0, "to": 1.4}]
+
+
+SEVERAL = SAMPLES["Three files: words, a depot, and one upon it"]
+DEPOT = {"source": SEVERAL["source"], "others": json.loads(SEVERAL["others"])}
+
+
+def test_a_rulebook_builds_upon_other_files(browser):
+    assert browser.ask("check", **DEPOT) == {"result": []}
+    assert browser.ask("test", **DEPOT)["result"]["passed"] == 4
+    for book, satisfied in (("", False), ("depot.rules", True)):
+        (verdict,) = browser.ask("judge", book=book, traces=SEVERAL["traces"], **DEPOT)["result"]
+        assert verdict["satisfied"] is satisfied
+    pairs = browser.ask("compare", first="", second="depot.rules", rule="", **DEPOT)["result"]
+    assert [pair["relation"] for pair in pairs["rules"]] == ["stricter", "equal"]
+    words, depot = DEPOT["others"]
+    assert browser.ask("check", source=words, others=[depot]) == {"result": []}
+    (finding,) = browser.ask("check", source=DEPOT["source"], others=[words])["result"]
+    assert "depot" in finding["message"]
+
+
+def test_a_compiled_rulebook_judges(browser, tmp_path):
+    folder = tmp_path / "books"
+    folder.mkdir()
+    (folder / "yard.rules").write_text(DEPOT["others"][0])
+    (folder / "depot.rules").write_text(DEPOT["others"][1])
+    rulec.write_compiled(rulec.compile(folder / "depot.rules"), tmp_path)
+    question = {"source": "", "traces": SEVERAL["traces"].replace("8", "11")}
+    compiled = {"depot.json": (tmp_path / "depot.json").read_text()}
+    (verdict,) = browser.ask("judge", book="depot.json", compiled=compiled, **question)["result"]
+    assert [one["rule"] for one in verdict["violations"]] == ["keep_to_the_limit"]
+    broken = browser.ask("judge", book="depot.json", compiled={"depot.json": "{}"}, **question)
+    assert broken["findings"]
 
 
 def test_a_mistake_of_its_own_is_told(browser):

@@ -54,23 +54,34 @@ def build(folder: Path) -> None:
 
 
 def samples() -> list[dict[str, str]]:
-    """What the page can start from: the rulebooks of the README and of the tutorial.
+    """What the page can start from: the rulebooks of the README, the tutorial and a how-to.
 
-    Each has traces that it judges, and a rulebook that it can be held against.
+    Each has traces that it judges, a rulebook that it can be held against, and as JSON the
+    ``others`` that it builds upon.
     """
     (quiet_lane,) = _blocks("README.md", "rulec")
     mistaken, *_ = _blocks("docs/tutorial.md", "rulec file")
     (atlantis,) = _blocks("docs/tutorial.md", "rulec untidy")
     (drives,) = _blocks("docs/tutorial.md", "json")
     paper = (ROOT / "docs/samples/traces.jsonl").read_text("utf-8")
-    return [
-        {"title": title, "source": source, "traces": traces, "against": against}
+    yard, depot, north = _blocks("docs/own_rulebooks.md", "rulec file")
+    ride = '{"objects": {}, "states": [{"speed": 4}, {"speed": 8}]}\n'
+    one_file = [
+        {"title": title, "source": source, "traces": traces, "against": against, "others": "[]"}
         for title, source, traces, against in (
             ("A first rule", quiet_lane, paper, "esterle2019"),
             ("A country: Atlantis", rulec.format(atlantis), drives, "vienna"),
             ("Atlantis, with a mistake", mistaken, drives, "vienna"),
         )
     ]
+    several = {
+        "title": "Three files: words, a depot, and one upon it",
+        "source": north,
+        "traces": ride,
+        "against": "depot.rules",
+        "others": json.dumps([yard, depot]),
+    }
+    return [*one_file, several]
 
 
 def _blocks(page: str, kind: str) -> list[str]:

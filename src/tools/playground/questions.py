@@ -1,8 +1,13 @@
 """What the page asks of rulec, which runs beside it in the browser.
 
 Questions and answers are JSON. What is found, run, judged and compared is told by the documents
-that the commands write with ``--output-format json``. Files are in the working directory, which is
-the page's own. Nothing here needs NumPy, Shapely or Spot.
+that the commands write with ``--output-format json``; to verdicts is added what the commands say in
+words. Files are in the working directory, which is the page's own. Nothing here needs NumPy,
+Shapely or Spot.
+
+A question has the ``source`` that it is about, and in ``others`` the sources beside it. A rulebook
+to judge by or to compare is named: "" is the ``source``, ``NAME.rules`` one of the ``others``,
+``NAME.json`` a compiled rulebook, whose text is in ``compiled``, ``NAME`` one that ships.
 """
 
 from __future__ import annotations
@@ -14,13 +19,17 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import rulec
-from rulec.monitoring.explain.explanation import explain
+from rulec.monitoring.explain.explanation import Explanation, explain
+from rulec.monitoring.explain.margins import Margin
 from rulec.report.findings import diagnostics_json
 from rulec.report.json_document import as_builtins
 from rulec.report.rulebooks import diff_json, rule_json
 from rulec.report.tests import example_json
 from rulec.report.verdicts import verdict_json
+from rulec.report.verdicts.verdict_report import open_in_words
+from rulec.report.verdicts.violation_table import decisive_state_in_words, kept_if
 from rulec.rulebook.files.search_path import find_rulebook
+from rulec.rulebook.vocabulary_phrases import phrases_of
 
 MOST_EXPLAINED = 20
 """So many violations of a trace are explained."""
@@ -29,27 +38,19 @@ Question: TypeAlias = Mapping[str, Any]
 Tell: TypeAlias = Callable[[float], object]
 
 _NAME = re.compile(r"^\s*(?:rulebook|vocabulary)\s+([\w-]+)", re.MULTILINE)
-_PARTLY_KNOWN = (
-    "This trace leaves open what some value is, or how it goes on. Such a trace is judged by "
-    "`rulec verify`; this page does without NumPy, which that takes."
-)
 
 
 def answer(text: str, tell: Tell = lambda _: None) -> str:
     """The answer to a question: its ``result``, or what is wrong.
 
-    That are ``findings``, as ``check`` has them; what the page cannot do, ``refused`` in words; or
-    a mistake of rulec's own, its ``failure``. ``tell`` is told how far a long answer has come.
+    That are ``findings``, as ``check`` has them, or a mistake of rulec's own, its ``failure``.
+    ``tell`` is told how far a long answer has come.
     """
     question = {**json.loads(text), "tell": tell}
     try:
         found: dict[str, Any] = {"result": _ANSWERS[question["ask"]](question)}
     except rulec.RulecError as error:
         found = {"findings": json.loads(diagnostics_json.as_json(error.diagnostics))}
-    except ModuleNotFoundError as error:
-        if error.name != "numpy":
-            raise
-        found = {"refused": _PARTLY_KNOWN}
     except Exception as error:
         found = {"failure": f"{type(error).__name__}: {error}"}
     return json.dumps(found)
@@ -66,7 +67,7 @@ def _check(question: Question) -> Any:
 
 
 def _format(question: Question) -> Any:
-    return rulec.format(question["source"], _name_of(question))
+    return rulec.format(question["source"], _name_of(question["source"]))
 
 
 def _rules(question: Question) -> Any:
@@ -81,7 +82,7 @@ def _test(question: Question) -> Any:
 
 
 def _judge(question: Question) -> Any:
-    """A verdict on each trace, violations explained, or why there is none."""
+    """A verdict on each trace, violations explained and doubts named, or why there is none."""
     rules = rulec.compile(_book(question, "book"))
     traces = Path("traces.jsonl" if question["traces"].lstrip()[:1] == "{" else "traces.csv")
     traces.write_text(question["traces"], "utf-8")
@@ -97,9 +98,29 @@ def _verdict(trace: rulec.Trace | rulec.RulecError, rules: rulec.CompiledRuleboo
         return {"findings": json.loads(diagnostics_json.as_json(error.diagnostics))}
     fitted = rules.fitted_to(trace.step_s)
     shown = verdict.violations[:MOST_EXPLAINED]
-    # Repairs take NumPy.
-    explained = [explain(violation, trace, fitted, repaired=False) for violation in shown]
-    return json.loads(verdict_json.as_json(verdict, rules, explained))
+    explained = [explain(violation, trace, fitted) for violation in shown]
+    document = json.loads(verdict_json.as_json(verdict, rules, explained))
+    phrases = phrases_of(rules)
+    for told, explanation in zip(document["violations"], explained, strict=False):
+        _add_words(told["explanation"], explanation, phrases)
+    for told, doubt in zip(document["open"], verdict.open, strict=True):
+        told["in_words"] = open_in_words(doubt, len(doubt.outcomes))
+    return document
+
+
+def _add_words(told: dict[str, Any], explanation: Explanation, phrases: Mapping[str, str]) -> None:
+    """Add the sentence of an explanation, what would have kept the rule, and by how much."""
+    told["in_words"] = decisive_state_in_words(explanation, phrases)
+    told["kept_if"] = kept_if(explanation) if explanation.looked_at is None else []
+    rows = zip(
+        [*told["facts"], *told["parts"]], [*explanation.facts, *explanation.parts], strict=True
+    )
+    for row, one in rows:
+        row["margins"] = [_margin(margin) for margin in one.margins]
+
+
+def _margin(margin: Margin | None) -> str:
+    return "" if margin is None else margin.sides
 
 
 def _compare(question: Question) -> Any:
@@ -111,21 +132,24 @@ def _compare(question: Question) -> Any:
 
 
 def _book(question: Question, key: str) -> str:
-    """A rulebook that ships, by its name, or the source that is being edited."""
-    return question[key] or _written(question)
+    """A rulebook that ships, by its name, or the file of one that is in the page."""
+    named, written = question[key], _written(question)
+    return named or written
 
 
 def _written(question: Question) -> str:
-    """The file with the source, called as its rulebook is."""
-    file = Path(_name_of(question))
-    for other in Path().glob("*.rules"):
-        other.unlink()
-    file.write_text(question["source"], "utf-8")
-    return str(file)
+    """The file with the source, called as its rulebook is; all others are beside it."""
+    for old in (*Path().glob("*.rules"), *Path().glob("*.json")):
+        old.unlink()
+    for source in (*question.get("others", ()), question["source"]):
+        Path(_name_of(source)).write_text(source, "utf-8")
+    for name, text in question.get("compiled", {}).items():
+        Path(name).write_text(text, "utf-8")
+    return _name_of(question["source"])
 
 
-def _name_of(question: Question) -> str:
-    found = _NAME.search(question["source"])
+def _name_of(source: str) -> str:
+    found = _NAME.search(source)
     return f"{found[1] if found else 'rulebook'}.rules"
 
 

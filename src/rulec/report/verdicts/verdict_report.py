@@ -82,8 +82,8 @@ def _open_lines(verdict: Verdict, rulebook: CompiledRulebook) -> Iterator[str]:
         yield f"  and {len(verdict.open) - MOST_VIOLATIONS:,} more open; --json has them all"
 
 
-def open_in_words(result: OpenVerdict) -> str:
-    """Why a verdict is open, and how it comes out by what it depends on."""
+def open_in_words(result: OpenVerdict, most: int = MOST_CASES) -> str:
+    """Why a verdict is open, and how it comes out by what it depends on, in so many cases."""
     parts = []
     if result.depends_on:
         parts.append(f"depends on {', '.join(result.depends_on)}")
@@ -98,10 +98,10 @@ def open_in_words(result: OpenVerdict) -> str:
     fewest = fewest_cases(result.outcomes)
     cases = [
         f"{case.outcome} if {' and '.join(_condition(*pair) for pair in case.when.items())}"
-        for case in fewest[:MOST_CASES]
+        for case in fewest[:most]
     ]
-    if len(fewest) > MOST_CASES:
-        cases.append(f"and {len(fewest) - MOST_CASES} more; --json has them all")
+    if len(fewest) > most:
+        cases.append(f"and {len(fewest) - most} more; --json has them all")
     text = f"open, {' and '.join(parts)}"
     return f"{text}: {', '.join(cases)}" if cases else text
 

@@ -75,39 +75,50 @@ def as_text(explanation: Explanation, options: TableOptions = DEFAULT_OPTIONS) -
     lines = [INDENT + line for line in wrap(visible(explanation.rule.says), width - len(INDENT))]
     rows = [[f"{title} " for title in ("state", *table.titles)], *columns]
     lines += table_lines(list(zip(*rows, strict=True)), indent=INDENT, ruled=(0, table.n_facts))
-    lines += [*_left_out(explanation, table), *_in_words(explanation, decisive, options)]
+    lines += [*_left_out(explanation, table), *_in_words(explanation, options)]
     return "\n".join([*lines, *_repair(explanation, width)])
 
 
-def _in_words(explanation: Explanation, decisive: int, options: TableOptions) -> Iterator[str]:
-    """What decides in the decisive state, as a sentence."""
+def _in_words(explanation: Explanation, options: TableOptions) -> Iterator[str]:
+    line = decisive_state_in_words(explanation, options.phrases)
+    if line:
+        yield from wrap(line, options.width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+
+
+def decisive_state_in_words(explanation: Explanation, phrases: Mapping[str, str]) -> str:
+    """What decides in the decisive state, as a sentence; empty if nothing can be said."""
+    decisive = explanation.states.index(explanation.decisive)
     facts = []
     for fact in explanation.facts:
         value = fact.values[decisive]
         if fact.decides and fact.objects is None and value is not None:
             number = value.middle if isinstance(value, Interval) else value
             facts.append((fact.text, number, shown(value)))
-    said = facts_in_words(facts, explanation.vocabulary, options.phrases)
-    if said:
-        line = f"at state {explanation.decisive}: {visible(said)}"
-        yield from wrap(line, options.width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+    said = facts_in_words(facts, explanation.vocabulary, phrases)
+    return f"at state {explanation.decisive}: {visible(said)}" if said else ""
 
 
 def _repair(explanation: Explanation, width: int) -> Iterator[str]:
     if explanation.looked_at is not None:
         first, last = explanation.looked_at
         yield f"{INDENT}(states {first}-{last} were looked at, of a long trace)"
-    elif explanation.repair is None:
-        yield f"{INDENT}no trace of as many states keeps it"
-    changes = [
-        (_states(list(run)), visible(says))
-        for says, run in itertools.groupby(repaired_states(explanation), key=itemgetter(1))
-    ]
-    for number, (states, says) in enumerate(changes[:MOST_CHANGES]):
-        line = f"{'and' if number else 'kept'} if {states}: {says}"
+        return
+    changes = kept_if(explanation)
+    for line in changes[:MOST_CHANGES]:
         yield from wrap(line, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
     if len(changes) > MOST_CHANGES:
         yield f"{INDENT}… and {len(changes) - MOST_CHANGES:,} more; --json has them all"
+
+
+def kept_if(explanation: Explanation) -> list[str]:
+    """What states would have had to say for the rule to be kept, a line for each stretch."""
+    if explanation.repair is None:
+        return ["no trace of as many states keeps it"]
+    changes = itertools.groupby(repaired_states(explanation), key=itemgetter(1))
+    return [
+        f"{'and' if number else 'kept'} if {_states(list(run))}: {visible(says)}"
+        for number, (says, run) in enumerate(changes)
+    ]
 
 
 def _states(run: Sequence[tuple[int, str]]) -> str:

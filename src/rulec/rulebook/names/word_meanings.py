@@ -115,18 +115,19 @@ def _stems(text: str) -> Iterator[str]:
     """The parts of a name or a text, of those that mean the same always the same one."""
     main_of, longest = _by_form()
     parts = [part.casefold() for part in _PART.findall(text)]
+    stems = [_stem(part) for part in parts]
     at = 0
     while at < len(parts):
         for size in range(min(longest, len(parts) - at), 0, -1):
-            form = "_".join(parts[at : at + size])
-            main = main_of.get(form) or main_of.get(_joined(form))
+            form, stem = ("_".join(one[at : at + size]) for one in (parts, stems))
+            main = main_of.get(form) or main_of.get(stem)
             if main is not None:
                 yield main
                 at += size
                 break
         else:
             if parts[at] not in _EMPTY and not parts[at].isdigit():
-                yield _stem(parts[at])
+                yield stems[at]
             at += 1
 
 
@@ -134,6 +135,7 @@ def _joined(form: str) -> str:
     return "_".join(_stem(part) for part in form.split("_"))
 
 
+@cache
 def _stem(part: str) -> str:
     """A word without its ending: `crossings` and `crossed` are `cross`."""
     for ending in _ENDINGS:

@@ -23,8 +23,11 @@ MOST_CHARACTERS = 1_000_000
 _RUN_ON = 21
 """A text in quotes that runs on is looked for in no more lines than these."""
 
-_MOST_GROWTH = 8
+_MOST_GROWTH = 64
 """A source that has become so many times longer than its text is begun anew."""
+
+_LITTLE_GROWTH = 8
+"""In a pause it is begun anew already when it is so many times longer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +169,7 @@ def _assembled(source: GrowingSource, segments: Sequence[Segment], text: str) ->
 
 def _edited(before: ParsedText, source: GrowingSource, text: str) -> ParsedText | None:
     """The text after an edit; None if all of it has to be read."""
-    if len(source.text) > _MOST_GROWTH * (len(text) + 10_000):
+    if _has_grown(source, text, _MOST_GROWTH):
         return None
     old = before.segments
     above = _alike(old, text)
@@ -193,6 +196,17 @@ def _edited(before: ParsedText, source: GrowingSource, text: str) -> ParsedText 
             return None
         first = _first(old, max(0, first - 3))
         last = _last(old, min(len(old), last + 3))
+
+
+def renewed(parsed: ParsedText) -> ParsedText:
+    """The text parsed as a whole, if its source has grown much: for a pause in typing."""
+    if not _has_grown(parsed.source, parsed.text, _LITTLE_GROWTH):
+        return parsed
+    return parsed_text(Source(parsed.source.name, parsed.text))
+
+
+def _has_grown(source: Source, text: str, times: int) -> bool:
+    return len(source.text) > times * (len(text) + 10_000)
 
 
 def _alike(segments: Sequence[Segment], text: str) -> int:

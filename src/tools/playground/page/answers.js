@@ -8,11 +8,12 @@ const lines = (...texts) => texts.filter(Boolean).map((text) => element("p", {},
 export function finding(one, onShow, onFix) {
   const place = one.place?.line ? `line ${one.place.line}` : "";
   const inSource = one.isOwn && place;
+  const file = one.isShown ? "" : one.place?.file;
   const where = inSource
-    ? element("button", { type: "button", class: "place", onclick: () => onShow(one.place) }, place)
+    ? element("button", { type: "button", class: "place", onclick: () => onShow(one.place) }, [file, place].filter(Boolean).join(", "))
     : element("span", { class: "place" }, [one.place?.file?.split("/").at(-1), place].filter(Boolean).join(", "));
   const fix =
-    one.fix && one.isOwn
+    one.fix && one.isShown
       ? element("button", { type: "button", onclick: () => onFix(one.fix) }, one.fix.text ? `Write ${quoted(one.fix.text)}` : "Remove it")
       : null;
   return element(
@@ -31,10 +32,9 @@ const quoted = (text) => (text.trim().length > 40 ? `“${text.trim().slice(0, 4
 const said = (text) =>
   text.split("`").map((part, n) => (n % 2 ? element("code", {}, part) : part));
 
-/** What is wrong with a question: findings, what cannot be done here, or a failure. */
+/** What is wrong with a question: findings, or a failure. */
 export function trouble(answer) {
   if (answer.findings) return element("ul", { class: "findings" }, answer.findings.map((one) => finding(one)));
-  if (answer.refused) return element("p", {}, ...said(answer.refused));
   return element("p", { class: "error" }, `rulec itself has failed, which is a mistake of ours: ${answer.failure}`);
 }
 
@@ -102,48 +102,73 @@ export const rules = ({ rules: listed, rulebook }) =>
       ),
     );
 
-/** A verdict on a trace. */
+/** A verdict on a trace, what is open and what cannot be judged. */
 export function verdict(one) {
   if (one.findings) return trouble(one);
-  const word = one.satisfied ? (one.violations.length ? "satisfied, but for soft rules" : "satisfied") : "violated";
+  const kept = one.violations.length ? "satisfied, but for soft rules" : "satisfied";
+  const word = { true: kept, false: "violated", null: "open" }[one.satisfied];
   return element(
     "article",
-    { class: one.satisfied ? "kept" : "lost" },
+    { class: { true: "kept", false: "lost", null: "undecided" }[one.satisfied] },
     element("h3", {}, `${one.trace}: `, element("b", {}, word)),
     ...one.violations.map(violation),
+    ...one.open.map(doubt),
+    ...unjudged(one.not_judged),
   );
+}
+
+const doubt = (one) =>
+  element("p", { class: "open" }, `${one.strength} rule `, element("b", {}, one.rule), `${about(one.binding)}: ${one.in_words}`);
+
+/** The rules that cannot be judged, by what is not told. */
+function unjudged(listed) {
+  const reasons = new Map();
+  for (const { rule, untold, why } of listed) {
+    const reason = why || `the trace does not tell ${untold.join(", ")}`;
+    reasons.set(reason, [...(reasons.get(reason) ?? []), rule]);
+  }
+  if (!reasons.size) return [];
+  const items = [...reasons].map(([reason, names]) => element("li", {}, `${names.join(", ")}: ${reason}`));
+  return [element("details", {}, element("summary", {}, `${counted(listed.length, "rule")} not judged`), element("ul", { class: "plain" }, items))];
 }
 
 const bound = (binding) =>
   Object.entries(binding).map(([variable, object]) => `${variable} = ${object}`).join(", ");
 
+const about = (binding) => (bound(binding) ? ` for ${bound(binding)}` : "");
+
 function violation(one) {
   const told = one.explanation;
   const after = one.step === null ? "violated by how it ends" : `cannot be kept any more after state ${one.step}`;
-  const about = bound(one.binding) ? ` for ${bound(one.binding)}` : "";
   return element(
     "div",
     { class: "violation" },
-    element("p", {}, `${one.strength} rule `, element("b", {}, one.rule), told?.cite ? ` [${told.cite}]` : "", `${about}: ${after}`),
+    element("p", {}, `${one.strength} rule `, element("b", {}, one.rule), told?.cite ? ` [${told.cite}]` : "", `${about(one.binding)}: ${after}`),
     told?.says ? element("p", { class: "says" }, told.says) : null,
     told ? explained(told) : null,
+    told?.in_words ? element("p", {}, told.in_words) : null,
+    ...(told?.kept_if ?? []).map((text) => element("p", { class: "repair" }, text)),
   );
 }
 
 function explained({ states, decisive, facts, parts }) {
   const at = states.indexOf(decisive);
   const rows = [
-    ...facts.map(({ reads, unit, values, changed }) => [`${reads}${unit ? ` in ${unit}` : ""}`, values, changed, 0]),
-    ...parts.map(({ formula, values, changed, depth }) => [formula, values, changed, depth]),
+    ...facts.map(({ reads, unit, ...row }) => ({ ...row, title: `${reads}${unit ? ` in ${unit}` : ""}`, depth: 0 })),
+    ...parts.map(({ formula, ...row }) => ({ ...row, title: formula })),
   ];
   return table(
     "State by state; * marks what changed when the rule was lost",
     states.map(String),
-    rows.map(([title, values, changed, depth], n) => ({
+    rows.map(({ title, depth, values, margins, changed }, n) => ({
       title,
       depth,
       begins: n === facts.length,
-      cells: values.map((value, place) => shown(value) + (changed && place === at && n < facts.length ? "*" : "")),
+      // Beside a truth value stands by how much.
+      cells: values.map((value, place) => {
+        const mark = changed && place === at && n < facts.length ? "*" : "";
+        return [shown(value), margins[place]].filter(Boolean).join(" ") + mark;
+      }),
     })),
     at,
   );

@@ -4,6 +4,7 @@ import { comparison, examples, finding, rules, trouble, verdict } from "./answer
 import { Asker } from "./asker.js";
 import { byId, counted, element } from "./dom.js";
 import { Editor, colouring } from "./editor.js";
+import { Files, nameOf } from "./files.js";
 import { packed, unpacked } from "./link.js";
 
 const PAUSE_MS = 250;
@@ -25,9 +26,10 @@ let pause;
 let tab = "test";
 let isSound;
 let asked = {};
-let own = new Set();
 let written = "";
 const editor = new Editor(byId("source"), byId("shown"), edited);
+const files = new Files(byId("files"), byId("remove"), editor, filesChanged);
+const compiled = {};
 const traces = byId("traces");
 const asker = new Asker(stateChanged);
 
@@ -58,22 +60,24 @@ function edited() {
 }
 
 async function look() {
+  files.keep();
   void keepLink();
   const source = editor.text;
-  const answer = await asker.ask({ ask: "check", source });
+  const answer = await asker.ask({ ask: "check", source, others: files.others() });
   if (!answer || source !== editor.text) return;
   const findings = answer.result ?? answer.findings ?? [];
-  const file = `${/^\s*(?:rulebook|vocabulary)\s+([\w-]+)/m.exec(source)?.[1] ?? "rulebook"}.rules`;
-  for (const one of findings) one.isOwn = one.place?.file === file && one.place.line !== null;
-  editor.mark(findings.filter((one) => one.isOwn));
+  for (const one of findings) {
+    one.isOwn = isOwn(one.place ?? {}) && one.place.line !== null;
+    one.isShown = one.place?.file === nameOf(source);
+  }
+  editor.mark(findings.filter((one) => one.isOwn && one.isShown));
   const errors = findings.filter((one) => one.severity === "error").length;
   const warnings = findings.length - errors;
   isSound = errors === 0 && !answer.failure;
-  own = new Set([file]);
   const counts = [errors && counted(errors, "error"), warnings && counted(warnings, "warning")];
   byId("count").textContent = counts.filter(Boolean).join(", ") || "nothing found";
   byId("found").replaceChildren(
-    ...(answer.failure ? [trouble(answer)] : findings.map((one) => finding(one, (place) => editor.show(place), mend))),
+    ...(answer.failure ? [trouble(answer)] : findings.map((one) => finding(one, (place) => files.show(place), mend))),
   );
   if (isSound) askTab();
   else outdated();
@@ -102,9 +106,9 @@ function outdated() {
 // The four questions.
 
 const QUESTIONS = {
-  test: () => ({ source: editor.text }),
-  rules: () => ({ source: editor.text }),
-  judge: () => ({ source: editor.text, book: value("judge-book"), traces: traces.value }),
+  test: () => files.rulebook(),
+  rules: () => files.rulebook(),
+  judge: () => ({ ...files.rulebook(), book: value("judge-book"), traces: traces.value, compiled }),
 };
 
 const value = (id) => (byId(id).value === OWN ? "" : byId(id).value);
@@ -130,24 +134,23 @@ async function answered(kind, question, key) {
     delete asked[kind];
     return;
   }
-  if (!("result" in answer)) put(kind, answer.refused ? "Not judged." : "There is no answer.", [trouble(answer)]);
+  if (!("result" in answer)) put(kind, "There is no answer.", [trouble(answer)]);
   else put(kind, ...ANSWERS[kind](answer.result));
 }
 
-const isOwn = (place) => own.has(place.file);
+const isOwn = (place) => files.has(place.file);
 
 const ANSWERS = {
   test: (run) => [
     `${counted(run.examples.length, "example")}: ${run.passed} passed, ${run.failed} failed`,
-    examples(run, isOwn, (place) => editor.show(place), insertion),
+    examples(run, isOwn, (place) => files.show(place), insertion),
   ],
   rules: (document) => [counted(document.rules.length, "rule"), rules(document)],
   judge: (verdicts) => {
-    const kept = verdicts.filter((one) => one.satisfied).length;
+    const n = (satisfied) => verdicts.filter((one) => one.satisfied === satisfied).length;
     const wrong = verdicts.filter((one) => one.findings).length;
-    const lost = verdicts.length - kept - wrong;
-    const rest = wrong ? `, ${wrong} not judged` : "";
-    return [`${counted(verdicts.length, "trace")}: ${kept} satisfied, ${lost} violated${rest}`, verdicts.map(verdict)];
+    const rest = [n(null) && `, ${n(null)} open`, wrong && `, ${wrong} not judged`].filter(Boolean).join("");
+    return [`${counted(verdicts.length, "trace")}: ${n(true)} satisfied, ${n(false)} violated${rest}`, verdicts.map(verdict)];
   },
   compare: (diff) => {
     const n = (relation) => diff.rules.filter((pair) => pair.relation === relation).length;
@@ -166,10 +169,15 @@ function put(kind, summary, nodes) {
 
 /** A button that writes a missing example into its rule. */
 function insertion(rule, example) {
-  const head = new RegExp(`\\brule\\s+${rule}\\b`).exec(editor.text);
-  const end = head ? editor.text.indexOf("\n}", head.index) : -1;
+  const { source } = files.rulebook();
+  const head = new RegExp(`\\brule\\s+${rule}\\b`).exec(source);
+  const end = head ? source.indexOf("\n}", head.index) : -1;
   if (end < 0) return null;
-  return element("button", { type: "button", onclick: () => editor.replace(end, end, `\n  ${example}`) }, "Insert it");
+  const insert = () => {
+    files.show({ file: nameOf(source) });
+    editor.replace(end, end, `\n  ${example}`);
+  };
+  return element("button", { type: "button", onclick: insert }, "Insert it");
 }
 
 /** Judge a trace that a comparison has found. */
@@ -182,7 +190,8 @@ function tried(trace) {
 
 function compare(event) {
   event.preventDefault();
-  const question = { ask: "compare", source: editor.text, first: value("first"), second: value("second"), rule: byId("rule").value.trim() };
+  files.keep();
+  const question = { ask: "compare", ...files.rulebook(), first: value("first"), second: value("second"), rule: byId("rule").value.trim() };
   const key = JSON.stringify(question);
   asked.compare = key;
   put("compare", "Comparing …", []);
@@ -227,6 +236,9 @@ function listen() {
   byId("tidy").addEventListener("click", tidy);
   byId("share").addEventListener("click", share);
   byId("start").addEventListener("change", started);
+  byId("add").addEventListener("click", () => files.add());
+  byId("remove").addEventListener("click", () => files.remove());
+  byId("open").addEventListener("change", opened);
   window.addEventListener("hashchange", () => void fromLink());
 }
 
@@ -239,10 +251,50 @@ async function tidy() {
   else editor.replace(0, source.length, answer.result);
 }
 
-// Links: the address says at all times what is on the page.
+// Files: what is shown is one of several, which stand side by side.
+
+function filesChanged() {
+  listBooks();
+  clearTimeout(pause);
+  void look();
+}
+
+/** Files of the user's own disk: sources, compiled rulebooks, traces. */
+async function opened() {
+  const input = byId("open");
+  for (const file of input.files) {
+    const text = await file.text();
+    if (file.name.endsWith(".rules")) files.add(text);
+    else if (file.name.endsWith(".json")) {
+      compiled[file.name] = text;
+      listBooks();
+      byId("judge-book").value = file.name;
+      show("judge");
+    } else {
+      traces.value = text;
+      show("judge");
+    }
+  }
+  input.value = "";
+  edited();
+}
+
+/** The rulebooks that a question can be about: those here, and those that ship. */
+function listBooks() {
+  const named = (name) => element("option", { value: name }, name);
+  for (const id of ["judge-book", "first", "second"]) {
+    const before = byId(id).value;
+    const here = [...files.otherBooks(), ...(id === "judge-book" ? Object.keys(compiled) : [])];
+    byId(id).replaceChildren(element("option", { value: OWN }, OWN), ...here.map(named), ...options(rulebooks));
+    byId(id).value = before;
+    if (!byId(id).value) byId(id).value = OWN;
+  }
+}
+
+// Links: the address says at all times what is on the page, but for what was opened compiled.
 
 async function keepLink() {
-  const content = { source: editor.text, traces: traces.value, tab };
+  const content = { source: editor.text, others: JSON.stringify(files.others()), traces: traces.value, tab };
   for (const id of ["judge-book", "first", "second", "rule"]) content[id] = byId(id).value;
   written = `#${await packed(content)}`;
   history.replaceState(null, "", written);
@@ -260,7 +312,8 @@ async function fromLink() {
 }
 
 function fill(content) {
-  editor.text = content.source ?? "";
+  files.fill(content.source ?? "", content.others);
+  listBooks();
   traces.value = content.traces ?? "";
   for (const id of ["judge-book", "first", "second"]) {
     const has = [...byId(id).options].some((option) => option.value === content[id]);
@@ -307,9 +360,7 @@ byId("start").append(
   element("optgroup", { label: "Samples" }, samples.map(({ title }) => element("option", { value: title }, title))),
   element("optgroup", { label: "Rulebooks that ship" }, options(rulebooks)),
 );
-for (const id of ["judge-book", "first", "second"]) {
-  byId(id).append(element("option", { value: OWN }, OWN), ...options(rulebooks));
-}
+listBooks();
 listen();
 if (!(await fromLink())) {
   byId("start").value = samples[0].title;
