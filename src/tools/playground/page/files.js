@@ -82,8 +82,10 @@ export class Files {
   /** Show a place, in whatever file it is. */
   show(place) {
     this.keep();
+    // Of two of the same name the one that is shown counts, as in questions.
+    const isShown = nameOf(this.texts[this.at]) === place.file;
     const at = this.texts.findIndex((text) => nameOf(text) === place.file);
-    if (at >= 0 && at !== this.at) this.choose(at);
+    if (at >= 0 && !isShown) this.choose(at);
     if (place.line) this.editor.show(place);
   }
 
