@@ -112,11 +112,10 @@ def _add_words(told: dict[str, Any], explanation: Explanation, phrases: Mapping[
     """Add the sentence of an explanation, what would have kept the rule, and by how much."""
     told["in_words"] = decisive_state_in_words(explanation, phrases)
     told["kept_if"] = kept_if(explanation) if explanation.looked_at is None else []
-    rows = zip(
-        [*told["facts"], *told["parts"]], [*explanation.facts, *explanation.parts], strict=True
-    )
-    for row, one in rows:
-        row["margins"] = [_margin(margin) for margin in one.margins]
+    margins = [fact.margins for fact in explanation.facts]
+    margins += [part.margins for part in explanation.parts]
+    for row, by_state in zip([*told["facts"], *told["parts"]], margins, strict=True):
+        row["margins"] = [_margin(margin) for margin in by_state]
 
 
 def _margin(margin: Margin | None) -> str:
