@@ -8,6 +8,7 @@ from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.loader import diagnose
 from rulec.syntax import parse
+from rulec.syntax.incremental import parsed_text
 from rulec.syntax.scanner import decode
 from support.generators.random_edits import edited
 
@@ -73,6 +74,21 @@ def test_lines_end_as_their_editor_ends_them(tmp_path):
         text = hidden.replace("\n", ends)
         workspace = EditorWorkspace((tmp_path,))
         assert workspace.check(workspace.open(path.as_uri(), text)).findings == alone.findings
+
+
+def test_a_pause_changes_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr(parsed_text, "_LITTLE_GROWTH", 0)
+    path = tmp_path / "small.rules"
+    workspace = EditorWorkspace((tmp_path,))
+    random, text = Random(3), BOOK
+    for _ in range(8):
+        document = workspace.open(path.as_uri(), text)
+        before = workspace.check(document)
+        workspace.rest()
+        again = workspace.check(document)
+        assert again.parsed is not before.parsed
+        assert (again.findings, again.parsed.file) == (before.findings, before.parsed.file)
+        text = edited(text, BOOK, random) or BOOK
 
 
 @pytest.mark.long

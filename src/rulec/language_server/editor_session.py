@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 from collections.abc import Iterable
 
 from lsprotocol import types as lsp
@@ -23,6 +24,11 @@ from rulec.version import __version__
 _IDLE_S = 0.3
 """So long after the last edit the other open documents are checked, which may depend on it."""
 
+REST_S = 2.0
+"""So long after it is done what would make a keystroke slow."""
+
+_NEVER = 1_000_000
+
 
 class EditorSession(LanguageServer):
     """A server with what it knows of its editor."""
@@ -32,7 +38,7 @@ class EditorSession(LanguageServer):
         self.editor = EditorWorkspace()
         self.found: dict[str, dict[str, list[Diagnostic]]] = {}
         self.answers = KnownAnswers()
-        self.waiting: asyncio.TimerHandle | None = None
+        self.waiting: list[asyncio.TimerHandle] = []
 
     def check(self, document: Document) -> CheckedDocument | None:
         """Check a document and publish what is found, in whatever file."""
@@ -68,10 +74,18 @@ class EditorSession(LanguageServer):
 
     def check_others_later(self, uri: str) -> None:
         """Check what is open besides a document, once nobody types any more."""
-        if self.waiting is not None:
-            self.waiting.cancel()
+        for timer in self.waiting:
+            timer.cancel()
         loop = asyncio.get_running_loop()
-        self.waiting = loop.call_later(_IDLE_S, self.check_others, uri)
+        self.waiting = [
+            loop.call_later(_IDLE_S, self.check_others, uri),
+            loop.call_later(REST_S, self.rest),
+        ]
+
+    def rest(self) -> None:
+        """Use a pause in typing."""
+        self.editor.rest()
+        gc.collect()
 
     def names(self, uri: str) -> tuple[DocumentNames, TextPositions] | None:
         """The names of a document, and the positions of its text."""
@@ -83,3 +97,9 @@ class EditorSession(LanguageServer):
         except RulecError:
             return None
         return None if names is None else (names, self.editor.positions(document.text))
+
+
+def collect_in_pauses() -> None:
+    """Leave old garbage to pauses: to look for it takes 0.1 s, which one would notice."""
+    young, middle, _ = gc.get_threshold()
+    gc.set_threshold(young, middle, _NEVER)

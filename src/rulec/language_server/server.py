@@ -9,7 +9,7 @@ from pygls.exceptions import JsonRpcInvalidParams
 
 from rulec.diagnostics import RulecError, Source
 from rulec.language_server.document_outline import folds, outline
-from rulec.language_server.editor_session import EditorSession
+from rulec.language_server.editor_session import EditorSession, collect_in_pauses
 from rulec.language_server.lens_commands import add_commands
 from rulec.language_server.lenses.code_lenses import code_lenses
 from rulec.language_server.lenses.inlay_hints import inlay_hints
@@ -226,4 +226,5 @@ def _between_the_lines(server: EditorSession) -> None:
 
 def serve() -> None:
     """Serve one editor over standard input and output, until it says to exit."""
+    collect_in_pauses()
     language_server().start_io()

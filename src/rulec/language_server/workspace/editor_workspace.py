@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -23,7 +23,8 @@ from rulec.rulebook.resolution_memory import ResolutionMemory, ResolvedTrees
 from rulec.rulebook.resolve import names_of, resolve_vocabulary
 from rulec.settings import search_path
 from rulec.syntax import decode
-from rulec.syntax.incremental.parsed_text import ParsedText, parsed_text
+from rulec.syntax.incremental.parsed_text import ParsedText, parsed_text, renewed
+from rulec.vocabulary.pint_units import pint_unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +153,17 @@ class EditorWorkspace:
             resolved = document.memory.resolved(trees)
         found = [*parsed.mistakes, *map(parsed.in_text, resolved.findings)]
         return CheckedDocument(name, path, parsed, resolved, said(trees, found, source))
+
+    def rest(self) -> None:
+        """Do in a pause what would make a keystroke slow, so that it need not be done then."""
+        # Pint, half a second, is asked for units that are not known.
+        pint_unit("")
+        for document in list(self.documents.values()):
+            parsed = document.parsed and renewed(document.parsed)
+            if parsed is not document.parsed:
+                document.parsed = parsed
+                with suppress(RulecError):
+                    self.check(document)
 
     def positions(self, text: str) -> TextPositions:
         """The positions of a text as this editor counts them."""

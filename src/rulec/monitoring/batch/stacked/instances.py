@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rulec.monitoring.batch.stacked.stack import Places, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
-from rulec.monitoring.uncertainty.state_letters.letter_sets import Numbers
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace.plain_arrays import distinct
 
 _MOST_TOGETHER = 1 << 20

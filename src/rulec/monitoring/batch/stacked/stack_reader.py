@@ -25,7 +25,7 @@ from rulec.monitoring.batch.columns.column_reader import (
 )
 from rulec.monitoring.batch.stacked.stack import Places, Stack, StackColumn
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
-from rulec.monitoring.uncertainty.state_letters.letter_sets import Numbers
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace.trace_arrays import Flags
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Enumeration, Signal

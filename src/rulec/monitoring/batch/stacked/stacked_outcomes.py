@@ -16,7 +16,7 @@ from rulec.monitoring.batch.stacked.instances import Instances, doubtful_instanc
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.batch.uncertain.partial_reader import number_of_value
-from rulec.monitoring.uncertainty.state_letters.letter_sets import Numbers
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import Answer

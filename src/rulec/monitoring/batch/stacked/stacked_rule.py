@@ -21,7 +21,7 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     NothingKnown,
     local_reads,
 )
-from rulec.monitoring.uncertainty.state_letters.letter_sets import LetterSets
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import LetterSets
 from rulec.monitoring.uncertainty.state_letters.related_facts import (
     is_of_one,
     related_facts,

@@ -24,7 +24,7 @@ from rulec.monitoring.batch.columns.column_reader import (
     digits_of_count,
     digits_of_sum,
 )
-from rulec.monitoring.uncertainty.state_letters.letter_sets import Numbers
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace import Value
 from rulec.trace.trace_columns import Array, Key, TraceColumns
 from rulec.vocabulary import Enumeration, Signal, Vocabulary

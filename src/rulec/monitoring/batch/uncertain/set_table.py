@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
 from rulec.monitoring.batch.machines.joint_machine import JointMachine
-from rulec.monitoring.uncertainty.state_letters.letter_sets import LetterSets, Numbers
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import LetterSets, Numbers
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 
 MOST_ENTRIES = 1 << 18

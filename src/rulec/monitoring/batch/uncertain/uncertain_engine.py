@@ -34,7 +34,7 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     local_reads,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_classes import RuleLetters
-from rulec.monitoring.uncertainty.state_letters.letter_sets import Numbers
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine

@@ -1,0 +1,1 @@
+"""A session of typing into Germany's rulebook, stored key by key."""
