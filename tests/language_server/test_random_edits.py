@@ -76,6 +76,20 @@ def test_lines_end_as_their_editor_ends_them(tmp_path):
         assert workspace.check(workspace.open(path.as_uri(), text)).findings == alone.findings
 
 
+def test_what_stands_outside_of_rules_depends_on_the_last_one_however_far_above(tmp_path):
+    path = tmp_path / "small.rules"
+    signals = "".join(f"signal p{number}\n" for number in range(30))
+    without = f"rulebook small\n{signals}\n  require never p1\n"
+    workspace = EditorWorkspace((tmp_path,))
+    workspace.check(workspace.open(path.as_uri(), without))
+    text = without.replace("small\n", "small\nhard rule r { require never p2 }\n")
+    checked = workspace.check(workspace.open(path.as_uri(), text))
+    alone = diagnose(str(path), text.encode(), path)
+    assert checked.findings == alone.findings
+    (outside,) = [one for one in alone.findings if one.code == "R0109"]
+    assert [label.place.line for label in outside.labels] == [2]
+
+
 def test_a_pause_changes_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(parsed_text, "_LITTLE_GROWTH", 0)
     path = tmp_path / "small.rules"

@@ -42,7 +42,9 @@ class Segment:
         return self.text.count("\n")
 
     def reaches_before(self) -> bool:
-        """Tell whether a mistake of it is shown above its own lines."""
+        """Tell whether a mistake of it depends on what is above: it shows it, or found nothing."""
+        if any(not mistake.labels for mistake in self.split):
+            return True
         return any(
             place.line is not None and place.line < self.line
             for mistake in (*self.split, *self.read)
