@@ -70,6 +70,31 @@ def test_a_quick_fix_mends_what_its_message_is_about(editor, wrong, title):
         ]
 
 
+def test_either_side_of_traffic_is_offered(editor):
+    text = (
+        "rulebook sided\nuse road\n"
+        "hard rule r(v: vehicle) { require never (beside(v) and near_side_of(v)) }\n"
+    )
+    found = fixes(editor, text, "sided.rules")
+    assert list(found) == ["Say `traffic right`", "Say `traffic left`"]
+    assert found["Say `traffic left`"].startswith("rulebook sided\ntraffic left\n")
+
+
+def test_a_comment_that_allows_nothing_is_left_out(editor):
+    text = TOWN.replace("slow\n", "slow  # rulec: allow R0208 because it is used later\n", 1)
+    (mended,) = fixes(editor, text, "allowing.rules").values()
+    assert mended == TOWN.replace("slow\n", "slow  \n", 1)
+
+
+def test_a_rule_of_the_book_below_is_overridden(editor):
+    text = (
+        "rulebook again\nextends vienna\nhard rule near_side_passing {\n"
+        '  unless stop_sign\n  cite "here"\n}\n'
+    )
+    title = "Write `override rule near_side_passing`"
+    assert fixes(editor, text, "again.rules")[title] == text.replace("hard rule", "override rule")
+
+
 def hints(editor, name, text):
     editor.open(name, text)
     params = everywhere(editor, lsp.InlayHintParams, name, text)
@@ -166,7 +191,10 @@ def test_a_lens_says_a_rule_in_plain_english(watched):
 def test_a_lens_compares_a_rule_with_its_parent(watched):
     compare = lenses(watched)["being_overtaken"][2]
     assert compare.title == "stricter or laxer than `vienna`?"
-    assert "lenses compared to vienna" in execute(watched, compare)
+    told = execute(watched, compare)
+    assert "lenses compared to vienna" in told
+    assert "vienna forbids, lenses allows\n" in told
+    assert "urban_traffic" in told.split("vienna forbids, lenses allows")[1]
     assert lenses(watched)["being_overtaken"][2].title == "laxer than `vienna`: see a trace"
 
 

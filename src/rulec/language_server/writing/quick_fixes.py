@@ -24,6 +24,10 @@ _QUOTED = re.compile(r"`([^`…]+)`")
 _MOST_TRIED = 8
 """So many edits are tried for one message: each is checked as if it had been typed."""
 
+_EITHER = "Say `traffic "
+"""What begins so is offered beside another one that would do, for only the author knows."""
+
+_RULE_HEAD = re.compile(r"(?:hard|soft)\s+rule\s+$")
 _DELETING = ("delete", "leave", "keep one", "exchange")
 
 
@@ -64,10 +68,13 @@ def _for(
         change = TextChange(*_bounds(finding.fix.place, positions), finding.fix.text)
         yield QuickFix(f"Write `{_short(finding.fix.text)}`", finding, (change,))
         return
+    is_mended = False
     for title, change in list(_candidates(finding, place, positions))[:_MOST_TRIED]:
+        if is_mended and not title.startswith(_EITHER):
+            continue
         if trial.mends(change):
             yield QuickFix(title, finding, (change,))
-            return
+            is_mended = True
 
 
 def _bounds(place: SourceLocation, positions: TextPositions) -> tuple[int, int]:
@@ -95,9 +102,15 @@ def _candidates(
         if word == text[start:end]:
             continue
         first_word, _, rest = word.partition(" ")
-        if first_word == "use" and rest:
+        if first_word in ("use", "traffic") and rest:
             head = text.find("\n") + 1 or len(text)
-            yield f"Use `{rest}`", TextChange(head, head, f"{word}\n")
+            title = f"Use `{rest}`" if first_word == "use" else f"Say `{word}`"
+            yield title, TextChange(head, head, f"{word}\n")
+            continue
+        if first_word == "override":
+            line = text.rfind("\n", 0, start) + 1
+            if written := _RULE_HEAD.search(text, line, start):
+                yield f"Write `{word}`", TextChange(*written.span(), "override rule ")
             continue
         if first_word in DECLARATION_WORDS and rest:
             line = _line_of_item(text, start)
@@ -126,6 +139,9 @@ def _misspelt(word: str, text: str, start: int) -> Iterator[tuple[str, TextChang
 
 
 def _deletions(text: str, start: int, end: int) -> Iterator[tuple[str, TextChange]]:
+    if text.startswith("#", start):
+        line = text.find("\n", start)
+        yield "Leave out the comment", TextChange(start, len(text) if line < 0 else line, "")
     behind = re.compile(r"\s*,\s*").match(text, end)
     before = re.search(r"\s*,\s*$", text[:start])
     shown = _short(text[start:end])
