@@ -10,7 +10,7 @@ from textwrap import dedent
 
 from rulec.code_generation.c_tables import rule_tables, text_tables, type_tables
 from rulec.code_generation.input_fields import RULE, TYPE
-from rulec.code_generation.monitor_layout import MonitorLayout
+from rulec.code_generation.monitor_layout import TOGETHER, MonitorLayout
 from rulec.code_generation.written_names import in_comment, prefix_of
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES
@@ -214,10 +214,17 @@ def default_of(item: Declaration) -> bool | float | str | None:
 
 
 def _sizes(layout: MonitorLayout) -> Iterator[str]:
-    for name, size in layout.array_sizes.items():
+    sizes = layout.array_sizes
+    for name, size in sizes.items():
         if name not in ("RULES", "TYPES", "SEATS"):
             yield f"#define RULEC_{name} {size}u"
-    yield "#define RULEC_SOURCES 8u"
+    own, shared = sizes["WORLD_READS"], sizes["WORLD_READS"] + sizes["SEATS"] * sizes["OWN_READS"]
+    yield f"#define RULEC_OWN {own}u /* where the digits of those on seats begin */"
+    yield f"#define RULEC_SHARED {shared}u /* and of several */"
+    # Every place that has the bits of one is within the array.
+    yield f"#define RULEC_DIGITS {shared + sizes['PLACES'] + 1}u"
+    yield "#define RULEC_SOURCES 16u"
+    yield f"#define RULEC_TOGETHER {TOGETHER}u"
     yield ""
 
 

@@ -20,6 +20,7 @@ typedef struct {
     uint16_t n_classes;
     uint16_t n_states;
     uint16_t n_variables;
+    uint16_t last; /* variable, if there are any */
     uint16_t first_together;
     uint16_t n_together;
     uint16_t seats_first[RULEC_VARIABLES];
@@ -48,20 +49,24 @@ def type_tables(layout: MonitorLayout) -> Iterator[str]:
 
 def rule_tables(layout: MonitorLayout) -> Iterator[str]:
     """All rules' cells and entries, and where each one's begin."""
-    rules = layout.rules
-    yield from _stretches("cells", rules, [rule.cells for rule in rules])
+    rules, needed = layout.rules, layout.array_sizes
+    # Behind what is read there are as many as a place may be too far.
+    behind = needed["NODES"] + needed["MOST_DIGIT"] + 1
+    yield from _stretches("cells", rules, [rule.cells for rule in rules], behind)
     yield "/* The state reached times 4, and the verdict: by state and class of letters. */"
     yield from _stretches("entries", rules, [rule.entries for rule in rules])
-    together = [place for rule in rules for place in rule.together] or [0]
+    together = [place for rule in rules for place in rule.together]
+    together += [0] * max(1, *[len(rule.together) for rule in rules])
     yield f"static const uint16_t rulec_together[{len(together)}u] = {{"
     yield from _lines(together)
     yield "};"
     sizes = [size for own in layout.sizes for size in own]
     world, own, _ = map(len, layout.sizes)
-    yield f"static const uint8_t rulec_sizes[{len(sizes) or 1}u] = {{"
-    yield from _lines(sizes or [0])
+    sizes += [0] * (needed["PLACES"] + 1)
+    yield f"static const uint8_t rulec_sizes[{len(sizes)}u] = {{"
+    yield from _lines(sizes)
     yield "};"
-    of = [0, *[world] * 6, world + own]
+    of = [0, *[world] * 6, world + own, *[0] * 8]
     starts = _listed(f"{n}u" for n in of)
     yield f"static const uint16_t rulec_sizes_of[RULEC_SOURCES] = {{{starts}}};"
     yield ""
@@ -102,7 +107,7 @@ def _rows(layout: MonitorLayout) -> Iterator[str]:
         numbers = [
             *(cell, entry, instance, own.n_instances, word, len(own.cells)),
             *(len(machine.successors[0]), len(machine.successors), len(own.seats)),
-            *(together, len(own.together)),
+            *(max(0, len(own.seats) - 1), together, len(own.together)),
         ]
         lists = [
             _listed(f"{number}u" for number in (*column, *[0] * (n - len(column))))
@@ -118,13 +123,15 @@ def _rows(layout: MonitorLayout) -> Iterator[str]:
 
 
 def _stretches(
-    name: str, rules: Sequence[RuleLayout], stretches: Sequence[Sequence[int]]
+    name: str, rules: Sequence[RuleLayout], stretches: Sequence[Sequence[int]], behind: int = 0
 ) -> Iterator[str]:
-    size = sum(map(len, stretches))
+    size = sum(map(len, stretches)) + behind
     yield f"static const uint16_t rulec_{name}[{size}u] = {{"
     for own, stretch in zip(rules, stretches, strict=True):
         yield f"    /* {in_comment(own.rule.name)} */"
         yield from _lines(stretch)
+    if behind:
+        yield "    0u, /* and others behind what is read */"
     yield "};"
 
 

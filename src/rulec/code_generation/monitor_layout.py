@@ -97,6 +97,8 @@ class MonitorLayout:
         """The sizes of arrays, by what code calls them; none of them is empty."""
         rules = self.rules
         machines = [own.rule.machine for own in rules]
+        most_reads = max(map(len, self.sizes))
+        cell_words = max(len(own.cells) for own in rules) // 32 + 1
         return {
             "RULES": len(rules),
             "TYPES": len(self.fields.types),
@@ -107,7 +109,11 @@ class MonitorLayout:
             "WORLD_READS": len(self.sizes[0]) or 1,
             "OWN_READS": len(self.sizes[1]) or 1,
             "SHARED_READS": len(self.sizes[2]) or 1,
-            "CELL_WORDS": max(len(own.cells) for own in rules) // 32 + 1,
+            "CELL_WORDS": cell_words,
+            "NODES": cell_words * 32,
+            "ENTRIES": sum(len(own.entries) for own in rules),
+            "PLACES": (1 << max(0, most_reads - 1).bit_length()) - 1,
+            "MOST_DIGIT": max([size for sizes in self.sizes for size in sizes], default=1) - 1,
             "CLASS_WORDS": max(len(machine.successors[0]) for machine in machines) // 32 + 1,
             "STATE_WORDS": max(len(machine.successors) for machine in machines) // 32 + 1,
         }

@@ -35,7 +35,7 @@ class RustReadingCode(ReadingCode):
         return f"of_{field}({', '.join(['input', *places])})"
 
     def _is_same(self, left: str, right: str) -> str:
-        return f"(if {left} == {right} {{ YES }} else {{ NO }})"
+        return f"if {left} == {right} {{ YES }} else {{ NO }}"
 
     def _array(self, kind: str, about: str, items: Sequence[float]) -> str:
         own = f"[{_KINDS[kind]}; {len(items)}]"

@@ -1,5 +1,8 @@
 /* The machines. A rule has an instance for each choice of seats that its variables may stand for;
- * an instance is in one state of the rule's machine, or in one of several, if not all is known. */
+ * an instance is in one state of the rule's machine, or in one of several, if not all is known.
+ *
+ * No table and no array is left, whatever is in them: what a table says is bounded before it is a
+ * place in another one, or tables are a little longer than what is read of them. */
 
 #define RULEC_NOBODY ((uint8_t)RULEC_TYPES) /* the type of who sits on an empty seat */
 #define RULEC_EMPTY 0xffffu   /* no object of the input */
@@ -26,18 +29,19 @@ typedef struct {
     uint16_t turns[RULEC_VARIABLES]; /* among the seats that are taken, or were */
     uint16_t seats[RULEC_VARIABLES];
     uint16_t start; /* the first cell of which objects decide */
+    uint32_t first; /* the instance with the first seat for the last variable */
     const uint16_t *digits[RULEC_SOURCES];
 } rulec_instance;
 
 /* The seat that an object has had, looked for at a likely one first. */
-static uint16_t rulec_seat_of(const rulec_state *state, const rulec_object *object, uint16_t likely)
+static uint16_t rulec_seat_of(const rulec_state *state, uint32_t id, uint8_t type, uint16_t likely)
 {
     uint16_t seat = likely;
-    if ((seat < RULEC_SEATS) && (state->id[seat] == object->id) && (state->type[seat] == object->type)) {
+    if ((seat < RULEC_SEATS) && (state->id[seat] == id) && (state->type[seat] == type)) {
         return seat;
     }
-    for (seat = rulec_first[object->type]; seat < rulec_end[object->type]; seat++) {
-        if ((state->id[seat] == object->id) && (state->type[seat] == object->type)) {
+    for (seat = rulec_first[type]; seat < rulec_end[type]; seat++) {
+        if ((state->id[seat] == id) && (state->type[seat] == type)) {
             return seat;
         }
     }
@@ -60,11 +64,11 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
         state->seated[seat] = RULEC_EMPTY;
     }
     for (one = 0u; one < in->n_objects; one++) {
-        const rulec_object *object = &in->objects[one];
-        if (object->type >= RULEC_TYPES) {
+        const uint8_t type = in->objects[one].type;
+        if (type >= RULEC_TYPES) {
             return RULEC_BAD_TYPE;
         }
-        seat = rulec_seat_of(state, object, next);
+        seat = rulec_seat_of(state, in->objects[one].id, type, next);
         if (seat != RULEC_EMPTY) {
             if (state->seated[seat] != RULEC_EMPTY) {
                 return RULEC_TWICE;
@@ -81,31 +85,35 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
         state->next_type[seat] = stays ? state->type[seat] : RULEC_NOBODY;
     }
     for (one = 0u; (n_new > 0u) && (one < in->n_objects); one++) {
-        const rulec_object *object = &in->objects[one];
+        const uint32_t id = in->objects[one].id;
+        const uint8_t type = in->objects[one].type;
         uint16_t free = RULEC_EMPTY;
         bool has_seat = false;
-        for (seat = rulec_first[object->type]; seat < rulec_end[object->type]; seat++) {
-            if (state->seated[seat] == (uint16_t)one) {
+        if (type >= RULEC_TYPES) {
+            return RULEC_BAD_TYPE;
+        }
+        for (seat = rulec_first[type]; seat < rulec_end[type]; seat++) {
+            const uint16_t other = state->seated[seat];
+            if (other == (uint16_t)one) {
                 has_seat = true;
                 break;
             }
-            if (state->seated[seat] == RULEC_EMPTY) {
-                free = (free == RULEC_EMPTY) ? seat : free;
-            } else if ((in->objects[state->seated[seat]].id == object->id)
-                    && (in->objects[state->seated[seat]].type == object->type)) {
+            if (other >= in->n_objects) {
+                free = (free == RULEC_EMPTY) ? seat : free; /* nobody sits there */
+            } else if ((in->objects[other].id == id) && (in->objects[other].type == type)) {
                 return RULEC_TWICE;
             } else {
                 /* somebody else's seat */
             }
         }
-        if (!has_seat && (free != RULEC_EMPTY)) {
+        if (!has_seat && (free < RULEC_SEATS)) {
             state->seated[free] = (uint16_t)one;
-            state->next_id[free] = object->id;
-            state->next_type[free] = object->type;
+            state->next_id[free] = id;
+            state->next_type[free] = type;
         } else if (!has_seat) {
             *left_out += 1u;
             state->crowded = 1u;
-            state->absent[object->type] = 1u;
+            state->absent[type] = 1u;
         } else {
             /* sits already */
         }
@@ -118,10 +126,10 @@ static inline uint16_t rulec_class(const uint16_t *cells, uint16_t start,
     const uint16_t *const *digits)
 {
     uint16_t at = start;
-    while (at < RULEC_LEAF) {
+    while (at < RULEC_NODES) {
         const uint16_t read = cells[at];
-        const uint16_t digit = digits[read >> 12][read & 0xfffu];
-        if (digit > 0xffu) {
+        const uint16_t digit = digits[read >> 12][read & RULEC_PLACES];
+        if (digit > RULEC_MOST_DIGIT) {
             return RULEC_SEVERAL;
         }
         at = cells[at + 1u + digit];
@@ -133,8 +141,13 @@ static inline uint16_t rulec_class(const uint16_t *cells, uint16_t start,
 static uint16_t rulec_start(const uint16_t *cells, const uint16_t *world)
 {
     uint16_t at = cells[0];
-    while ((at < RULEC_LEAF) && (cells[at] < 0x1000u) && (world[cells[at]] <= 0xffu)) {
-        at = cells[at + 1u + world[cells[at]]];
+    while (at < RULEC_NODES) {
+        const uint16_t read = cells[at];
+        const uint16_t digit = world[read & RULEC_PLACES];
+        if ((read >= 0x1000u) || (digit > RULEC_MOST_DIGIT)) {
+            break;
+        }
+        at = cells[at + 1u + digit];
     }
     return at;
 }
@@ -160,10 +173,11 @@ static void rulec_clear(uint32_t *bits, uint32_t n)
 /* Where a cell leads: a node to be looked at later, for cells lead onward, or a class. */
 static void rulec_lead(rulec_state *state, uint16_t cell)
 {
-    if (cell < RULEC_LEAF) {
+    const uint32_t by = (uint32_t)cell & 0x7fffu;
+    if (cell < RULEC_NODES) {
         rulec_set(state->reached, cell);
-    } else if (cell != RULEC_EXCLUDED) {
-        rulec_set(state->classes, (uint32_t)cell & 0x7fffu);
+    } else if (by < (RULEC_CLASS_WORDS * 32u)) {
+        rulec_set(state->classes, by);
     } else {
         /* no state of the world is such */
     }
@@ -182,13 +196,14 @@ static bool rulec_classes(rulec_state *state, const rulec_rule *rule, const uint
     while (at < rule->n_cells) {
         const uint16_t read = cells[at];
         if (rulec_is_set(state->reached, at)) {
-            const uint16_t digit = digits[read >> 12][read & 0xfffu];
+            const uint16_t digit = digits[read >> 12][read & RULEC_PLACES];
             uint16_t each;
-            for (each = RULEC_LEAST(digit); each <= RULEC_GREATEST(digit); each++) {
+            for (each = RULEC_LEAST(digit);
+                 (each <= RULEC_MOST_DIGIT) && (each <= RULEC_GREATEST(digit)); each++) {
                 rulec_lead(state, cells[at + 1u + each]);
             }
         }
-        at = (uint16_t)(at + 1u + rulec_sizes[rulec_sizes_of[read >> 12] + (read & 0xfffu)]);
+        at = (uint16_t)(at + 1u + rulec_sizes[rulec_sizes_of[read >> 12] + (read & RULEC_PLACES)]);
     }
     for (word = 0u; word <= ((uint32_t)rule->n_classes >> 5); word++) {
         any = any || (state->classes[word] != 0u);
@@ -196,11 +211,19 @@ static bool rulec_classes(rulec_state *state, const rulec_rule *rule, const uint
     return any;
 }
 
+/* The entry of a state and a class of letters. */
+static inline uint16_t rulec_entry(const rulec_rule *rule, uint32_t from, uint32_t by)
+{
+    const uint32_t place = rule->first_entry + (from * rule->n_classes) + by;
+    return rulec_entries[(place < RULEC_ENTRIES) ? place : 0u];
+}
+
 /* A step where not all is known: from each possible state by each possible class. */
 static void rulec_advance_all(rulec_state *state, const rulec_rule *rule, uint32_t instance)
 {
-    uint32_t *const states = &state->states[rule->first_word
-        + ((instance - rule->first_instance) * (((uint32_t)rule->n_states >> 5) + 1u))];
+    const uint32_t first = rule->first_word
+        + ((instance - rule->first_instance) * (((uint32_t)rule->n_states >> 5) + 1u));
+    uint32_t *const states = &state->states[(first < RULEC_WORDS) ? first : 0u];
     uint8_t best = RULEC_VIOLATED;
     uint8_t worst = RULEC_SATISFIED;
     uint16_t last = 0u;
@@ -209,20 +232,25 @@ static void rulec_advance_all(rulec_state *state, const rulec_rule *rule, uint32
     uint16_t by;
     uint32_t word;
     if (state->at[instance] != RULEC_SEVERAL) {
+        const uint16_t only = (uint16_t)(state->at[instance] >> 2);
         rulec_clear(states, rule->n_states);
-        rulec_set(states, (uint32_t)state->at[instance] >> 2);
+        if (only < rule->n_states) {
+            rulec_set(states, only);
+        }
     }
     rulec_clear(state->following, rule->n_states);
     for (from = 0u; from < rule->n_states; from++) {
         if (rulec_is_set(states, from)) {
             for (by = 0u; by < rule->n_classes; by++) {
                 if (rulec_is_set(state->classes, by)) {
-                    const uint16_t entry = rulec_entries[rule->first_entry
-                        + ((uint32_t)from * rule->n_classes) + by];
+                    const uint16_t entry = rulec_entry(rule, from, by);
                     const uint8_t verdict = (uint8_t)(entry & 3u);
-                    last = (uint16_t)(entry >> 2);
-                    found += rulec_is_set(state->following, last) ? 0u : 1u;
-                    rulec_set(state->following, last);
+                    const uint16_t next = (uint16_t)(entry >> 2);
+                    if (next < rule->n_states) {
+                        last = next;
+                        found += rulec_is_set(state->following, next) ? 0u : 1u;
+                        rulec_set(state->following, next);
+                    }
                     best = (verdict < best) ? verdict : best;
                     worst = (verdict > worst) ? verdict : worst;
                 }
@@ -246,14 +274,13 @@ static void rulec_advance(rulec_state *state, const rulec_rule *rule, const rule
     const uint16_t by = rulec_class(&rulec_cells[rule->first_cell], one->start, one->digits);
     const uint16_t from = state->at[one->number];
     if ((by != RULEC_SEVERAL) && (from != RULEC_SEVERAL)) {
-        state->at[one->number] = rulec_entries[rule->first_entry
-            + (((uint32_t)from >> 2) * rule->n_classes) + by];
+        state->at[one->number] = rulec_entry(rule, (uint32_t)from >> 2, by);
     } else {
         if (by == RULEC_SEVERAL) {
             (void)rulec_classes(state, rule, one->digits);
         } else {
             rulec_clear(state->classes, rule->n_classes);
-            rulec_set(state->classes, by);
+            rulec_lead(state, (uint16_t)(by | RULEC_LEAF));
         }
         rulec_advance_all(state, rule, one->number);
     }
@@ -294,11 +321,17 @@ static void rulec_look(rulec_state *state, const rulec_input *in, const rulec_ru
     uint16_t variable;
     for (each = 0u; each < rule->n_together; each++) {
         size_t who[RULEC_VARIABLES];
+        bool are_seated = true;
         const uint16_t read = rulec_together[rule->first_together + each];
-        for (variable = 0u; variable < rule->n_variables; variable++) {
-            who[variable] = state->seated[one->seats[variable]];
+        for (variable = 0u; variable < RULEC_VARIABLES; variable++) {
+            const bool is = variable < rule->n_variables;
+            const size_t own = is ? state->seated[one->seats[variable]] : 0u;
+            are_seated = are_seated && (own < in->n_objects);
+            who[variable] = (own < in->n_objects) ? own : 0u;
         }
-        state->shared[read] = rulec_read_together(in, who, read);
+        if (are_seated) {
+            state->digits[RULEC_SHARED + read] = rulec_read_together(in, who, read);
+        }
     }
 }
 
@@ -325,20 +358,23 @@ static inline bool rulec_bind(const rulec_state *state, uint16_t variable, uint1
         }
     }
     one->seats[variable] = seat;
-    one->digits[variable + 1u] = state->own[seat];
+    one->digits[variable + 1u] = &state->digits[RULEC_OWN + (seat * RULEC_OWN_READS)];
     return true;
 }
 
 /* Go on to the next choice of seats for all variables but the last; false after the last one. */
 static bool rulec_turn(const rulec_state *state, const rulec_rule *rule, rulec_instance *one)
 {
-    uint16_t variable = (uint16_t)(rule->n_variables - 1u);
+    uint16_t variable = rule->last;
     bool carry = true;
     while (carry && (variable > 0u)) {
+        uint16_t turn;
         variable--;
-        one->turns[variable]++;
-        carry = one->turns[variable] >= state->n_taken;
-        if (carry) {
+        turn = (uint16_t)(one->turns[variable] + 1u);
+        if (turn < state->n_taken) {
+            one->turns[variable] = turn;
+            carry = false;
+        } else {
             one->turns[variable] = 0u;
         }
     }
@@ -349,37 +385,49 @@ static bool rulec_turn(const rulec_state *state, const rulec_rule *rule, rulec_i
 static bool rulec_there(const rulec_state *state, const rulec_rule *rule, rulec_instance *one,
     rulec_presence *found)
 {
-    const uint16_t last = (uint16_t)(rule->n_variables - 1u);
+    const uint16_t last = rule->last;
     uint16_t variable;
-    one->number = 0u;
+    one->first = 0u;
     found->was = true;
     found->stays = true;
     found->is = true;
     for (variable = 0u; variable < last; variable++) {
-        const uint16_t seat = state->taken[one->turns[variable]];
+        const uint16_t turn = one->turns[variable];
+        const uint16_t seat = state->taken[(turn < RULEC_SEATS) ? turn : 0u];
         const uint8_t *const fits = rulec_fits[rule->types[variable]];
         if ((seat < rule->seats_first[variable]) || (seat >= rule->seats_end[variable])
             || !rulec_bind(state, variable, seat, one)) {
             return false;
         }
-        one->number *= (uint32_t)rule->seats_end[variable] - rule->seats_first[variable];
-        one->number += (uint32_t)seat - rule->seats_first[variable];
+        one->first *= (uint32_t)rule->seats_end[variable] - rule->seats_first[variable];
+        one->first += (uint32_t)seat - rule->seats_first[variable];
         found->was = found->was && (fits[state->type[seat]] != 0u);
         found->is = found->is && (fits[state->next_type[seat]] != 0u);
         found->stays = found->stays && (state->stays[seat] != 0u);
     }
-    one->number *= (uint32_t)rule->seats_end[last] - rule->seats_first[last];
-    one->number += rule->first_instance;
+    one->first *= (uint32_t)rule->seats_end[last] - rule->seats_first[last];
+    one->first += rule->first_instance;
+    one->first -= rule->seats_first[last];
     return found->was || found->is;
+}
+
+/* Stand where the last variable is for the object on a seat. */
+static inline void rulec_stand(rulec_instance *one, uint16_t seat)
+{
+    const uint32_t number = one->first + seat;
+    one->number = (number < RULEC_INSTANCES) ? number : 0u;
 }
 
 static void rulec_begin(const rulec_state *state, const rulec_rule *rule, rulec_instance *one)
 {
     uint16_t each;
-    one->number = rule->first_instance;
-    one->start = rulec_start(&rulec_cells[rule->first_cell], state->world);
-    one->digits[0] = state->world;
-    one->digits[RULEC_SOURCES - 1u] = state->shared;
+    one->first = rule->first_instance;
+    one->start = rulec_start(&rulec_cells[rule->first_cell], state->digits);
+    rulec_stand(one, 0u);
+    for (each = 0u; each < RULEC_SOURCES; each++) {
+        one->digits[each] = state->digits;
+    }
+    one->digits[RULEC_TOGETHER] = &state->digits[RULEC_SHARED];
     for (each = 0u; each < RULEC_VARIABLES; each++) {
         one->turns[each] = 0u;
         one->seats[each] = 0u;
@@ -434,9 +482,8 @@ static void rulec_visit_each(rulec_state *state, const rulec_input *in, uint16_t
     rulec_tally *tally)
 {
     const rulec_rule *const rule = &rulec_rules[number];
-    const uint16_t last = (uint16_t)(rule->n_variables - 1u);
+    const uint16_t last = rule->last;
     const uint8_t *const fits = rulec_fits[rule->types[last]];
-    const uint32_t first = one->number;
     uint16_t each;
     for (each = 0u; each < n_seats; each++) {
         const uint16_t seat = seats[each];
@@ -445,11 +492,10 @@ static void rulec_visit_each(rulec_state *state, const rulec_input *in, uint16_t
         all.was = there->was && (fits[state->type[seat]] != 0u);
         all.stays = there->stays && (state->stays[seat] != 0u);
         if ((all.is || all.was) && rulec_bind(state, last, seat, one)) {
-            one->number = first + (uint32_t)seat - rule->seats_first[last];
+            rulec_stand(one, seat);
             rulec_visit(state, in, number, one, all, tally);
         }
     }
-    one->number = first;
 }
 
 /* The seats of those who stay and are of a type. */
@@ -458,7 +504,7 @@ static void rulec_find_fitting(rulec_state *state, uint8_t type)
     const uint8_t *const fits = rulec_fits[type];
     uint16_t each;
     uint16_t n = 0u;
-    for (each = 0u; each < state->n_taken; each++) {
+    for (each = 0u; (each < state->n_taken) && (n < RULEC_SEATS); each++) {
         const uint16_t seat = state->taken[each];
         state->fitting[n] = seat;
         n = (uint16_t)(n + (state->stays[seat] & fits[state->type[seat]]));
@@ -486,10 +532,7 @@ static void rulec_visit_fitting(rulec_state *state, const rulec_input *in, uint1
 {
     const rulec_rule *const rule = &rulec_rules[number];
     const uint16_t *const cells = &rulec_cells[rule->first_cell];
-    const uint16_t *const entries = &rulec_entries[rule->first_entry];
-    const uint32_t n_classes = rule->n_classes;
-    const uint16_t last = (uint16_t)(rule->n_variables - 1u);
-    const uint32_t first = one->number - rule->seats_first[last];
+    const uint16_t last = rule->last;
     const uint16_t n_fitting = state->n_fitting;
     const uint16_t start = one->start;
     uint16_t each;
@@ -497,17 +540,17 @@ static void rulec_visit_fitting(rulec_state *state, const rulec_input *in, uint1
         const uint16_t seat = state->fitting[each];
         if (rulec_bind(state, last, seat, one)) {
             const uint16_t by = rulec_class(cells, start, one->digits);
-            const uint16_t from = state->at[first + seat];
-            one->number = first + seat;
+            uint16_t from;
+            rulec_stand(one, seat);
+            from = state->at[one->number];
             if ((by != RULEC_SEVERAL) && (from != RULEC_SEVERAL)) {
-                rulec_enter(state, number, one, entries[(((uint32_t)from >> 2) * n_classes) + by], tally);
+                rulec_enter(state, number, one, rulec_entry(rule, (uint32_t)from >> 2, by), tally);
             } else {
                 const rulec_presence always = {true, true, true};
                 rulec_visit(state, in, number, one, always, tally);
             }
         }
     }
-    one->number = first + rule->seats_first[last];
 }
 
 /* A rule about nobody. */
@@ -517,8 +560,8 @@ static void rulec_visit_world(rulec_state *state, const rulec_input *in, uint16_
     const rulec_rule *const rule = &rulec_rules[number];
     const uint16_t from = state->at[one->number];
     if ((one->start >= RULEC_LEAF) && (from != RULEC_SEVERAL)) {
-        rulec_enter(state, number, one, rulec_entries[rule->first_entry
-            + (((uint32_t)from >> 2) * rule->n_classes) + (one->start & 0x7fffu)], tally);
+        rulec_enter(state, number, one,
+            rulec_entry(rule, (uint32_t)from >> 2, (uint32_t)one->start & 0x7fffu), tally);
     } else {
         const rulec_presence always = {true, true, true};
         rulec_visit(state, in, number, one, always, tally);
@@ -530,7 +573,7 @@ static void rulec_visit_last(rulec_state *state, const rulec_input *in, uint16_t
     rulec_instance *one, const rulec_presence *there, rulec_tally *tally)
 {
     const rulec_rule *const rule = &rulec_rules[number];
-    const uint8_t type = rule->types[rule->n_variables - 1u];
+    const uint8_t type = rule->types[rule->last];
     if (there->is && there->stays && (rule->n_together == 0u)) {
         if (state->fitting_type != type) {
             rulec_find_fitting(state, type);
@@ -576,7 +619,7 @@ static bool rulec_is_excluded(rulec_state *state, const rulec_input *in, const r
     while (more) {
         uint16_t turn;
         const bool is = rulec_there(state, rule, &one, &there) && there.is;
-        const uint16_t last = (uint16_t)(rule->n_variables - 1u);
+        const uint16_t last = rule->last;
         for (turn = 0u; is && (turn < state->n_taken); turn++) {
             const uint16_t seat = state->taken[turn];
             if ((seat >= rule->seats_first[last]) && (seat < rule->seats_end[last])
@@ -628,7 +671,23 @@ void rulec_init(rulec_state *state)
     for (each = 0u; each < RULEC_SEATS; each++) {
         state->id[each] = 0u;
         state->type[each] = RULEC_NOBODY;
+        state->next_id[each] = 0u;
+        state->next_type[each] = RULEC_NOBODY;
+        state->seated[each] = RULEC_EMPTY;
+        state->stays[each] = 0u;
+        state->taken[each] = 0u;
+        state->changed[each] = 0u;
+        state->fitting[each] = 0u;
     }
+    for (each = 0u; each < RULEC_DIGITS; each++) {
+        state->digits[each] = 0u;
+    }
+    for (each = 0u; each < (RULEC_WORDS + RULEC_STATE_WORDS); each++) {
+        state->states[each] = 0u;
+    }
+    rulec_clear(state->reached, (RULEC_CELL_WORDS * 32u) - 1u);
+    rulec_clear(state->classes, (RULEC_CLASS_WORDS * 32u) - 1u);
+    rulec_clear(state->following, (RULEC_STATE_WORDS * 32u) - 1u);
     for (each = 0u; each < RULEC_INSTANCES; each++) {
         state->at[each] = 0u;
         state->verdict[each] = 0u;
@@ -644,6 +703,11 @@ void rulec_init(rulec_state *state)
         }
     }
     state->violations = 0u;
+    state->crowded = 0u;
+    state->fitting_type = RULEC_NOBODY;
+    state->n_taken = 0u;
+    state->n_changed = 0u;
+    state->n_fitting = 0u;
 }
 
 rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verdict *verdict)
@@ -665,7 +729,8 @@ rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verd
     state->n_taken = 0u;
     state->n_changed = 0u;
     state->fitting_type = RULEC_NOBODY;
-    for (each = 0u; each < RULEC_SEATS; each++) {
+    for (each = 0u; (each < RULEC_SEATS) && (state->n_taken < RULEC_SEATS)
+         && (state->n_changed < RULEC_SEATS); each++) {
         if ((state->type[each] != RULEC_NOBODY) || (state->next_type[each] != RULEC_NOBODY)) {
             state->taken[state->n_taken] = each;
             state->n_taken++;
@@ -675,10 +740,11 @@ rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verd
             }
         }
     }
-    rulec_read_world(input, state->world);
+    rulec_read_world(input, state->digits);
     for (each = 0u; each < RULEC_SEATS; each++) {
-        if (state->seated[each] != RULEC_EMPTY) {
-            rulec_read_own(input, state->seated[each], state->own[each]);
+        const uint16_t one = state->seated[each];
+        if (one < input->n_objects) {
+            rulec_read_own(input, one, &state->digits[RULEC_OWN + (each * RULEC_OWN_READS)]);
         }
     }
     for (each = 0u; each < RULEC_RULES; each++) {
@@ -708,6 +774,9 @@ rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verd
 
 uint32_t rulec_about(const rulec_state *state, uint32_t rule, uint32_t variable)
 {
-    const bool is = (rule < RULEC_RULES) && (variable < RULEC_VARIABLES);
-    return is ? state->about[rule][variable] : 0u;
+    uint32_t id = 0u;
+    if ((rule < RULEC_RULES) && (variable < RULEC_VARIABLES)) {
+        id = state->about[rule][variable];
+    }
+    return id;
 }

@@ -96,7 +96,7 @@ void rulec_digits(const rulec_input *in, const size_t *who, uint32_t source, uin
     uint16_t read;
     if (source == 0u) {
         rulec_read_world(in, digits);
-    } else if (source == 7u) {
+    } else if (source == RULEC_TOGETHER) {
         for (read = 0u; read < RULEC_SHARED_READS; read++) {
             digits[read] = rulec_read_together(in, who, read);
         }

@@ -17,7 +17,7 @@ typedef struct {
     uint8_t type[RULEC_SEATS];
     uint16_t at[RULEC_INSTANCES];
     uint8_t verdict[RULEC_INSTANCES];
-    uint32_t states[RULEC_WORDS];
+    uint32_t states[RULEC_WORDS + RULEC_STATE_WORDS];
     uint32_t about[RULEC_RULES][RULEC_VARIABLES];
     uint8_t flags[RULEC_RULES];
     uint32_t violations;
@@ -35,9 +35,7 @@ typedef struct {
     uint16_t taken[RULEC_SEATS];
     uint16_t changed[RULEC_SEATS];
     uint16_t fitting[RULEC_SEATS];
-    uint16_t world[RULEC_WORLD_READS];
-    uint16_t own[RULEC_SEATS][RULEC_OWN_READS];
-    uint16_t shared[RULEC_SHARED_READS];
+    uint16_t digits[RULEC_DIGITS]; /* of nobody, of those on each seat, of several */
     uint32_t reached[RULEC_CELL_WORDS];
     uint32_t classes[RULEC_CLASS_WORDS];
     uint32_t following[RULEC_STATE_WORDS];

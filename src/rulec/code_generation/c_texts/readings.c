@@ -108,7 +108,7 @@ static inline uint8_t rulec_among(uint16_t digits, uint32_t some)
     bool any = false;
     uint32_t each;
     for (each = RULEC_LEAST(digits); each <= high; each++) {
-        const bool is = ((some >> each) & 1u) != 0u;
+        const bool is = (each < 32u) && (((some >> (each & 31u)) & 1u) != 0u);
         all = all && is;
         any = any || is;
     }
@@ -122,7 +122,8 @@ static inline uint8_t rulec_among(uint16_t digits, uint32_t some)
 static inline uint32_t rulec_counts(const rulec_input *in, size_t one, uint8_t kind, uint8_t truth)
 {
     uint32_t counts = 0u;
-    if (rulec_fits[kind][in->objects[one].type] != 0u) {
+    const uint8_t type = in->objects[one].type;
+    if ((type < RULEC_TYPES) && (rulec_fits[kind][type] != 0u)) {
         counts = ((truth == RULEC_YES) ? 1u : 0u) | ((truth != RULEC_NO) ? 0x10000u : 0u);
     }
     return counts;
@@ -158,7 +159,8 @@ static inline uint16_t rulec_order(double first, double second, uint8_t sides)
 static inline bool rulec_eighths(double value, int64_t *eighths)
 {
     bool is_whole = false;
-    if ((value > -1e9) && (value < 1e9)) {
+    /* The first is false for NaN, as the others are; analysers know it of the first. */
+    if ((value == value) && (value > -1e9) && (value < 1e9)) {
         const double exact = value * 8.0; /* only the exponent changes */
         *eighths = (int64_t)exact;
         is_whole = ((double)*eighths >= exact) && ((double)*eighths <= exact);
@@ -177,11 +179,12 @@ static uint16_t rulec_weigh(const double *low, const double *high, const rulec_s
     double size = 0.0;
     int64_t whole_least = 0;
     int64_t whole_most = 0;
+    const uint8_t n_terms = shape->n_terms;
     bool is_whole = shape->whole_factors != NULL;
     uint16_t passed_least = 0u;
     uint16_t passed_most = 0u;
     uint8_t each;
-    for (each = 0u; each < shape->n_terms; each++) {
+    for (each = 0u; each < n_terms; each++) {
         const bool up = shape->factors[each] > 0.0;
         const double first = shape->factors[each] * (up ? low[each] : high[each]);
         const double last = shape->factors[each] * (up ? high[each] : low[each]);
@@ -207,7 +210,7 @@ static uint16_t rulec_weigh(const double *low, const double *high, const rulec_s
     for (each = 0u; each < shape->n_limits; each++) {
         const double limit = shape->limits[each];
         const double all = size + ((limit < 0.0) ? -limit : limit);
-        const double error = (((double)shape->n_terms + 8.0) * 0x1p-53 * all) + 0x1p-900;
+        const double error = (((double)n_terms + 8.0) * 0x1p-53 * all) + 0x1p-900;
         bool surely;
         bool perhaps;
         if (is_whole) {
