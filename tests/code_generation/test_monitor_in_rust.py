@@ -130,7 +130,7 @@ def test_the_report_stands_beside_it(tmp_path):
     assert main(arguments) == 0
     report = (tmp_path / "esterle2019_proof.txt").read_text()
     assert report.startswith("monitor in Rust of esterle2019")
-    assert report.count(": 0 differ\n") == 5
+    assert report.count(": 0 differ\n") == 7
     assert (tmp_path / "src" / "lib.rs").exists()
 
 

@@ -15,7 +15,7 @@ from mcap.writer import Writer
 
 import rulec
 from rulec.code_generation.monitor_layout import VERDICTS, monitor_layout
-from rulec.code_generation.proof.probing_inputs import drives
+from rulec.code_generation.proof.random_drives import drives
 from rulec.code_generation.ros2_files import message_fields, ros2_texts
 from rulec.monitoring.online.four_valued import best_of, worst_of
 from rulec.monitoring.online.running_monitor import Monitor

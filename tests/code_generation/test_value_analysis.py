@@ -21,7 +21,7 @@ static volatile uint32_t any_word;
 static volatile double any_number;
 int main(void)
 {
-    BOOK_state monitor;
+    static BOOK_state monitor;
     BOOK_init(&monitor);
     while (any_byte != 0u) {
         static BOOK_object objects[N_THERE];
@@ -116,9 +116,17 @@ def test_it_has_no_alarm(book, objects, tmp_path):
     rulec.write_monitor(compiled, tmp_path, objects)
     text = driver(monitor_layout(compiled, objects), book)
     (tmp_path / "driver.c").write_text(text, encoding="utf-8")
-    options = ["-eva", "-eva-auto-loop-unroll", "1024", "-warn-special-float", "none", "-machdep", "x86_64"]
+    options = [
+        "-eva",
+        "-eva-auto-loop-unroll",
+        "1024",
+        "-warn-special-float",
+        "none",
+        "-machdep",
+        "x86_64",
+    ]
     sources = [str(tmp_path / "driver.c"), str(tmp_path / f"{book}.c")]
-    command = ["frama-c", *options, f"-cpp-extra-args=-I{tmp_path}", *sources]
+    command = ["frama-c", *options, "-machdep", "x86_64", f"-cpp-extra-args=-I{tmp_path}", *sources]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout[-4000:]
     alarms = [line for line in done.stdout.splitlines() if "[eva:alarm]" in line]

@@ -6,13 +6,13 @@ import re
 from fractions import Fraction
 
 import pytest
-import spot
 from hypothesis import given
 from hypothesis import strategies as st
 
 import rulec
 from rulec.ltl_export.ltl_terms import NUXMV, PRISM, SPOT, TRUE, Term, size_of, text_of
 from rulec.ltl_export.rule_terms import fresh_identifier
+from support.oracles.installed_spot import spot
 
 SMALL = 1
 """The step in s."""

@@ -131,7 +131,8 @@ def _stretches(
         yield f"    /* {in_comment(own.rule.name)} */"
         yield from _lines(stretch)
     if behind:
-        yield "    0u, /* and others behind what is read */"
+        yield "    /* behind what is read */"
+    yield from _lines([0] * behind)
     yield "};"
 
 

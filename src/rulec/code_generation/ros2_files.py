@@ -6,6 +6,7 @@ Messages: ROS 2, "Interfaces", https://docs.ros.org/en/rolling/Concepts/Basic/Ab
 from __future__ import annotations
 
 from collections.abc import Iterator
+from keyword import kwlist
 from pathlib import Path
 
 from rulec.code_generation.c_files import c_header, c_source, default_of, head_lines, in_own_names
@@ -97,7 +98,8 @@ def ros2_texts(layout: MonitorLayout) -> dict[str, str]:
 
 def message_fields(layout: MonitorLayout) -> dict[str, str]:
     """What messages call each name: lower case, no two underscores together."""
-    taken = Identifiers(("header", "id", "type", "objects"))
+    # Words of Python cannot be what its classes of messages call their fields.
+    taken = Identifiers(("header", "id", "type", "objects", *kwlist))
     return {item.name: taken.of(item.name.lower()) for item in layout.fields.read}
 
 

@@ -48,7 +48,7 @@ class Identifiers:
         if text in _RESERVED or not text:
             text = f"{text}_of_rule"
         elif text[0] in "_0123456789" or text.lower().startswith("rulec_"):
-            text = f"x{text}"
+            text = f"{'X' if upper else 'x'}{text}"
         name = text
         numbers = count(2)
         while name in self._taken:

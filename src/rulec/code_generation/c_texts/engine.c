@@ -69,14 +69,14 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
             return RULEC_BAD_TYPE;
         }
         seat = rulec_seat_of(state, in->objects[one].id, type, next);
-        if (seat != RULEC_EMPTY) {
+        if (seat < RULEC_SEATS) {
             if (state->seated[seat] != RULEC_EMPTY) {
                 return RULEC_TWICE;
             }
             state->seated[seat] = (uint16_t)one;
             next = (uint16_t)(seat + 1u);
         }
-        n_new += (seat == RULEC_EMPTY) ? 1u : 0u;
+        n_new += (seat < RULEC_SEATS) ? 0u : 1u;
     }
     for (seat = 0u; seat < RULEC_SEATS; seat++) {
         const bool stays = state->seated[seat] != RULEC_EMPTY;

@@ -13,6 +13,20 @@ size_t rulec_kept_size(void)
     return offsetof(rulec_state, next_id);
 }
 
+/* The numbers in a rule's tables. */
+void rulec_numbers(uint32_t number, uint16_t *cells, uint16_t *entries);
+void rulec_numbers(uint32_t number, uint16_t *cells, uint16_t *entries)
+{
+    const rulec_rule *const rule = &rulec_rules[number];
+    uint32_t each;
+    for (each = 0u; each < rule->n_cells; each++) {
+        cells[each] = rulec_cells[rule->first_cell + each];
+    }
+    for (each = 0u; each < ((uint32_t)rule->n_states * rule->n_classes); each++) {
+        entries[each] = rulec_entries[rule->first_entry + each];
+    }
+}
+
 /* The classes of all letters of a rule, the first read counting ones. */
 void rulec_all_classes(uint32_t number, const uint32_t *reads, const uint32_t *sizes, uint32_t n,
     uint16_t *classes);

@@ -154,10 +154,22 @@ class CMonitor:
     def step(self, state: State, objects: Mapping[str, str]) -> CSaid:
         """Take the next state."""
         library = self._library
-        given = library.input_of(state, objects, self._ids)
-        status = self.take(given)
+        return self.said_now(self.take(library.input_of(state, objects, self._ids)))
+
+    def says(self, verdicts: bytes, n_violations: int | None = None) -> bool:
+        """Whether the last step has said these verdicts, and so many violations.
+
+        They are the rulebook's and each rule's: its best, and its worst.
+        """
+        end = (len(verdicts) + 3) // 4 * 4
+        said = self.said.raw[: end + 4]
+        counted = n_violations is None or int.from_bytes(said[end:], "little") == n_violations
+        return said.startswith(verdicts) and counted
+
+    def said_now(self, status: int) -> CSaid:
+        """What the last step, which came to this status, has said."""
         said = self.said.raw
-        names = [own.rule.name for own in library.layout.rules]
+        names = [own.rule.name for own in self._library.layout.rules]
         verdicts = [
             within(_four(said[place]), _four(said[place + 1]))
             for place in range(0, 2 * len(names) + 2, 2)

@@ -1,15 +1,15 @@
 """A monitor in C held against the tables that it was made of.
 
-Tables are gone through entirely: the class of every letter of every rule, and the step from every
-state by every class, as a single one and as one of several that are possible. Readings are asked
-below, at and above each limit, and with what is unknown. Whole drives are held against the
-``Monitor``.
+Tables are gone through entirely: their numbers, the class of every letter of every rule, and the
+step from every state by every class, as a single one and as one of several that are possible.
+Readings are asked below, at and above each limit, and with what is unknown. Whole drives are held
+against the ``Monitor``, and against the tables.
 """
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import prod
 from random import Random
@@ -17,25 +17,23 @@ from typing import Any
 
 import numpy as np
 
-from rulec.automata.axiom_instances import counts
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.code_generation.code_messages import differs
-from rulec.code_generation.compiled_c.c_library import CLibrary, CMonitor, CSaid
+from rulec.code_generation.compiled_c.c_library import CLibrary
 from rulec.code_generation.monitor_layout import (
     MOST_VARIABLES,
     VERDICTS,
-    MonitorLayout,
     RuleLayout,
 )
-from rulec.code_generation.proof.probing_inputs import ReadingProbe, drives, probes, weighs
-from rulec.diagnostics import RulecError
-from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
-from rulec.monitoring.online.four_valued import RunningVerdict, best_of, four_valued, worst_of
-from rulec.monitoring.online.monitor_state import SoFar
-from rulec.monitoring.online.running_monitor import Monitor
+from rulec.code_generation.proof.both_monitors import BothMonitors
+from rulec.code_generation.proof.probing_inputs import ReadingProbe, probes
+from rulec.code_generation.proof.random_drives import drives, table_drives
+from rulec.monitoring.online.four_valued import four_valued
 
 EXCLUDED_CLASS = 0x7FFF
-EXCLUDED_BY_FACTS = 5
+
+USUAL_STATES = 2000
+"""States of drives of each kind that a proof compares."""
 
 _MOST_DIGITS = 1 << 12
 
@@ -49,7 +47,7 @@ class ProofPart:
     differs: tuple[str, ...]
 
 
-def proof_report(library: CLibrary, n_states: int = 200) -> str:
+def proof_report(library: CLibrary, n_states: int = USUAL_STATES) -> str:
     """What has been compared of a monitor, and how often, line by line.
 
     Raises RulecError R0753 if something differs.
@@ -69,18 +67,24 @@ def proof_report(library: CLibrary, n_states: int = 200) -> str:
 
 
 def proof_of(library: CLibrary, n_states: int) -> Iterator[ProofPart]:
-    """All parts of the proof of a monitor; drives have about ``n_states`` states together."""
+    """All parts of the proof of a monitor; the drives of each kind have so many states together."""
+    yield _part("numbers stand in the compiled tables as they were laid out", _tables(library))
     yield _part("letters have the class that they have in the table", _letters(library))
     yield _part("steps lead from each state by each class where the table says", _steps(library))
     yield _part("values below, at and above limits, and unknown ones, are read", _readings(library))
     yield _part(
-        "verdicts where all is known are those of the monitor in Python, or perhaps no narrower "
-        "where a sum is near its limit",
+        "states of which all is known have the verdicts of the monitor in Python, or perhaps no "
+        "narrower ones where a sum is near its limit",
         _runs(library, n_states, share_unknown=0.0),
     )
     yield _part(
-        "verdicts where not all is known are no narrower than those of the monitor in Python",
+        "states of which not all is known have no narrower verdicts than those of the monitor in "
+        "Python",
         _runs(library, n_states, share_unknown=0.1),
+    )
+    yield _part(
+        "states made for letters of the tables have the tables' verdicts and Python's",
+        _words(library, n_states),
     )
 
 
@@ -93,6 +97,15 @@ def _part(what: str, found: Iterator[str]) -> ProofPart:
         if text and len(different) < 5:
             different.append(text)
     return ProofPart(what, n, tuple(different))
+
+
+def _tables(library: CLibrary) -> Iterator[str]:
+    ask = library.call("numbers")
+    for number, own in enumerate(library.layout.rules):
+        cells, entries = ((ctypes.c_uint16 * len(one))() for one in (own.cells, own.entries))
+        ask(number, cells, entries)
+        for what, found, laid in (("cell", cells, own.cells), ("entry", entries, own.entries)):
+            yield from _each(np.array(found) == np.array(laid), f"rule {own.rule.name}, {what}")
 
 
 def _letters(library: CLibrary) -> Iterator[str]:
@@ -164,46 +177,12 @@ def _input(library: CLibrary, probe: ReadingProbe) -> tuple[ctypes.Structure, An
 
 
 def _runs(library: CLibrary, n_states: int, share_unknown: float) -> Iterator[str]:
-    layout, chance = library.layout, Random(n_states)
-    weighing = any(weighs(read) for own in layout.rules for read in own.rule.machine.reads)
-    # Facts that count are not looked at in C.
-    counting = any(counts(axiom.formula) for axiom in layout.rulebook.axioms)
-    for drive in drives(layout, chance, n_states, share_unknown):
-        ours, theirs = Monitor(layout.rulebook), CMonitor(library)
-        for number, (state, objects) in enumerate(drive):
-            try:
-                said = ours.step(state, objects)
-            except RulecError as error:
-                excluded = theirs.step(state, objects).status == EXCLUDED_BY_FACTS
-                open_ = counting or error.diagnostics[0].code != VIOLATED_AXIOM.code
-                yield "" if excluded or open_ else f"state {number}: {state}"
-                break
-            found = theirs.step(state, objects)
-            where = f"state {number}: {state}"
-            sharp = share_unknown == 0
-            yield from _compared(layout, (said, found), where, sharp=sharp)
-            if sharp and not weighing:
-                right = found.violations == len(ours.violations)
-                yield "" if right else f"the number of violations, {where}"
+    both = BothMonitors(library, is_known=share_unknown == 0)
+    for drive in drives(library.layout, Random(n_states), n_states, share_unknown):
+        yield from both.judge(drive)
 
 
-def _compared(
-    layout: MonitorLayout, both: tuple[SoFar, CSaid], where: str, *, sharp: bool
-) -> Iterator[str]:
-    said, found = both
-    for own in layout.rules:
-        expected, other = said.rules[own.rule.name], found.rules[own.rule.name]
-        right = found.status == 0 and is_no_narrower(other, expected)
-        if sharp and not any(map(weighs, own.rule.machine.reads)):
-            right = right and other == expected
-        yield "" if right else f"rule {own.rule.name}, {expected} and {other}, {where}"
-    yield "" if is_no_narrower(found.verdict, said.verdict) else f"the rulebook, {where}"
-
-
-def is_no_narrower(wide: RunningVerdict, narrow: RunningVerdict) -> bool:
-    """Whether a verdict lies within another one, or is the same."""
-    ranks: Sequence[int] = [
-        VERDICTS.index(one)
-        for one in (best_of(wide), best_of(narrow), worst_of(narrow), worst_of(wide))
-    ]
-    return list(ranks) == sorted(ranks)
+def _words(library: CLibrary, n_states: int) -> Iterator[str]:
+    both = BothMonitors(library, is_known=True)
+    for word in table_drives(library.layout, Random(n_states), n_states):
+        yield from both.judge_word(word)

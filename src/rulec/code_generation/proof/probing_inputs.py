@@ -1,4 +1,4 @@
-"""Inputs that tell readings apart: at limits, beside them, unknown; and drives of them."""
+"""Inputs that tell readings apart: at limits, beside them, unknown."""
 
 from __future__ import annotations
 
@@ -124,20 +124,20 @@ def _states(
     chance: Random,
 ) -> Iterator[State]:
     """All states of a read of one value, some of another one."""
-    choices = {item.name: list(_values(item, layout)) for item in declared}
+    choices = {item.name: list(values_of(item, layout)) for item in declared}
     if isinstance(read, Read) or scale(read).quantity is not None:
         (item,) = declared
         if isinstance(read, NumberRead):
             near = [(nextafter(x, -inf), x, nextafter(x, inf)) for x in scale(read).floors]
             choices[item.name] = [*PLAIN, UNKNOWN, *[x for three in near for x in three]]
         for value in choices[item.name]:
-            yield {item.name: _everywhere(item, objects, layout, partial(_same, value))}
+            yield {item.name: everywhere(item, objects, layout, partial(_same, value))}
         return
     for _ in range(SEVERAL):
         unknown = chance.choice([0.0, 0.0, 0.2])
         state = {
-            item.name: _everywhere(
-                item, objects, layout, partial(_drawn, chance, choices[item.name], unknown)
+            item.name: everywhere(
+                item, objects, layout, partial(drawn, chance, choices[item.name], unknown)
             )
             for item in declared
         }
@@ -167,7 +167,7 @@ def _at_limits(
         for near in (value, value - 0.125, value + 0.125, nextafter(value, inf)):
             yield {
                 **state,
-                first.name: _everywhere(declaration, objects, layout, partial(_same, near)),
+                first.name: everywhere(declaration, objects, layout, partial(_same, near)),
             }
 
 
@@ -175,7 +175,7 @@ def _arguments(term: ltl.Term) -> tuple[str, ...]:
     return term.arguments if isinstance(term, ltl.QuantityTerm) else ()
 
 
-def _everywhere(
+def everywhere(
     item: Declaration, objects: Mapping[str, str], layout: MonitorLayout, draw: Callable[[], Any]
 ) -> Any:
     """A value drawn for every choice of objects that a name may be asked about."""
@@ -190,7 +190,8 @@ def _everywhere(
     return of(item.parameters)
 
 
-def _values(item: Declaration, layout: MonitorLayout) -> list[Any]:
+def values_of(item: Declaration, layout: MonitorLayout) -> list[Any]:
+    """Values of a name that rules tell apart, the last one unknown."""
     if isinstance(item, Signal):
         return [False, True, UNKNOWN]
     if isinstance(item, Enumeration):
@@ -214,31 +215,6 @@ def _same(value: Any) -> Any:
     return value
 
 
-def _drawn(chance: Random, values: Sequence[Any], share_unknown: float) -> Any:
+def drawn(chance: Random, values: Sequence[Any], share_unknown: float) -> Any:
+    """A value at random, or none that is known."""
     return UNKNOWN if chance.random() < share_unknown else chance.choice(values)
-
-
-def drives(
-    layout: MonitorLayout, chance: Random, n_states: int, share_unknown: float
-) -> Iterator[list[tuple[State, Mapping[str, str]]]]:
-    """Random drives with objects that come and go, of about so many states together."""
-    kinds = [kind for kind, (first, end) in layout.seats.items() if first < end]
-    values = {item.name: _values(item, layout)[:-1] for item in layout.fields.read}
-    while n_states > 0:
-        drive: list[tuple[State, Mapping[str, str]]] = []
-        objects: dict[str, str] = {}
-        state: dict[str, Any] = {}
-        for _ in range(min(n_states, chance.randint(1, 20))):
-            objects = {name: kind for name, kind in objects.items() if chance.random() < 0.75}
-            while len(objects) < 4 and chance.random() < 0.6:
-                objects.setdefault(f"o{chance.randrange(8)}", chance.choice(kinds))
-            before, state = state, {}
-            for item in layout.fields.read:
-                if item.name in before and not item.parameters and chance.random() < 0.6:
-                    state[item.name] = before[item.name]
-                    continue
-                draw = partial(_drawn, chance, values[item.name], share_unknown)
-                state[item.name] = _everywhere(item, objects, layout, draw)
-            drive.append((state, dict(objects)))
-        n_states -= len(drive)
-        yield drive

@@ -579,6 +579,11 @@ impl Default for Monitor {
 pub mod proof {
     use super::*;
 
+    /// Its cells and its entries.
+    pub fn tables_of(rule: usize) -> (&'static [u16], &'static [u16]) {
+        (RULE_TABLE[rule].cells, RULE_TABLE[rule].entries)
+    }
+
     fn asked<T: Copy>(reads: &[u32], given: &[T], read: u16) -> T {
         let place = reads.iter().position(|&one| one == u32::from(read));
         given[place.unwrap_or(usize::MAX)]

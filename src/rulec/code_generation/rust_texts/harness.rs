@@ -118,3 +118,13 @@ unsafe extern "C" fn rulec_digits(
         proof::digits(&(*input).as_input(), who, source as usize, digits);
     }
 }
+
+/// The numbers in a rule's tables.
+#[no_mangle]
+unsafe extern "C" fn rulec_numbers(number: u32, cells: *mut u16, entries: *mut u16) {
+    let (from_cells, from_entries) = proof::tables_of(number as usize);
+    unsafe {
+        std::ptr::copy_nonoverlapping(from_cells.as_ptr(), cells, from_cells.len());
+        std::ptr::copy_nonoverlapping(from_entries.as_ptr(), entries, from_entries.len());
+    }
+}

@@ -1,0 +1,129 @@
+"""Drives judged by a compiled monitor and by Python's, which have to say the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from rulec.automata.axiom_instances import counts
+from rulec.code_generation.compiled_c.c_library import CLibrary, CMonitor, CSaid
+from rulec.code_generation.monitor_layout import VERDICTS
+from rulec.code_generation.proof.probing_inputs import weighs
+from rulec.code_generation.proof.random_drives import Drive, TableDrive
+from rulec.diagnostics import RulecError
+from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
+from rulec.monitoring.online.four_valued import RunningVerdict, best_of, worst_of
+from rulec.monitoring.online.monitor_state import SoFar
+from rulec.monitoring.online.running_monitor import Monitor
+from rulec.trace import State
+
+EXCLUDED_BY_FACTS = 5
+
+MOST_PREPARED = 4096
+
+
+class BothMonitors:
+    """A compiled monitor beside Python's. If all ``is_known`` they have to say the same.
+
+    Where sums of several numbers decide, or not all is known, what the compiled one says may be
+    wider.
+    """
+
+    def __init__(self, library: CLibrary, *, is_known: bool) -> None:
+        self._library = library
+        self._book = library.layout.rulebook
+        self._known = is_known
+        rules = [own.rule for own in library.layout.rules]
+        self._weighing = {rule.name for rule in rules if any(map(weighs, rule.machine.reads))}
+        # Facts that count are not looked at in C.
+        self._counting = any(counts(axiom.formula) for axiom in self._book.axioms)
+        self._ids: dict[str, int] = {}
+        self._inputs: dict[int, tuple[State, Any]] = {}
+        self._codes: dict[RunningVerdict, bytes] = {}
+
+    def judge(self, drive: Drive) -> Iterator[str]:
+        """For each state a text: empty, or how the monitors differ."""
+        return (text for text, _ in self._steps(drive))
+
+    def judge_word(self, word: TableDrive) -> Iterator[str]:
+        """The same, and that of its rule nothing better is said than the table does."""
+        name = word.rule.name
+        follows = True
+        for number, (text, said) in enumerate(self._steps(word.drive)):
+            # A state that facts exclude together with others' defaults has not been taken.
+            follows = follows and said is not None
+            expected = VERDICTS.index(word.verdicts[number])
+            if (
+                follows
+                and said is not None
+                and VERDICTS.index(worst_of(said.rules[name])) < expected
+            ):
+                yield f"rule {name}, better than {VERDICTS[expected]}, state {number}"
+            else:
+                yield text
+
+    def _steps(self, drive: Drive) -> Iterator[tuple[str, SoFar | None]]:
+        ours, theirs = Monitor(self._book), CMonitor(self._library)
+        # Of the same verdicts there is one mapping as long as the same states come again.
+        packed: dict[int, tuple[Mapping[str, RunningVerdict], bytes]] = {}
+        for number, (state, objects) in enumerate(drive):
+            status = theirs.take(self._input(state, objects))
+            try:
+                said = ours.step(state, objects)
+            except RulecError as error:
+                missed = error.diagnostics[0].code == VIOLATED_AXIOM.code and not self._counting
+                if status != EXCLUDED_BY_FACTS:
+                    yield (f"not excluded by facts: {state}" if missed else ""), None
+                    return
+                yield "", None
+                continue
+            if status != 0:
+                yield f"status {status}, state {number}: {state}", said
+                return
+            mapping, expected = packed.get(id(said.rules), (None, b""))
+            if mapping is not said.rules:
+                verdicts = said.verdict, *said.rules.values()
+                expected = b"".join([self._code(one) for one in verdicts])
+                packed[id(said.rules)] = said.rules, expected
+            n_lost = len(ours.violations) if self._known and not self._weighing else None
+            if theirs.says(expected, n_lost):
+                yield "", said
+            else:
+                yield self._compared(said, theirs.said_now(status), n_lost, str(state)), said
+
+    def _input(self, state: State, objects: Mapping[str, str]) -> Any:
+        """The state as C has it, prepared once as long as it comes again and again."""
+        kept = self._inputs.get(id(state))
+        if kept is None or kept[0] is not state:
+            if len(self._inputs) >= MOST_PREPARED:
+                self._inputs.clear()
+            kept = state, self._library.input_of(state, objects, self._ids)
+            self._inputs[id(state)] = kept
+        return kept[1]
+
+    def _code(self, verdict: RunningVerdict) -> bytes:
+        if verdict not in self._codes:
+            both = best_of(verdict), worst_of(verdict)
+            self._codes[verdict] = bytes(VERDICTS.index(one) for one in both)
+        return self._codes[verdict]
+
+    def _compared(self, said: SoFar, found: CSaid, n_lost: int | None, where: str) -> str:
+        if n_lost is not None and found.violations != n_lost:
+            return f"the number of violations, {where}"
+        for name, expected in said.rules.items():
+            other = found.rules[name]
+            right = is_no_narrower(other, expected)
+            if self._known and name not in self._weighing:
+                right = other == expected
+            if not right:
+                return f"rule {name}, {expected} and {other}, {where}"
+        return "" if is_no_narrower(found.verdict, said.verdict) else f"the rulebook, {where}"
+
+
+def is_no_narrower(wide: RunningVerdict, narrow: RunningVerdict) -> bool:
+    """Whether a verdict lies within another one, or is the same."""
+    ranks: Sequence[int] = [
+        VERDICTS.index(one)
+        for one in (best_of(wide), best_of(narrow), worst_of(narrow), worst_of(wide))
+    ]
+    return list(ranks) == sorted(ranks)

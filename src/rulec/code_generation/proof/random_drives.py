@@ -1,0 +1,142 @@
+"""Drives for two monitors: states drawn at random, and states made for letters of the tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from random import Random
+from typing import Any, TypeAlias
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.code_generation.monitor_layout import MonitorLayout
+from rulec.code_generation.proof.probing_inputs import drawn, everywhere, values_of
+from rulec.monitoring.online.four_valued import FourValued, four_valued
+from rulec.trace import State
+from rulec.vocabulary import Declaration
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES
+from rulec.witnesses.letter_witness import LetterWitnesses
+
+Drive: TypeAlias = list[tuple[State, Mapping[str, str]]]
+"""States, and the objects that are there in each."""
+
+CASTS = 3
+STATES_OF_A_CAST = 24
+"""The states of several drives are some few, in any order, so that each is prepared once."""
+
+POOLS = 8
+STATES_OF_A_POOL = 40, 4000
+LENGTHS = (2, 5, 10, 20, 100, 500)
+QUIET = (0.0, 0.0, 0.5, 0.8, 0.95)
+"""How often a name has its default, so that rules are kept for a while, too."""
+
+
+def drives(
+    layout: MonitorLayout, chance: Random, n_states: int, share_unknown: float
+) -> Iterator[Drive]:
+    """Random drives with objects that come and go, of so many states together."""
+    left = n_states
+    least, most = STATES_OF_A_POOL
+    while left > 0:
+        of_pool = min(left, max(least, min(most, n_states // POOLS)))
+        n = max(2, min(STATES_OF_A_CAST, of_pool // CASTS))
+        casts = list(_casts(layout, chance))
+        quiet = chance.choice(QUIET)
+        pools = [
+            [_state(layout, chance, cast, (share_unknown, quiet)) for _ in range(n)]
+            for cast in casts
+        ]
+        left -= of_pool
+        longest = max(LENGTHS[0], of_pool // 4)
+        while of_pool > 0:
+            drive: Drive = []
+            at = chance.randrange(CASTS)
+            length = min(chance.choice(LENGTHS), longest)
+            # Who is there changes often in short drives.
+            changes = 0.5 if length <= 20 else 0.01
+            for _ in range(min(of_pool, length)):
+                if chance.random() < changes:
+                    at = chance.randrange(CASTS)
+                drive.append((chance.choice(pools[at]), casts[at]))
+            of_pool -= len(drive)
+            yield drive
+
+
+def _casts(layout: MonitorLayout, chance: Random) -> Iterator[dict[str, str]]:
+    """Who is there: of some objects some, which may come back under another type."""
+    kinds = [kind for kind, (first, end) in layout.seats.items() if first < end]
+    known = {f"o{number}": chance.choice(kinds) for number in range(6)}
+    for _ in range(CASTS):
+        there = chance.sample(sorted(known), chance.randrange(5))
+        yield {
+            name: chance.choice(kinds) if chance.random() < 0.1 else known[name] for name in there
+        }
+
+
+def _state(
+    layout: MonitorLayout, chance: Random, objects: Mapping[str, str], shares: tuple[float, float]
+) -> dict[str, Any]:
+    return {
+        item.name: everywhere(item, objects, layout, partial(_value, chance, item, layout, shares))
+        for item in layout.fields.read
+    }
+
+
+def _value(
+    chance: Random, item: Declaration, layout: MonitorLayout, shares: tuple[float, float]
+) -> Any:
+    """A value, the default or unknown with these shares of all: unknown first."""
+    share_unknown, quiet = shares
+    if chance.random() < quiet and type(item.default) not in (*UNKNOWN_TYPES, type(None)):
+        return item.default
+    return drawn(chance, values_of(item, layout)[:-1], share_unknown)
+
+
+@dataclass(frozen=True, slots=True)
+class TableDrive:
+    """A drive whose states have been made for letters of a rule, and the table's verdicts on it."""
+
+    rule: CompiledRule
+    drive: Drive
+    verdicts: tuple[FourValued, ...]
+
+
+def table_drives(layout: MonitorLayout, chance: Random, n_states: int) -> Iterator[TableDrive]:
+    """Random words of letters of each rule, of each class one that is read, as drives."""
+    vocabulary = layout.rulebook.vocabulary
+    for own in layout.rules:
+        rule, machine = own.rule, own.rule.machine
+        witnesses = LetterWitnesses(rule, vocabulary)
+        found = [witnesses.plainest(by) for by in range(len(machine.successors[0]))]
+        letters = [letter for letter in found if letter is not None]
+        trace = witnesses.trace(letters)
+        if trace.required:
+            continue  # who is counted cannot be told
+        objects = {item.name: item.type for item in (*rule.variables, *trace.objects)}
+        states = [
+            _with(values, _state(layout, chance, objects, (0.0, 1.0))) for values in trace.states
+        ]
+        classes = [machine.letters[letter] for letter in letters]
+        left = max(len(states), n_states // len(layout.rules))
+        while left > 0:
+            drive: Drive = []
+            verdicts: list[FourValued] = []
+            at = 0
+            for _ in range(min(left, chance.choice(LENGTHS))):
+                place = chance.randrange(len(states))
+                by = classes[place]
+                at, accepted = machine.successors[at][by], machine.outputs[at][by]
+                drive.append((states[place], objects))
+                verdicts.append(four_valued(machine, at, accepted))
+            left -= len(drive)
+            yield TableDrive(rule, drive, tuple(verdicts))
+
+
+def _with(values: Mapping[tuple[str, tuple[str, ...]], Any], state: dict[str, Any]) -> State:
+    """The state with these values instead."""
+    for (name, arguments), value in values.items():
+        inner, key = state, name
+        for argument in arguments:
+            inner, key = inner.setdefault(key, {}), argument
+        inner[key] = value
+    return state

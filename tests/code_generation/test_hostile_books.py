@@ -1,0 +1,115 @@
+"""A rulebook whose names and texts would break out, in every file that is generated of it."""
+
+import ast
+import keyword
+import re
+import shutil
+import unicodedata
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import pytest
+
+import rulec
+from rulec.code_generation.compiled_c.c_library import CLibrary
+from rulec.code_generation.compiled_c.rust_library import RustLibrary
+from rulec.code_generation.monitor_files import monitor_texts
+from rulec.code_generation.monitor_layout import monitor_layout
+from rulec.code_generation.ros2_files import ros2_texts
+from rulec.code_generation.rust_files import crate_texts
+from rulec.code_generation.rust_reading_code import RustReadingCode
+from rulec.code_generation.written_names import prefix_of
+from support.builders.hostile_books import PARTS, hostile
+
+BOOK = """\
+rulebook watched
+type car
+signal stop, standing default false
+light is one of red, amber, green
+quantity speed in km/h default 0
+quantity gap(o: car) in m
+quantity between(o: car, p: car) in m default 100
+hard rule stops { require always (stop implies eventually[<= 2 steps] standing) }
+hard rule waits { require always (red implies speed <= 5 km/h) }
+soft rule keeps_away (c: car) { require always gap(c) >= 2.5 m }
+soft rule lets_in (c: car, d: car) { require always (between(c, d) >= 10 m or gap(c) >= 2.5 m) }
+"""
+NAMES = ["watched", "car", "stop", "standing", "light", "red", "amber", "green", "speed", "gap"]
+NAMES += ["between", "stops", "waits", "keeps_away", "lets_in", "c"]
+WRITTEN = {"c": monitor_texts, "ros2": ros2_texts, "rust": crate_texts}
+
+
+@pytest.fixture(scope="module")
+def books():
+    """The rulebook as it is, and hostile ones in which each name has another evil one."""
+    plain = rulec.compile_rulebook(rulec.parse_rulebook(BOOK), step_s=1)
+    turned = [NAMES[n:] + NAMES[:n] for n in (0, 5, 11)]
+    evil = [hostile(plain, names) for names in turned]
+    assert {rule.name for book in evil for rule in book.rules} <= {*PARTS}
+    return [replace(plain, law="law", as_of="today"), *evil]
+
+
+def layout_of(book, language="c"):
+    return monitor_layout(book, {}, *([RustReadingCode] if language == "rust" else []))
+
+
+def in_plain_names(text, book):
+    prefix = prefix_of(book.name)
+    return text.replace(prefix, "watched").replace(prefix.upper(), "WATCHED")
+
+
+@pytest.mark.parametrize("language", WRITTEN)
+def test_no_text_ends_a_line_or_turns_one_round(books, language):
+    plain, *evil = [WRITTEN[language](layout_of(book, language)) for book in books]
+    for book, texts in zip(books[1:], evil, strict=True):
+        assert [in_plain_names(path, book) for path in texts] == list(plain)
+        for text, own in zip(texts.values(), plain.values(), strict=True):
+            assert len(text.splitlines()) == len(own.splitlines())
+            shown = text.replace("\n", "").replace("\t", "")
+            assert shown.isprintable()
+            assert not {"R", "AL", "AN"} & {unicodedata.bidirectional(one) for one in shown}
+            harmful = re.compile(r"\?\?[=/'()!<>-]|\\$", re.MULTILINE)
+            assert harmful.findall(text) == harmful.findall(own)
+
+
+def test_what_builds_a_package_is_that_of_any_other(books):
+    plain, *evil = [ros2_texts(layout_of(book)) for book in books]
+    for book, texts in zip(books[1:], evil, strict=True):
+        for path in ("package.xml", "CMakeLists.txt", "launch/monitor.launch.py"):
+            assert in_plain_names(texts[path], book) == plain[path]
+        ElementTree.fromstring(texts["package.xml"])
+        ast.parse(texts["launch/monitor.launch.py"])
+        assert re.fullmatch("[a-z](_?[a-z0-9])*", prefix_of(book.name))
+
+
+def test_messages_have_names_of_ros(books):
+    for book in books:
+        for path, text in ros2_texts(layout_of(book)).items():
+            if not path.startswith("msg/"):
+                continue
+            lines = [line for line in text.splitlines() if line and not line.startswith("#")]
+            fields = [line.split()[1] for line in lines if "=" not in line.split("#")[0]]
+            constants = [line.split()[1].split("=")[0] for line in lines if line.split()[1:]]
+            constants = [name for name in constants if name not in fields]
+            assert all(re.fullmatch("[a-z](_?[a-z0-9])*", name) for name in fields)
+            assert [x for x in constants if not re.fullmatch("[A-Z](_?[A-Z0-9])*", x)] == []
+            assert len({*fields}) == len(fields)
+            assert not any(map(keyword.iskeyword, fields))
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+def test_it_compiles_as_c(books):
+    for book in books[1:]:
+        CLibrary(layout_of(book), optimised=False)
+
+
+@pytest.mark.skipif(shutil.which("rustc") is None, reason="there is no Rust compiler")
+def test_it_compiles_as_rust(books):
+    RustLibrary(layout_of(books[1], "rust"), optimised=False)
+
+
+@pytest.mark.long
+@pytest.mark.skipif(shutil.which("rustc") is None, reason="there is no Rust compiler")
+def test_so_do_others(books):
+    for book in books[2:]:
+        RustLibrary(layout_of(book, "rust"), optimised=False)
