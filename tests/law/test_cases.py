@@ -16,6 +16,13 @@ JUDGED = [
 ]
 
 
+FOUND_SINCE = {("T16", "at"): ["allowed"]}
+"""What a law says where who wrote the case found no rule, and one was read since.
+
+Austria: § 26a(2) of the StVO binds in built-up areas alone.
+"""
+
+
 def trace_of(case: dict[str, Any], traffic: str) -> Trace:
     """The case as a trace; near and far are the sides that they are where traffic drives so."""
     near, far = ("right_of", "left_of") if traffic == "right" else ("left_of", "right_of")
@@ -46,7 +53,8 @@ def said_of(case: dict[str, Any], name: str) -> str:
 
 @pytest.mark.parametrize(("case", "name"), JUDGED)
 def test_a_book_says_of_a_case_what_its_law_says(case: dict[str, Any], name: str) -> None:
-    assert said_of(case, name) == case["verdicts"][name][0]
+    expected = FOUND_SINCE.get((case["id"], name), case["verdicts"][name])
+    assert said_of(case, name) == expected[0]
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case["id"])
@@ -68,7 +76,7 @@ def test_every_book_is_asked() -> None:
 def test_a_silence_on_a_topic_has_its_reason() -> None:
     for case in CASES:
         for name in set(NATIONAL) & set(case["verdicts"]):
-            if case["verdicts"][name] == ["silent"]:
+            if FOUND_SINCE.get((case["id"], name), case["verdicts"][name]) == ["silent"]:
                 remarks = read(name).rulebook.remarks
                 silences = {one.name for one in remarks if one.kind == "silent" and one.because}
                 assert silences >= set(case["topics"]), f"{name} on {case['id']}"
