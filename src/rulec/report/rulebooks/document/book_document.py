@@ -143,7 +143,11 @@ def _articles_section(rulebook: Rulebook, words: DocumentLanguage) -> Iterator[B
         pages = dict.fromkeys((one.link, one.as_of, one.certainty) for one in provisions)
         for link, as_of, certainty in pages:
             yield linked(words.say("{} , as of {}", link, as_of) if as_of else link)
-            yield words.say("This list: {}.", words.say(CERTAINTY[certainty]))
+            # Nobody may have opened the link: what rules rest on, their sources say.
+            yield words.say(
+                "There is the official text; what was read may be a copy of it. This list: {}.",
+                words.say(CERTAINTY[certainty]),
+            )
         yield words.say("Dealt with: {}.", progress(provisions, words))
         yield provision_table(provisions, words)
 
