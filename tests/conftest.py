@@ -17,7 +17,7 @@ from support.snapshots import Snapshots
 # long one looks for new ones.
 settings.register_profile(
     "quick",
-    max_examples=50,
+    max_examples=30,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.too_slow],

@@ -83,7 +83,7 @@ class TestRuleComparison:
         assert relation_of(second, first) == CONVERSE[relation]
 
     @given(st.tuples(*[formulas(ALONE[:3])] * 2))
-    @settings(max_examples=25)
+    @settings(max_examples=settings().max_examples // 2)
     def test_the_converse_is_the_other_way_around(self, pair):
         one, other = sides(pair, [X])
         assert compare(other, one).relation == CONVERSE[compare(one, other).relation]

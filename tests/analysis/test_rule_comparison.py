@@ -64,7 +64,7 @@ def words(objects, names, longest):
             yield Trace("t", 1.0, objects, word)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=settings().max_examples // 2)
 @given(st.tuples(*[formulas(ALONE)] * 2), SEMANTICS)
 def test_rules_about_one_object(pair, semantics):
     one, other = sides(pair, [X], semantics)
@@ -74,7 +74,7 @@ def test_rules_about_one_object(pair, semantics):
 SMALL = list(words({"x": "thing"}, ["p", "place"], 3))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=settings().max_examples // 2)
 @given(st.tuples(*[formulas(ALONE[:3])] * 2), SEMANTICS)
 def test_rules_about_one_object_on_longer_words(pair, semantics):
     check(*sides(pair, [X], semantics), SMALL)
@@ -87,7 +87,7 @@ PAIRS = [
 ]
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=settings().max_examples // 2)
 @given(st.tuples(*[formulas(PAIRED[:3])] * 2), SEMANTICS)
 def test_rules_about_two_objects(pair, semantics):
     check(*sides(pair, [X, Y], semantics), PAIRS)
@@ -104,7 +104,7 @@ TWO_THINGS = COUNTED[2]
 A_CAR = next(one for one in COUNTED if "type='car'" in repr(one))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=settings().max_examples // 2)
 @given(st.tuples(*[formulas(COUNTED)] * 2), SEMANTICS)
 @example(
     # Who has to be there in the first state is asked about by nobody in the second one.
@@ -137,7 +137,7 @@ POSSIBLE = [
 ]
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=settings().max_examples // 2)
 @given(st.tuples(*[formulas([*ALONE[:3], ALONE[5]])] * 2), SEMANTICS)
 def test_facts_rule_out_states(pair, semantics):
     one, other = sides(pair, [X], semantics, (Axiom((X,), FACT),))
@@ -151,7 +151,7 @@ def test_facts_rule_out_states(pair, semantics):
 CARS = [trace for kind in ("thing", "car") for trace in words({"x": kind}, ["p", "place"], 2)]
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=settings().max_examples // 2)
 @given(st.tuples(*[formulas(ALONE[:3])] * 2), SEMANTICS)
 def test_one_rule_speaks_of_more_objects(pair, semantics):
     one, _ = sides(pair, [X], semantics)

@@ -26,7 +26,7 @@ def trace(states):
     return Trace("t", 1.0, OBJECTS, tuple(states))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=settings().max_examples // 2)
 @given(formulas(ALONE[:3]), BOTH)
 def test_what_can_be_violated_and_kept(formula, semantics):
     (side,) = sides([formula], [X], [semantics])
@@ -40,7 +40,7 @@ def test_what_can_be_violated_and_kept(formula, semantics):
         assert verdicts == {False}
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=settings().max_examples // 2)
 @given(st.tuples(*[formulas(ALONE[:3])] * 3), BOTH)
 def test_what_others_imply_they_forbid(three, semantics):
     one, *others = sides(three, [X], [semantics] * 3)
@@ -73,7 +73,7 @@ def could_be_kept(rules, semantics, prefix):
     return can_be_kept(*sides([joined([*start, *rules])], [X], [semantics]))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=settings().max_examples // 2)
 @given(st.tuples(*[formulas(ALONE[:3])] * 2), BOTH)
 def test_conflicts(pair, semantics):
     found = conflict(sides(pair, [X], [semantics] * 2))
