@@ -4,10 +4,18 @@ import sys
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import stats
 
 from rulec.diagnostics import RulecError
 from rulec.rates.drive_bootstrap import DRIVES_TOGETHER, bootstrapped, percentile_interval
-from rulec.rates.exact_intervals import binomial_interval, poisson_interval
+from rulec.rates.exact_intervals import (
+    ClusterSizes,
+    binomial_interval,
+    clustered_interval,
+    poisson_interval,
+)
 
 POISSON = {0: (0.0, 3.689), 1: (0.025, 5.572), 2: (0.242, 7.225), 10: (4.795, 18.390)}
 """Garwood (1936), as in table 1 of Ulm, "Simple method to calculate the confidence interval of a
@@ -87,6 +95,57 @@ def test_only_the_bootstrap_covers_violations_of_few_drivers():
         over_drives.append(covers(interval, truth))
     assert 0.91 <= np.mean(over_drives) <= 0.98
     assert np.mean(exact) < 0.75
+
+
+@pytest.mark.parametrize(
+    ("n_drives", "reckless", "part"),
+    [(100, 0.03, 1 / 3), (100, 0.03, 0.9), (300, 0.01, 0.5), (20, 0.5, 0.5), (12, 0.3, 0.3)],
+)
+def test_that_of_clusters_covers_violations_of_very_few_drivers(n_drives, reckless, part):
+    """Some three drivers do it all, in some samples none; the others never do."""
+    chance = np.random.default_rng(7)
+    drives = chance.random((600, n_drives)) < reckless
+    violated = chance.binomial(20, np.where(drives, part, 0.0))
+    expected = n_drives * 20 * reckless * part
+    held = []
+    for each in violated.astype(float):
+        sizes = ClusterSizes(each.sum(), (each**2).sum())
+        held.append(covers(clustered_interval(sizes, sizes, 20.0, 0.95), expected))
+    # 600 samples of something that is covered 95 times of 100 have a deviation of 0.009.
+    assert np.mean(held) >= 0.95
+
+
+def test_that_of_clusters_covers_drives_of_all_lengths_and_careless_ones():
+    """Nearly all do it once in a while, three of a hundred half of the time."""
+    chance = np.random.default_rng(8)
+    held = []
+    for _ in range(600):
+        opportunities = 1 + chance.geometric(1 / 20, 100)
+        rates = np.where(chance.random(100) < 0.03, 0.5, 0.01)
+        violated = chance.binomial(opportunities, rates).astype(float)
+        sizes = ClusterSizes(violated.sum(), (violated**2).sum())
+        low, high = clustered_interval(sizes, sizes, opportunities.max(), 0.95)
+        truth = (0.03 * 0.5 + 0.97 * 0.01) * opportunities.sum()
+        held.append(low <= truth <= high)
+    assert np.mean(held) >= 0.95
+
+
+@given(st.integers(0, 50), st.integers(0, 10), st.sampled_from([0.5, 0.9, 0.95]))
+def test_clusters_of_one_are_independent(least, more, confidence):
+    most = least + more
+    sizes = [ClusterSizes(n, n) for n in (least, most)]
+    assert clustered_interval(*sizes, 1.0, confidence) == pytest.approx(
+        poisson_interval(least, most, confidence)
+    )
+
+
+def test_clusters_by_hand():
+    """Two drives of 3 and 4 violations, of at most 5 opportunities: gammas of 49/25 and 144/50
+    events of 25/7 and 50/12 each (Fay and Feuer's formulas), whose quantiles scipy has."""
+    sizes = ClusterSizes(7.0, 25.0)
+    low, high = clustered_interval(sizes, sizes, 5.0, 0.95)
+    assert low == pytest.approx(stats.gamma.ppf(0.025, 49 / 25) * 25 / 7)
+    assert high == pytest.approx(stats.gamma.ppf(0.975, 144 / 50) * 50 / 12)
 
 
 def test_drives_are_drawn_alike_whatever_blocks_they_come_in():

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from scipy import stats
 
 from rulec.diagnostics import RulecError
 from rulec.rates.rates_of_findings import rates_of_findings
@@ -62,6 +63,13 @@ def test_rates_by_hand(write):
     low, high = found.per_opportunity.bootstrap
     # No four drives have fewer than none violated or more than four of ten each.
     assert 0 <= low < 0.25 < high <= 0.4
+    # Fay and Feuer's: 10 violations, whose squares sum up to 34, and a drive of 10 not seen.
+    low, high = found.per_hour.clustered
+    assert low == pytest.approx(stats.gamma.ppf(0.025, 100 / 34) * 3.4 / 4)
+    assert high == pytest.approx(stats.gamma.ppf(0.975, 400 / 134) * 6.7 / 4)
+    assert found.per_1000_km.clustered == pytest.approx((20 * low, 20 * high))
+    # Twelve of ten opportunities is more than all.
+    assert found.per_opportunity.clustered == (pytest.approx(low / 10), 1.0)
 
 
 def test_what_is_open_gives_two_rates(write):
@@ -80,6 +88,9 @@ def test_no_violation_has_an_upper_bound_and_no_bootstrap(write):
     assert found.per_hour.exact == pytest.approx((0.0, 3.689 / 2), abs=1e-3)
     assert found.per_opportunity.exact == pytest.approx((0.0, 0.3085), abs=1e-4)
     assert found.per_hour.bootstrap is None
+    # Poisson's for none is 3.689, of drives that violate ten times each.
+    assert found.per_hour.clustered == pytest.approx((0.0, 36.89 / 2), abs=1e-2)
+    assert found.per_opportunity.clustered == (0.0, 1.0)
 
 
 def test_drives_in_which_a_rule_is_not_judged_are_none_of_its_exposure(write):

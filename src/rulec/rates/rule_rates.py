@@ -1,4 +1,4 @@
-"""Rates of violations by rule and group, with exact intervals and a bootstrap over drives."""
+"""Rates of violations by rule and group, with their intervals."""
 
 from __future__ import annotations
 
@@ -16,7 +16,13 @@ from rulec.rates.drive_bootstrap import (
     percentile_interval,
 )
 from rulec.rates.drive_counts import Counted, DriveCounts, GroupKey, RuleTitle
-from rulec.rates.exact_intervals import Interval, binomial_interval, poisson_interval
+from rulec.rates.exact_intervals import (
+    ClusterSizes,
+    Interval,
+    binomial_interval,
+    clustered_interval,
+    poisson_interval,
+)
 from rulec.rates.finding_rows import FindingRow
 from rulec.value_display import Rows, short_repr
 
@@ -28,13 +34,15 @@ class Rate:
     """A rate between ``least`` and ``most``, which are apart where something is open.
 
     ``exact`` is its interval if events are independent, ``bootstrap`` that over drives, None where
-    that knows nothing: of no violation, and of fewer than two drives.
+    that knows nothing: of no violation, and of fewer than two drives. ``clustered`` is the interval
+    if drives alone are independent, and any of them may violate as often as it had opportunities.
     """
 
     least: float
     most: float
     exact: Interval
     bootstrap: Interval | None
+    clustered: Interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,8 +159,12 @@ class _Sums:
         self._rules = rules
         self.n_columns = len(rules) * len(_COLUMNS)
         self.total = np.zeros(self.n_columns)
+        self.squares = np.zeros(self.n_columns)
+        self.largest = np.zeros(self.n_columns)
         for block in self.blocks():
             self.total += block.sum(axis=0)
+            self.squares += (block**2).sum(axis=0)
+            self.largest = np.maximum(self.largest, block.max(axis=0, initial=0.0))
 
     def blocks(self) -> Iterator[Sums]:
         """The numbers (drives x columns) of some drives at a time."""
@@ -200,12 +212,12 @@ class _RuleSums:
 
     def __init__(self, sums: _Sums, drawn: Sums | None, number: int, confidence: float) -> None:
         self._begin = number * len(_COLUMNS)
-        self._total = sums.total
+        self._sums = sums
         self._drawn = drawn
         self._confidence = confidence
 
     def __getitem__(self, name: str) -> float:
-        return float(self._total[self._begin + _AT[name]])
+        return float(self._sums.total[self._begin + _AT[name]])
 
     def count(self, name: str) -> int:
         """A sum of whole numbers."""
@@ -221,7 +233,14 @@ class _RuleSums:
         bootstrap = self._bootstrap(violated, (length, length))
         if bootstrap is not None:
             bootstrap = bootstrap[0] * scale, bootstrap[1] * scale
-        return Rate(least * factor, most * factor, (low * factor, high * factor), bootstrap)
+        fewest, highest = self._clustered(violated)
+        return Rate(
+            least * factor,
+            most * factor,
+            (low * factor, high * factor),
+            bootstrap,
+            (fewest * factor, highest * factor),
+        )
 
     def per_opportunity(self) -> Rate | None:
         """The part of opportunities that are taken."""
@@ -229,12 +248,25 @@ class _RuleSums:
             return None
         violated, of = _VIOLATED, ("perhaps_opportunities", "most_opportunities")
         least, most = ((self.count(v), self.count(n)) for v, n in zip(violated, of, strict=True))
+        fewest, highest = self._clustered(violated)
         return Rate(
             least[0] / least[1] if least[1] else 0.0,
             most[0] / most[1] if most[1] else 0.0,
             binomial_interval(least, most, self._confidence),
             self._bootstrap(violated, of),
+            (
+                min(fewest / least[1], 1.0) if least[1] else 0.0,
+                min(highest / most[1], 1.0) if most[1] else 1.0,
+            ),
         )
+
+    def _clustered(self, violated: tuple[str, str]) -> Interval:
+        """The interval of the violations that are expected of drives such as these."""
+        at = [self._begin + _AT[name] for name in violated]
+        sizes = [ClusterSizes(float(self._sums.total[n]), float(self._sums.squares[n])) for n in at]
+        most_of_a_drive = ("perhaps_opportunities", "most_opportunities")
+        largest = max(self._sums.largest[self._begin + _AT[name]] for name in most_of_a_drive)
+        return clustered_interval(sizes[0], sizes[1], float(largest), self._confidence)
 
     def _bootstrap(self, violated: tuple[str, str], of: tuple[str, str]) -> Interval | None:
         if self._drawn is None or not self[violated[1]]:
@@ -282,6 +314,7 @@ def _as_row(rates: RuleRates, by: Sequence[GroupKey]) -> dict[str, Any]:
         rate: Rate | None = getattr(rates, name)
         bootstrap = (None, None) if rate is None else rate.bootstrap or (None, None)
         exact = (None, None) if rate is None else rate.exact
+        clustered = (None, None) if rate is None else rate.clustered
         row |= {
             name: None if rate is None else rate.least,
             f"perhaps_{name}": None if rate is None else rate.most,
@@ -289,6 +322,8 @@ def _as_row(rates: RuleRates, by: Sequence[GroupKey]) -> dict[str, Any]:
             f"{name}_high": exact[1],
             f"{name}_drives_low": bootstrap[0],
             f"{name}_drives_high": bootstrap[1],
+            f"{name}_clustered_low": clustered[0],
+            f"{name}_clustered_high": clustered[1],
         }
     return row
 

@@ -18,12 +18,13 @@ class JudgedByData(JsonPart, frozen=True, kw_only=True):
 
 
 class RateData(JsonPart, frozen=True, kw_only=True):
-    """A rate, at least and at most, with both of its intervals."""
+    """A rate, at least and at most, with its intervals."""
 
     least: float
     most: float
     exact: tuple[float, float]
     bootstrap: tuple[float, float] | None
+    clustered: tuple[float, float]
 
 
 class RuleRatesData(JsonPart, frozen=True, kw_only=True):

@@ -30,7 +30,7 @@ PER = {"per_hour": "per hour", "per_1000_km": "per 1000 km", "per_opportunity": 
 
 _ROW = 34.0
 _BESIDE = 5.0
-"""How far both intervals are from the middle of a row."""
+"""How far the outer intervals are from the middle of a row."""
 _HEAD = 30.0
 _FOOT = 26.0
 _LONGEST_NAME = 380.0
@@ -51,7 +51,8 @@ def rates_drawing(rates: ViolationRates, per: str) -> Drawing:
     percent = f"{100 * rates.confidence:g} %"
     title = (
         f"Violations {PER[per]} by {books}: {rates.drives:,} drives; {percent} intervals, "
-        "above for independent opportunities, below over drives; two boxes: the least and the most"
+        "above for independent opportunities, amid over drives, below for independent drives of "
+        "any kind; two boxes: the least and the most"
     )
     return Drawing(title, [_forest(title, rates, shown)], None)
 
@@ -88,7 +89,10 @@ def _forest(title: str, rates: ViolationRates, shown: Sequence[tuple[RuleRates, 
 def _row(rate: Rate, y: float, place: Callable[[float], float]) -> Iterator[Mark]:
     yield from _bar(rate.exact, y - _BESIDE, "satisfying", place, "independent opportunities")
     if rate.bootstrap is not None:
-        yield from _bar(rate.bootstrap, y + _BESIDE, "rejected", place, "over drives")
+        yield from _bar(rate.bootstrap, y, "rejected", place, "over drives")
+    yield from _bar(
+        rate.clustered, y + _BESIDE, "accepted", place, "independent drives of any kind"
+    )
     for value in {rate.least, rate.most}:
         tip = f"{number(rate.least)} to {number(rate.most)}"
         yield filled(centred((place(value), y), 3.0, 8.0), "own", tip)
@@ -105,7 +109,7 @@ def _bar(
 
 
 def _values(rate: Rate) -> Iterator[float]:
-    yield from (rate.least, rate.most, *rate.exact, *(rate.bootstrap or ()))
+    yield from (rate.least, rate.most, *rate.exact, *rate.clustered, *(rate.bootstrap or ()))
 
 
 def _decades(values: Sequence[float]) -> tuple[int, int]:

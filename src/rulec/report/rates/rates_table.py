@@ -24,7 +24,7 @@ def as_text(rates: ViolationRates) -> str:
         lines += ["", *([f"{group}: {_size(rules)}"] if group else [_size(rules)])]
         rows: list[tuple[str, ...]] = [_HEAD]
         for rule in tested:
-            rows += [tuple(_cells(rule)), ("", "", "", *_below(rule))]
+            rows += [tuple(_cells(rule)), *(("", "", "", *more) for more in _below(rule))]
         if tested:
             lines += table_lines(rows, indent="  ", right=(1, 2))
         lines += [f"  {line}" for line in _others(rules)]
@@ -43,8 +43,10 @@ def as_markdown(rates: ViolationRates) -> str:
         blocks.append(markdown.escaped(_size(rules)))
         rows = [
             [
-                markdown.escaped(cell) if not below else markdown.escaped(f"{cell} {below}")
-                for cell, below in zip(_cells(rule), ("", "", "", *_below(rule)), strict=True)
+                markdown.escaped(" ".join(text for text in texts if text))
+                for texts in zip(
+                    _cells(rule), *(("", "", "", *more) for more in _below(rule)), strict=True
+                )
             ]
             for rule in rules
             if _is_tested(rule)
@@ -84,8 +86,9 @@ def _about(rates: ViolationRates) -> Iterator[str]:
     left_out = f"; {rates.not_judged:,} without a verdict" if rates.not_judged else ""
     yield f"{_number(rates.drives, 'drive')}{left_out}"
     yield (
-        f"In parentheses {percent} intervals for independent opportunities, in braces over drives: "
-        f"{rates.replicates:,} times drawn again, seed {rates.seed}."
+        f"In parentheses {percent} intervals for independent opportunities, in braces over drives "
+        f"({rates.replicates:,} times drawn again, seed {rates.seed}), in brackets for independent "
+        "drives of any kind."
     )
 
 
@@ -138,11 +141,15 @@ def rates_of(rule: RuleRates) -> tuple[Rate | None, ...]:
     return rule.per_hour, rule.per_1000_km, rule.per_opportunity
 
 
-def _below(rule: RuleRates) -> list[str]:
-    return [
-        "" if rate is None or rate.bootstrap is None else f"{{{_interval(rate.bootstrap)}}}"
-        for rate in rates_of(rule)
-    ]
+def _below(rule: RuleRates) -> Iterator[list[str]]:
+    """The other intervals: over drives in braces, of clusters in brackets."""
+    rates = rates_of(rule)
+    if any(rate is not None and rate.bootstrap is not None for rate in rates):
+        yield [
+            "" if rate is None or rate.bootstrap is None else f"{{{_interval(rate.bootstrap)}}}"
+            for rate in rates
+        ]
+    yield ["" if rate is None else f"[{_interval(rate.clustered)}]" for rate in rates]
 
 
 def _rate(rate: Rate | None) -> str:
