@@ -142,3 +142,16 @@ def test_who_is_on_no_lane_is_not_judged():
     assert (found.off_road, found.satisfied) == (8, None)
     assert found.why
     assert not found.violations
+
+
+def test_each_past_is_judged_by_itself_though_the_last_one_is_remembered():
+    def before(world, speed):
+        times = np.arange(-19, 1) * STEP_S
+        past = np.column_stack((speed * times, 0 * times, 0 * times, 0 * times + speed))
+        future = past[:4] + np.array([speed * 20 * STEP_S, 0, 0, 0])
+        return score([future], world, GERMAN, past).violated_before
+
+    world = street()
+    found = [before(world, speed) for speed in (10.0, 10.0, 30.0, 10.0)]
+    assert [len(own) > 0 for own in found] == [False, False, True, False]
+    assert found == [before(street(), speed) for speed in (10.0, 10.0, 30.0, 10.0)]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any, TypeAlias
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,6 +30,9 @@ from rulec.scoring.traffic_world import TrafficWorld
 _Key = tuple[str, tuple[str, ...]]
 """A rule, and the objects of its variables."""
 
+_Pasts: TypeAlias = "WeakKeyDictionary[TrafficWorld, tuple[Any, tuple[Violation, ...]]]"
+"""By worlds the last past that was asked about, and what it violates by itself."""
+
 
 def score(
     candidates: ArrayLike,
@@ -45,20 +50,27 @@ def score(
     paths, past = world.candidates_of(candidates), world.past_of(after)
     bodies = [world.body_along(path, past) for path in paths]
     first = world.now + 1
-    if len(past):
+    steps = first - len(past), first + paths.shape[1] - 1
+    about = past.tobytes(), steps
+    known: _Pasts = rules.prepared.setdefault(score, WeakKeyDictionary())
+    key, before = known.get(world, (None, ()))
+    if key != about and len(past):
         # Alone, to see what it has violated whatever comes
-        bodies.append(world.body_at(past, first - len(past)))
+        bodies.append(world.body_at(past, steps[0]))
     roundings = rounded_rulebooks(rules, world.recording.step_s)
-    found = list(_judged(bodies, world, roundings, (first - len(past), first + paths.shape[1] - 1)))
-    alone = found.pop() if len(past) else ()
-    before = [violation for _, verdict in _verdicts(alone) for violation in verdict.violations]
+    found = list(_judged(bodies, world, roundings, steps))
+    if key != about:
+        alone = found.pop() if len(past) else ()
+        before = tuple([one for _, verdict in _verdicts(alone) for one in verdict.violations])
+        # The next candidates are mostly asked about after the same past.
+        known[world] = about, before
     scores = _anew(
         [_charged(number, own, first, paths.shape[1]) for number, own in enumerate(found)],
         before,
         roundings,
         (first, first + paths.shape[1] // 2),
     )
-    return Scores(roundings[0], tuple(scores), tuple(before), paths, first)
+    return Scores(roundings[0], tuple(scores), before, paths, first)
 
 
 def _judged(

@@ -77,6 +77,7 @@ class UncertainMachine:
         self._runs = RunPairs(machine, self.classes)
         self._reasons: dict[object, OpenReasons] = {}
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
+        self._steps: dict[tuple[int, int], int | None] = {}
 
     @cached_property
     def idle(self) -> IdleLetters:
@@ -268,19 +269,19 @@ class UncertainMachine:
         Beyond ``MOST_LOOKED_AT`` it is taken to be so: then the rule is judged, and open at worst.
         """
         machine = self.machine
-        letters = [list(bits_of(classes)) for classes in self._classes_in_the_dark(untold)]
+        letters = self._classes_in_the_dark(untold)
         # If they do from the least states, they do from all.
         start = machine.least(sum(1 << state for state in machine.starts))
         if self._is_lost_by_runs(start, letters):
             return True
         reached = {start}
-        looked_at = 0
+        looked_at, n_classes = 0, sum(map(int.bit_count, letters))
         for here in (waiting := [start]):
-            looked_at += here.bit_count() * sum(map(len, letters))
+            looked_at += here.bit_count() * n_classes
             if looked_at > MOST_LOOKED_AT:
                 return True
-            for symbols in letters:
-                after = self._after(here, symbols)
+            for classes in letters:
+                after = self._after(here, classes)
                 if after is None:
                     return True
                 if after not in reached:
@@ -288,36 +289,52 @@ class UncertainMachine:
                     waiting.append(after)
         return False
 
-    def _is_lost_by_runs(self, start: int, letters: Sequence[Sequence[int]]) -> bool:
+    def _is_lost_by_runs(self, start: int, letters: Set[int]) -> bool:
         """Whether one letter for long, or after it another one for long, violates the rule.
 
         Most duties come to that, and with a short step no search would get so far.
         """
+        tried: set[int] = set()
         for first in letters:
             middle = self._at_last(start, first)
-            if middle is None or any(self._at_last(middle, second) is None for second in letters):
+            if middle is None:
                 return True
+            if middle not in tried and None in {self._at_last(middle, one) for one in letters}:
+                return True
+            tried.add(middle)
         return False
 
-    def _at_last(self, here: int, symbols: Sequence[int]) -> int | None:
+    def _at_last(self, here: int, classes: int) -> int | None:
         """The least states in which a letter leaves for good; None if it violates the rule."""
         met: set[int] = set()
         while here not in met and len(met) < MOST_REPETITIONS:
             met.add(here)
-            after = self._after(here, symbols)
+            after = self._after(here, classes)
             if after is None:
                 return None
             here = after
         return here
 
-    def _after(self, here: int, symbols: Sequence[int]) -> int | None:
-        """The least states after a letter that may be any of these; None if all of it violates."""
+    def _after(self, here: int, classes: int) -> int | None:
+        """The least states after a letter of any of these classes; None if all of it violates.
+
+        Remembered, since runs of letters, the search, and fewer untold names meet the same steps.
+        """
+        key = here, classes
+        if key not in self._steps:
+            if len(self._steps) > _MOST_REMEMBERED:
+                self._steps.clear()
+            self._steps[key] = self._step(bits_of(here), bits_of(classes))
+        return self._steps[key]
+
+    def _step(self, states: Sequence[int], symbols: Sequence[int]) -> int | None:
         machine = self.machine
-        pairs = list(product(bits_of(here), symbols))
-        if all(machine.outputs[state][symbol] == VIOLATED for state, symbol in pairs):
+        outputs = [machine.outputs[state] for state in states]
+        if all(row[symbol] == VIOLATED for row in outputs for symbol in symbols):
             return None
-        targets = {machine.successors[state][symbol] for state, symbol in pairs}
-        return machine.least(sum(1 << target for target in targets))
+        rows = [machine.successors[state] for state in states]
+        targets = {row[symbol] for row in rows for symbol in symbols}
+        return machine.least(sum([1 << target for target in targets]))
 
     def _classes_in_the_dark(self, untold: frozenset[str]) -> frozenset[int]:
         """The least sets of classes, as bits, that letters may have, by the reads that are told.

@@ -25,7 +25,7 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
     names_of_read,
     read_digits,
 )
-from rulec.monitoring.uncertainty.state_letters.reads_apart import ReadsApart
+from rulec.monitoring.uncertainty.state_letters.reads_apart import KnownParts, ReadsApart
 from rulec.monitoring.uncertainty.state_letters.related_facts import (
     fits_or_not,
     is_of_one,
@@ -83,10 +83,10 @@ class EntangledReads:
         axioms: Sequence[CompiledAxiom],
         everybody: NothingKnown,
         *,
-        is_local: bool = False,
+        local_parts: KnownParts | None = None,
     ) -> None:
         reads = rule.machine.reads
-        self.is_local = is_local
+        self.is_local = is_local = local_parts is not None
         self._binding = binding
         self._axioms = axioms = related_facts(names_read_by(rule), axioms)
         self._everybody = everybody
@@ -114,8 +114,10 @@ class EntangledReads:
             asked = frozenset(binding.values())
             self._crowd = crowd_of(self._reads, self.subjects, asked, everybody.objects)
         self._apart = None
-        if is_local:
-            self._apart = ReadsApart(self._reads, self.subjects, binding, axioms, everybody)
+        if local_parts is not None:
+            self._apart = ReadsApart(
+                self._reads, self.subjects, binding, axioms, everybody, local_parts
+            )
         self.found: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}
@@ -178,12 +180,16 @@ def local_reads(rule: CompiledRule, rulebook: CompiledRulebook) -> EntangledRead
     """The entangled reads of a rule, if its own objects alone decide what they may be."""
     known: dict[str, EntangledReads | None] = rulebook.prepared.setdefault(EntangledReads, {})
     if rule.name not in known:
-        known[rule.name] = _local_reads(rule, rulebook.axioms, rulebook.vocabulary)
+        parts: KnownParts = rulebook.prepared.setdefault(ReadsApart, {})
+        known[rule.name] = _local_reads(rule, rulebook.axioms, rulebook.vocabulary, parts)
     return known[rule.name]
 
 
 def _local_reads(
-    rule: CompiledRule, axioms: Sequence[CompiledAxiom], vocabulary: Vocabulary
+    rule: CompiledRule,
+    axioms: Sequence[CompiledAxiom],
+    vocabulary: Vocabulary,
+    parts: KnownParts,
 ) -> EntangledReads | None:
     facts = related_facts(names_read_by(rule), axioms)
     if not all(
@@ -195,7 +201,7 @@ def _local_reads(
         return None
     own = {variable.name: variable.type for variable in rule.variables}
     binding = {name: name for name in own}
-    return EntangledReads(rule, binding, facts, NothingKnown(own, vocabulary), is_local=True)
+    return EntangledReads(rule, binding, facts, NothingKnown(own, vocabulary), local_parts=parts)
 
 
 def names_read_by(rule: CompiledRule) -> frozenset[str]:

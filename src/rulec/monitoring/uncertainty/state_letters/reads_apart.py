@@ -7,23 +7,24 @@ fewer ways to say that than for all subjects together.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import product
-from typing import NamedTuple
+from operator import itemgetter
+from typing import Any, NamedTuple, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import Digits, joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
-from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, ReadDigits, read_digits
+from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
     Subject,
     subjects_in,
     subjects_of_read,
 )
+from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, PartialValue
 from rulec.vocabulary.vocabulary_model import choices
 
@@ -42,55 +43,64 @@ class _PartFound(NamedTuple):
     exact: bool
 
 
-@dataclass(slots=True, eq=False)
-class _Part:
-    """Some of several reads, with what they depend on.
+class _PartTable:
+    """What some reads may be by the values of their ``subjects``, in numbered answers."""
 
-    ``reads`` and ``subjects`` are places among all of these.
-    """
+    def __init__(
+        self,
+        reads: Sequence[Read | NumberRead],
+        subjects: Sequence[Subject],
+        binding: Mapping[str, str],
+        axioms: Sequence[CompiledAxiom],
+        objects: Mapping[str, str],
+        vocabulary: Vocabulary,
+    ) -> None:
+        self._reads, self._ready = reads, [read_digits(read) for read in reads]
+        self._subjects, self._binding, self._axioms = subjects, binding, axioms
+        self._objects, self._vocabulary = objects, vocabulary
+        self.found: list[_PartFound] = []
+        self._numbers: dict[_PartFound, int] = {}
+        self._known: dict[tuple[object, ...], int] = {}
 
-    reads: tuple[int, ...]
-    subjects: tuple[int, ...]
-    ready: tuple[ReadDigits, ...]
-    axioms: tuple[CompiledAxiom, ...]
-    objects: Mapping[str, str]
-    found: list[_PartFound] = field(default_factory=list)
-    _numbers: dict[_PartFound, int] = field(default_factory=dict)
-    _known: dict[tuple[object, ...], int] = field(default_factory=dict)
-
-    def number(self, values: Sequence[PartialValue | None], parts: ReadsApart) -> int:
-        """The place of what is found for the values of all subjects. Raises MissingValueError."""
-        own = tuple([values[place] for place in self.subjects])
-        known = self._known.get(own)
+    def number(self, values: tuple[PartialValue | None, ...]) -> int:
+        """The place of what is found for these values. Raises MissingValueError."""
+        known = self._known.get(values)
         if known is None:
-            found = self._found(own, parts)
+            found = self._found(values)
             known = self._numbers.setdefault(found, len(self.found))
             if known == len(self.found):
                 self.found.append(found)
             if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
-            self._known[own] = known
+            self._known[values] = known
         return known
 
-    def _found(self, values: Sequence[PartialValue | None], parts: ReadsApart) -> _PartFound:
-        subjects = [parts.subjects[place] for place in self.subjects]
-        given = with_values({}, dict(zip(subjects, values, strict=True)))
-        state = StateView(given, self.objects, parts.everybody.vocabulary)
-        digits = [read.in_state(parts.binding, state) for read in self.ready]
+    def _found(self, values: Sequence[PartialValue | None]) -> _PartFound:
+        given = with_values({}, dict(zip(self._subjects, values, strict=True)))
+        state = StateView(given, self._objects, self._vocabulary)
+        digits = [read.in_state(self._binding, state) for read in self._ready]
         known = None
         if all(own & (own - 1) == 0 for own in digits):
             known = tuple([own.bit_length() - 1 for own in digits])
             if UNKNOWN_TYPES.isdisjoint(map(type, values)):
                 return _PartFound(known, frozenset({known}), True)
-        reads = [read.read for read in self.ready]
-        joint = joint_digits(reads, parts.binding, state, self.axioms)
+        joint = joint_digits(self._reads, self._binding, state, self._axioms)
         return _PartFound(known, joint.digits, joint.exact)
+
+
+class _Part(NamedTuple):
+    """Places of some reads among all, a getter of their subjects' values, and what is found."""
+
+    reads: tuple[int, ...]
+    values: Callable[[Any], tuple[Any, ...]]
+    table: _PartTable
 
 
 class ReadsApart:
     """Reads of one rule that depend on these ``subjects``, in parts.
 
-    They are asked of the objects of a ``binding``, where only ``everybody`` may be there.
+    They are asked of the objects of a ``binding``, where only ``everybody`` may be there. Rules
+    that have a part in common share what is ``known`` of it.
     """
 
     def __init__(
@@ -100,10 +110,11 @@ class ReadsApart:
         binding: Mapping[str, str],
         axioms: Sequence[CompiledAxiom],
         everybody: PartialView,
+        known: KnownParts,
     ) -> None:
-        self.subjects, self.binding, self.everybody = tuple(subjects), binding, everybody
+        self._binding, self._everybody = binding, everybody
         self._n_reads = len(reads)
-        self._parts = tuple(self._apart(reads, axioms))
+        self._parts = tuple(self._apart(reads, subjects, axioms, known))
         self._letters: dict[tuple[int, ...], tuple[Letters, bool]] = {}
 
     def letters(self, values: Sequence[PartialValue | None]) -> tuple[Letters, bool]:
@@ -111,14 +122,14 @@ class ReadsApart:
 
         Raises MissingValueError, not always about the value that is missing first.
         """
-        key = tuple([part.number(values, self) for part in self._parts])
+        key = tuple([part.table.number(part.values(values)) for part in self._parts])
         known = self._letters.get(key)
         if known is None:
             known = self._letters[key] = self._together(key)
         return known
 
     def _together(self, key: Sequence[int]) -> tuple[Letters, bool]:
-        found = [part.found[n] for part, n in zip(self._parts, key, strict=True)]
+        found = [part.table.found[n] for part, n in zip(self._parts, key, strict=True)]
         sure = [own.known for own in found]
         if None not in sure:
             return (self._cube([own for own in sure if own is not None]),), True
@@ -134,27 +145,51 @@ class ReadsApart:
         return tuple(cube)
 
     def _apart(
-        self, reads: Sequence[Read | NumberRead], axioms: Sequence[CompiledAxiom]
+        self,
+        reads: Sequence[Read | NumberRead],
+        subjects: Sequence[Subject],
+        axioms: Sequence[CompiledAxiom],
+        known: KnownParts,
     ) -> Iterator[_Part]:
-        everybody = self.everybody
-        of_reads = [frozenset(subjects_of_read(read, self.binding, everybody)) for read in reads]
+        everybody = self._everybody
+        of_reads = [frozenset(subjects_of_read(read, self._binding, everybody)) for read in reads]
         of_facts = [(axiom, own) for axiom in axioms for own in _instances(axiom, everybody)]
-        for own in _joined([*of_reads, *[own for _, own in of_facts]]):
-            members = tuple([n for n, about in enumerate(of_reads) if about & own])
+        apart = _joined([*of_reads, *[own for _, own in of_facts]])
+        # Reads that depend on nothing are one more.
+        for own in [*apart, frozenset[Subject]()]:
+            members = tuple([n for n, about in enumerate(of_reads) if about & own or about == own])
             if not members:
                 continue
-            known = [n for n, subject in enumerate(self.subjects) if subject in own]
-            facts = dict.fromkeys(axiom for axiom, about in of_facts if about & own)
-            is_of_world = not any(items for _, items in own)
-            is_of_world &= not any(axiom.variables for axiom in facts)
-            counts = any(count_in(reads[n]) for n in members)
-            objects = {} if is_of_world and not counts else everybody.objects
-            ready = tuple([read_digits(reads[n]) for n in members])
-            yield _Part(members, tuple(known), ready, tuple(facts), objects)
-        alone = tuple([n for n, about in enumerate(of_reads) if not about])
-        if alone:
-            ready = tuple([read_digits(reads[n]) for n in alone])
-            yield _Part(alone, (), ready, (), everybody.objects)
+            facts = tuple(dict.fromkeys([axiom for axiom, about in of_facts if about & own]))
+            places = [place for place, subject in enumerate(subjects) if subject in own]
+            table = self._table(
+                tuple([reads[n] for n in members]),
+                tuple([subjects[place] for place in places]),
+                facts,
+                known,
+            )
+            yield _Part(members, _values_at(places), table)
+
+    def _table(
+        self,
+        reads: tuple[Read | NumberRead, ...],
+        subjects: tuple[Subject, ...],
+        facts: tuple[CompiledAxiom, ...],
+        known: KnownParts,
+    ) -> _PartTable:
+        binding, objects = self._binding, self._everybody.objects
+        is_of_world = not any(items for _, items in subjects) and not any(map(count_in, reads))
+        if is_of_world and not any(fact.variables for fact in facts):
+            binding, objects = {}, {}
+        key = reads, subjects, facts, (*binding.items(),), (*objects.items(),)
+        if key not in known:
+            vocabulary = self._everybody.vocabulary
+            known[key] = _PartTable(reads, subjects, binding, facts, objects, vocabulary)
+        return known[key]
+
+
+KnownParts: TypeAlias = "dict[object, _PartTable]"
+"""What is known of parts, by what they are."""
 
 
 def _instances(axiom: CompiledAxiom, everybody: PartialView) -> Iterator[frozenset[Subject]]:
@@ -175,3 +210,9 @@ def _joined(sets: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
             found = [other for other in found if not other & own]
             found.append(own.union(*touched))
     return found
+
+
+def _values_at(places: Sequence[int]) -> Callable[[Any], tuple[Any, ...]]:
+    if len(places) > 1:
+        return itemgetter(*places)
+    return lambda values: tuple([values[place] for place in places])
