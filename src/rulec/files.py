@@ -226,6 +226,8 @@ def opened(
         is_packed = stream.peek(len(PACKED)).startswith(PACKED)
     except (OSError, ValueError) as problem:  # ValueError: a null character in the name
         message = f"the file cannot be read: {reason_in_words(problem)}"
+        if path.parts[:1] in (("http:",), ("https:",)):
+            way_out = "download it first: rulec opens no connections"
         place = SourceLocation(str(path))
         raise UNREADABLE_FILE.error(place, message, help=way_out, labels=labels) from None
     note_read(path)

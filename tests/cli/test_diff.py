@@ -188,7 +188,7 @@ def test_words_that_mean_different_things(tmp_path, capsys):
 
 def test_it_takes_two(capsys):
     assert main(["diff", "./old.rules"]) == 2
-    assert "name the two rulebooks" in capsys.readouterr().err
+    assert "with which rulebook is it to be compared?" in capsys.readouterr().err
 
 
 def test_all(tmp_path, capsys):
@@ -288,3 +288,25 @@ def test_rules_of_other_names_are_offered_and_paired(tmp_path, capsys):
     for wrong, why in (("keep_gap", "no pair"), ("keep_gap=folowing", "did you mean `following`?")):
         assert main(["diff", *books, "--pair", wrong]) == 2
         assert why in capsys.readouterr().err
+
+
+def test_what_was_found_is_kept_until_a_source_changes(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "cache"))
+    rule = "signal p, q\nhard rule r {{ require always ({}) }}\n"
+    (tmp_path / "a.rules").write_text(f"rulebook a\n{rule.format('p and q')}")
+    (tmp_path / "b.rules").write_text(f"rulebook b\n{rule.format('p')}")
+
+    def said(*options):
+        return main(["diff", "./a.rules", "./b.rules", *options]), capsys.readouterr().out
+
+    first = said()
+    assert first[0] == 1
+    assert "stricter" in first[1]
+    with monkeypatch.context() as patched:
+        patched.setattr("rulec.Session.diff", None)
+        assert said() == first
+        assert said("--no-cache")[0] == 70
+    assert json.loads(said("--json")[1])["version"] == 1
+    (tmp_path / "a.rules").write_text(f"rulebook a\n{rule.format('p')}")
+    assert said()[0] == 0

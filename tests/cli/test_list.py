@@ -51,7 +51,7 @@ def test_one_kind(kind, names, capsys):
 
 def test_a_kind_that_there_is_not(capsys):
     assert main(["list", "rules"]) == 2
-    assert "'rulebooks'" in capsys.readouterr().err
+    assert "did you mean `rulebooks`?" in capsys.readouterr().err
 
 
 def test_a_file_that_cannot_be_read_is_listed_without_a_title(tmp_path):

@@ -6,7 +6,8 @@ from importlib import metadata
 
 import pytest
 
-from rulec.cli.main import main
+from rulec.cli.main import VERBS, main
+from rulec.cli.usage_help import EXAMPLES
 from rulec.diagnostics.install_command import install_command
 
 
@@ -48,6 +49,28 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["show", "germany"], "  = help: did you mean `de` (Germany)?"),
         (["verify", "x"], "  = help: `rulec list rulebooks` shows which there are, such as `de`"),
         (["explain", "speed"], "it is a word of the vocabulary `road`"),
+        (["verify", "-r", "de"], "  = help: such as `rulec verify traces.jsonl -r de`"),
+        (["verify", "-r", "de"], "`rulec traces s2 -r de -o traces.jsonl` writes some to try"),
+        (["new"], "  = help: such as `rulec new belgium`"),
+        (["compile", "de"], "  = help: such as `rulec compile de -o build/de`"),
+        (["doc", "deutschland"], "  = help: did you mean `de` (Germany)?"),
+        (["list", "rulebook"], "error: there is no `rulebook`; did you mean `rulebooks`?"),
+        (["draw", "de"], "`rulec draw de` is no command; it is one of drive, graph, scene, trace"),
+        (["draw", "scen"], "did you mean `scene`?"),
+        (["analyze", "de.rules"], "  = help: `de` ships with rulec: leave out `.rules`"),
+        (["build", "de"], "did you mean `compile`?"),
+        (["de"], "for a rulebook it stands behind one, as in `rulec check de`"),
+        (["show", "R3"], "`R3` is a rule; give its rulebook, too: `rulec show esterle2019 R3`"),
+        (
+            ["show", "de", "--automaton", "png"],
+            "--automaton: there is no `png`; it is one of text,",
+        ),
+        (["diff", "de"], "with which rulebook is it to be compared? As in `rulec diff de nl`"),
+        (["diff", "de", "nl", "fr"], "of 3, `rulec diff --all de nl fr`"),
+        (["test", "de", "--fail"], "no option `--fail`; did you mean `--fail-on-empty`?"),
+        (["maneuvers", "s2", "-r", "de", "--list", "many"], "--list: `many` is no whole number"),
+        (["compile", "de", "-o", "x", "--step", "0,5"], "decimals have a point: 0.5"),
+        (["verify", "https://x.org/a.xml", "-r", "nl"], "download it first"),
         (["new", "Belgium 2"], "  = help: such as `belgium_2`"),
         (
             ["maneuvers", "s1", "-r", "esterle2019", "--step", "0.307692"],
@@ -55,7 +78,8 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         ),
     ],
 )
-def test_in_a_command(arguments, way_out, capsys):
+def test_in_a_command(arguments, way_out, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
     status, text = said(capsys, *arguments)
     assert status == 2
     assert way_out in text
@@ -102,3 +126,29 @@ def test_an_extra_is_installed_where_rulec_runs(origin, has_pip, command, monkey
         assert install_command("rates") == command
     finally:
         install_command.cache_clear()
+
+
+def test_a_file_of_another_kind(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rules.txt").write_text("rulebook rules\n")
+    (tmp_path / "README.md").write_text("# A\n\nB\n")
+    (tmp_path / "states.jsonl").write_text('{"id": "t", "states": [{}]}\n')
+    for verb in ("check", "test"):
+        status, text = said(capsys, verb, "rules.txt")
+        assert (status, "ends in `.rules`: call it `rules.rules`" in text) == (2, True)
+    status, text = said(capsys, "verify", "README.md", "-r", "esterle2019")
+    assert (status, text.count("error["), "these are no traces, but text" in text) == (2, 1, True)
+    status, text = said(capsys, "maneuvers", "states.jsonl", "-r", "esterle2019")
+    assert (status, "this is no scenario: it looks like traces" in text) == (2, True)
+
+
+def test_a_new_rulebook_of_a_name_that_ships(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    status, text = said(capsys, "new", "de")
+    assert (status, "rulec: a `de` ships with rulec, too" in text) == (0, True)
+
+
+def test_every_example_of_a_command_is_one():
+    for verb, (example, *_) in EXAMPLES.items():
+        assert example.startswith(f"rulec {verb}")
+        assert verb.split()[0] in VERBS

@@ -164,3 +164,12 @@ def test_colour_only_adds_colour():
     assert "\x1b[1;31merror[R0104]" in colored
     assert re.sub(r"\x1b\[[0-9;]*m", "", colored) == plain
     assert "\x1b" not in plain
+
+
+def test_a_line_is_as_wide_as_it_is_told():
+    line = "x" * 600
+    place = SourceLocation("f.rules", 1, 300, 1, 301, line)
+    for columns in (40, 100, 160):
+        shown = render_diagnostics([Diagnostic("R0202", "m", place)], columns=columns)
+        assert next(row for row in shown.splitlines() if "xx" in row).count("x") == columns
+    assert render_diagnostics([Diagnostic("R0202", "m", place)], columns=700).count("…") == 0

@@ -248,7 +248,8 @@ class RulebookVerbs(SessionSettings):
             paired=paired or {},
         )
         # What rules that were not asked for depend on is not asked for either.
-        return diff if patterns else replace(diff, settings=setting_pairs(lineage, second_lineage))
+        settings = () if patterns else setting_pairs(lineage, second_lineage)
+        return replace(diff, settings=settings, files=(*book.paths, *second_book.paths))
 
     def analyze(
         self,

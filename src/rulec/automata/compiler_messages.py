@@ -102,6 +102,7 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
                 rule.span,
                 f"the automaton of rule `{rule.name}` is not equivalent to its formula",
                 help="this is a bug in Spot or rulec, not in the rulebook: please report the rule",
+                notes=_provision(rule),
             )
         case Failed("facts", contradiction=instances):
             return _contradiction(rule, instances)
@@ -111,6 +112,7 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
                 f"rule `{rule.name}` takes Spot: it asks for something without end inside "
                 "something else without end",
                 help=_GET_SPOT,
+                notes=_provision(rule),
             )
         case Failed("letters"):
             why = "it reads too many signals, enumerations and numbers at once"
@@ -124,7 +126,12 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
         f"the automaton of rule `{rule.name}` would be too large: {why}",
         help="say each of its demands in a rule of its own: rules joined by `and` multiply, "
         "rules beside each other do not" + more,
+        notes=_provision(rule),
     )
+
+
+def _provision(rule: Rule) -> tuple[str, ...]:
+    return (f"rule `{rule.name}` is {rule.cite}",) if rule.cite else ()
 
 
 def _contradiction(rule: Rule, instances: tuple[AxiomInstance, ...]) -> Diagnostic:

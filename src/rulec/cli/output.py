@@ -19,7 +19,7 @@ from rulec.cli.options.output_options import Output
 from rulec.cli.options.shared_options import only_sources
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.files import written_whole
-from rulec.report.findings.diagnostics_text import print_diagnostics
+from rulec.report.findings.diagnostics_text import excerpt_width, print_diagnostics
 from rulec.report.findings.finding_formats import render
 from rulec.report.text.console import (
     PAGE_WIDTH,
@@ -216,7 +216,13 @@ def print_findings(
     ``nothing`` is what to say in full text if there are neither; ``fail_on`` is ``error`` or
     ``warning``.
     """
-    text = render(findings, to.form, color=wants_color(sys.stdout), complete=not unread)
+    text = render(
+        findings,
+        to.form,
+        color=wants_color(sys.stdout),
+        complete=not unread,
+        columns=0 if to.is_file else excerpt_width(sys.stdout),
+    )
     if not text and to.form == "full" and not unread:
         text = f"{nothing}, nothing found"
     put_answer(text, to)

@@ -14,6 +14,7 @@ from rulec.rulebook.files.reference_messages import vocabulary_for_rulebook
 from rulec.rulebook.files.referenced_files import Book, ReferencedFiles, source_file
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
 from rulec.rulebook.rulebook_model import Rulebook, SourceFile, Traffic
+from rulec.rulebook.rules.cited_rules import with_provisions
 from rulec.rulebook.words_elsewhere import with_words_elsewhere
 from rulec.syntax import decode, parse, tree
 from rulec.vocabulary import Vocabulary
@@ -245,7 +246,8 @@ def said(trees: Trees, found: Sequence[Diagnostic], source: Source) -> tuple[Dia
     """
     findings = in_order(trees.name, judged_allowances(found, source))
     read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]
-    return with_words_elsewhere(findings, read, trees.search_path)
+    known = with_words_elsewhere(findings, read, trees.search_path)
+    return with_provisions(known, trees.books)
 
 
 def in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

@@ -36,6 +36,8 @@ def read_scene(path: Path, choice: Choice) -> Scenario:
 
 LARGEST_BYTES = 4_000_000
 
+_OF_TRACES = (".jsonl", ".ndjson", ".csv")
+
 _HOW = "numbers are written `1.5`, texts in quotes, tables `[road]`, lists of tables `[[obstacle]]`"
 
 
@@ -80,6 +82,13 @@ def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
             help="leave the options for recorded scenes out, or edit the scenario's file",
         )
     source = _text(path)
+    if path.suffix in _OF_TRACES or source.text.startswith("{"):
+        raise NOT_A_SCENARIO.error(
+            SourceLocation(str(path)),
+            "this is no scenario: it looks like traces",
+            help="`rulec verify` judges traces; maneuvers are those of a scenario, such as `s2`, "
+            "or of recorded traffic",
+        )
     return to_scenario(parsed_toml(source, NOT_A_SCENARIO, _HOW), path.stem, TomlFile(source))
 
 

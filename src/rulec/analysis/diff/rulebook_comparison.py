@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from fractions import Fraction
 from types import MappingProxyType
@@ -82,7 +82,7 @@ class SettingPair:
 
 @dataclass(frozen=True, slots=True)
 class RulebookDiff(Rows):
-    """The differences between two rulebooks."""
+    """The differences between two rulebooks; ``files`` are those that they were read from."""
 
     __repr__ = short_repr
 
@@ -92,6 +92,7 @@ class RulebookDiff(Rows):
     only_first: tuple[OneSided, ...]
     only_second: tuple[OneSided, ...]
     settings: tuple[SettingPair, ...] = ()
+    files: tuple[str, ...] = field(default=(), compare=False)
 
     @property
     def is_none(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
@@ -9,22 +10,26 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
+import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.output import (
     counted,
     errors_told,
-    open_session,
     output_stream,
     put_answer,
     sources_of_rulebooks,
+    width_of,
 )
-from rulec.diagnostics import did_you_mean
+from rulec.diagnostics import Diagnostic, did_you_mean
+from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_remark, progress
+from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
+    from rulec.analysis.diff.rulebook_comparison import RulebookDiff
     from rulec.rulebook.rulebook_model import Rulebook
 
 
@@ -87,11 +92,6 @@ def command(
 
     Exit status: 0 no difference, 1 there are some, 2 a question could not be answered.
     """
-    # Rulebooks and their automata, 140 ms: not for --help.
-    from rulec.report.rulebooks import diff_formats
-    from rulec.rulebook.loader import load_rulebook
-    from rulec.trace.formats.json_lines import write_traces
-
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be compared")
     if every:
         if paired:
@@ -101,24 +101,84 @@ def command(
         asked = AllPairs(tuple(patterns), step_s, at, to.form)
         return _compared(rulebooks, asked, to, recalls=not no_cache)
     if len(rulebooks) != 2:
-        raise click.UsageError("name the two rulebooks that are to be compared, or say --all")
-    named = [load_rulebook(name, search_path(), at) for name in rulebooks] if paired else []
-    pairs = _pairs(paired, named)
+        books = " ".join(rulebooks)
+        raise click.UsageError(
+            f"it compares two rulebooks: of {len(rulebooks)}, `rulec diff --all {books}`"
+            if len(rulebooks) > 2
+            else f"with which rulebook is it to be compared? As in `rulec diff {books or 'de'} nl`"
+        )
+    # Files and what is known of them, 10 ms: not for --help.
+    from rulec.rulebook.batch.answer_cache import AnswerQuestion
+
+    two = TwoBooks(patterns, paired, step_s, n_witnesses)
+    shown = (to.form, width_of(to), wants_color(sys.stdout))
+    question_words = ("diff", at, *map(str, (*two, *shown)), *rulebooks)
+    question = AnswerQuestion(question_words, search_path())
+    known = question.recall() if witness is None and not no_cache else None
+    if known is None:
+        warned: list[Diagnostic] = []
+        difference = _difference(rulebooks, two, at, warned)
+        if witness is not None:
+            _write_witnesses(difference, witness)
+        known = _text_of(difference, to.form), difference.is_complete, difference.is_none
+        if difference.is_complete and not warned:
+            question.remember(known, difference.files)
+    text, is_complete, is_none = known
+    put_answer(text, to)
+    return ExitStatus.after(answered=is_complete, failed=not is_none)
+
+
+def _difference(
+    rulebooks: Sequence[str],
+    asked: TwoBooks,
+    at: str,
+    warned: list[Diagnostic],
+) -> RulebookDiff:
+    """The differences of two rulebooks; what is odd in these is printed, and ``warned`` of."""
+    # Rulebooks and their automata, 140 ms: not for what is known.
+    from rulec.rulebook.loader import load_rulebook
+
+    def warn(diagnostics: Sequence[Diagnostic]) -> None:
+        print_diagnostics(diagnostics)
+        warned.extend(diagnostics)
+
+    named = [load_rulebook(name, search_path(), at) for name in rulebooks] if asked.paired else []
     with progress("comparing", None) as tell:
-        difference = open_session(at).diff(
-            *rulebooks,
-            patterns=patterns,
-            step_s=step_s,
-            witnesses=n_witnesses,
-            paired=pairs,
+        first, second = rulebooks
+        return rulec.Session(search_path(), at, warn).diff(
+            first,
+            second,
+            patterns=asked.patterns,
+            step_s=asked.step_s,
+            witnesses=asked.n_witnesses,
+            paired=_pairs(asked.paired, named),
             on_progress=tell,
         )
-    if witness is not None:
-        with output_stream(Output(witness, "jsonl")) as (stream, name):
-            number = write_traces(difference.witnesses, stream)
-        print_remark(f"wrote {counted(number, 'trace')} to {name}")
-    put_answer(diff_formats.render(difference, to.form), to)
-    return ExitStatus.after(answered=difference.is_complete, failed=not difference.is_none)
+
+
+def _text_of(difference: RulebookDiff, form: str) -> str:
+    # Rulebooks and their automata, 140 ms: not for what is known.
+    from rulec.report.rulebooks import diff_formats
+
+    return diff_formats.render(difference, form)
+
+
+def _write_witnesses(difference: RulebookDiff, path: str) -> None:
+    # Traces' formats, 30 ms: not for what is known.
+    from rulec.trace.formats.json_lines import write_traces
+
+    with output_stream(Output(path, "jsonl")) as (stream, name):
+        number = write_traces(difference.witnesses, stream)
+    print_remark(f"wrote {counted(number, 'trace')} to {name}")
+
+
+class TwoBooks(NamedTuple):
+    """What a comparison of two rulebooks is asked for."""
+
+    patterns: tuple[str, ...]
+    paired: tuple[str, ...]
+    step_s: Fraction | None
+    n_witnesses: int
 
 
 class AllPairs(NamedTuple):

@@ -12,7 +12,7 @@ from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.diagnostics import SourceLocation
 from rulec.file_messages import UNWRITABLE_FILE
 from rulec.files import make_folder, written_whole
-from rulec.report.text.console import print_line
+from rulec.report.text.console import print_line, print_remark
 from rulec.settings import search_path
 
 
@@ -47,6 +47,14 @@ def command(name: str, output: str, base: str | None) -> None:
         )
     folders = () if base is None else (Path(output), *search_path())
     text = rulec.Session(folders).new_rulebook(name, base)
+    # Looking for files and its messages, 3 ms: not for --help.
+    from rulec.rulebook.files.search_path import available_rulebooks
+
+    if name in available_rulebooks():
+        print_remark(
+            f"rulec: a `{name}` ships with rulec, too: `{name}` alone is that one, unless "
+            "`search_path` in rulec.toml has this folder"
+        )
     path = Path(output) / f"{name}.rules"
     if path.exists() or path.is_symlink():
         way_out = "give another name, or another folder with --output"

@@ -95,6 +95,14 @@ def _collected(problems: list[click.UsageError]) -> Iterator[None]:
 def _asked(arguments: Sequence[str]) -> tuple[tuple[str, ...], str | None]:
     """The rulebooks and the rule that are asked for; the last argument may be a rule."""
     *before, last = arguments
+    if not before and not _is_rulebook(last):
+        # Looking for files and their rules, 60 ms: only for what may be a rule.
+        from rulec.rulebook.files.catalogue import rulebooks_with_rule
+
+        if books := rulebooks_with_rule(last, search_path()):
+            raise click.UsageError(
+                f"`{last}` is a rule; give its rulebook, too: `rulec show {books[0]} {last}`"
+            )
     if not before or _is_rulebook(last):
         return rulebooks_named(arguments), None
     return rulebooks_named(before), last

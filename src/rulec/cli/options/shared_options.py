@@ -72,6 +72,8 @@ def _seconds(
     if value is None:
         return None
     step = Fraction(value) if _SECONDS.fullmatch(value) else Fraction(0)
+    if "," in value and _SECONDS.fullmatch(value.replace(",", ".")):
+        raise click.BadParameter(f"decimals have a point: {value.replace(',', '.')}")
     if not step:
         raise click.BadParameter("it has to be a number above 0, such as 0.5 or 1/3")
     return step

@@ -8,14 +8,18 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
+from typing import TextIO
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.source_text import SourceLocation, address
-from rulec.report.text.console import print_aside
+from rulec.report.text.console import page_width, print_aside
 from rulec.report.text.terminal_text import cell_width, styled, visible, wants_color
 
 MAX_WIDTH = 100
-"""Terminal columns of a shown line; a longer one is cut around the place."""
+"""Columns of a shown line that goes to no terminal; a longer one is cut around the place."""
+
+_FRAME_COLUMNS = 9
+"""What stands around a shown line: its number, the frame, and marks of what was cut."""
 
 TAB = 4
 _LEAD = 30
@@ -30,11 +34,16 @@ class Underline:
     sign: str
 
 
-def excerpt_lines(marks: Sequence[Underline]) -> Iterator[tuple[str, str]]:
+def excerpt_width(stream: TextIO) -> int:
+    """Columns for a shown line on a stream: as many as the terminal leaves, if it is one."""
+    return page_width(stream) - _FRAME_COLUMNS if stream.isatty() else MAX_WIDTH
+
+
+def excerpt_lines(marks: Sequence[Underline], columns: int) -> Iterator[tuple[str, str]]:
     """The line shared by all marks, then each mark's underline and sign."""
     excerpt = marks[0].place.excerpt
     primary = next((mark for mark in marks if mark.sign == "^"), marks[0])
-    cells, first, cut_before, cut_after = _window(excerpt, primary.place)
+    cells, first, cut_before, cut_after = _window(excerpt, primary.place, columns)
     before, after = "…" * cut_before, "…" * cut_after
     yield before + "".join(cells) + after, ""
     for mark in marks:
@@ -53,15 +62,15 @@ def _end_column(place: SourceLocation, length: int) -> int:
     return place.end_column or (place.column or 1) + 1
 
 
-def _window(excerpt: str, place: SourceLocation) -> tuple[list[str], int, bool, bool]:
+def _window(excerpt: str, place: SourceLocation, columns: int) -> tuple[list[str], int, bool, bool]:
     """The characters shown, the first one's index, and marks for cut ends."""
     column = (place.column or 1) - 1
     # A hostile line may have millions of characters: look only at what can be shown.
-    start = max(0, column - MAX_WIDTH)
-    cells = [_cell(one) for one in excerpt[start : column + MAX_WIDTH]]
+    start = max(0, column - columns)
+    cells = [_cell(one) for one in excerpt[start : column + columns]]
     widths = [cell_width(cell) for cell in cells]
     whole = start == 0 and len(excerpt) == len(cells)
-    if whole and sum(widths) <= MAX_WIDTH:
+    if whole and sum(widths) <= columns:
         return cells, 0, False, False
     here = column - start
     first = here
@@ -72,7 +81,7 @@ def _window(excerpt: str, place: SourceLocation) -> tuple[list[str], int, bool, 
     if start == 0 and sum(widths[:here]) <= _LEAD * 2:
         first = 0
     last = first
-    columns_left = MAX_WIDTH
+    columns_left = columns
     while last < len(cells) and columns_left >= widths[last]:
         columns_left -= widths[last]
         last += 1
@@ -93,7 +102,8 @@ _Paint = Callable[[str, str], str]
 def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True) -> None:
     """Print errors and warnings on standard error, with their number."""
     if diagnostics:
-        text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary)
+        columns = excerpt_width(sys.stderr)
+        text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary, columns)
         print_aside(text.rstrip("\n"))
 
 
@@ -119,18 +129,22 @@ class Complaints:
 
 
 def render_diagnostics(
-    diagnostics: Iterable[Diagnostic], color: bool = False, summary: bool = True
+    diagnostics: Iterable[Diagnostic],
+    color: bool = False,
+    summary: bool = True,
+    columns: int = MAX_WIDTH,
 ) -> str:
     """All diagnostics and a line that counts them; empty text for none.
 
     Control characters in messages and in the shown lines are escaped, so that a hostile file cannot
-    drive the terminal. ``color`` adds escape sequences of its own.
+    drive the terminal. ``color`` adds escape sequences of its own; lines of sources have so many
+    ``columns``.
     """
     every = list(diagnostics)
     if not every:
         return ""
     paint = partial(styled, color=color)
-    blocks = ["\n".join(_block(diagnostic, paint)) for diagnostic in every]
+    blocks = ["\n".join(_block(diagnostic, paint, columns)) for diagnostic in every]
     return "\n\n".join([*blocks, _summary(every)] if summary else blocks) + "\n"
 
 
@@ -143,7 +157,7 @@ def _summary(every: Sequence[Diagnostic]) -> str:
     return ", ".join(parts)
 
 
-def _block(diagnostic: Diagnostic, paint: _Paint) -> Iterator[str]:
+def _block(diagnostic: Diagnostic, paint: _Paint, columns: int) -> Iterator[str]:
     severity = _STYLES[diagnostic.severity]
     head = paint(f"{diagnostic.severity}[{diagnostic.code}]", severity)
     yield f"{head}{paint(f': {visible(diagnostic.message)}', 'bold')}"
@@ -161,7 +175,7 @@ def _block(diagnostic: Diagnostic, paint: _Paint) -> Iterator[str]:
         if not shown:
             continue
         yield paint(f"{gutter} |", _FRAME)
-        for left, text, style in _lines(shown, severity):
+        for left, text, style in _lines(shown, severity, columns):
             yield f"{paint(f'{left:>{width}} |', _FRAME)} {paint(text, style)}".rstrip()
     # Without a line there is no underlined place for it to stand beside.
     unplaced = (
@@ -185,7 +199,9 @@ def _by_file(diagnostic: Diagnostic) -> list[list[Underline]]:
     return [[mark for mark in marks if mark.place.file == file] for file in files]
 
 
-def _lines(marks: Sequence[Underline], severity: str) -> Iterator[tuple[str, str, str]]:
+def _lines(
+    marks: Sequence[Underline], severity: str, columns: int
+) -> Iterator[tuple[str, str, str]]:
     """Line number left of the frame, text right of it, and style."""
     before: int | None = None
     in_order = sorted(marks, key=lambda mark: mark.place.start)
@@ -194,7 +210,7 @@ def _lines(marks: Sequence[Underline], severity: str) -> Iterator[tuple[str, str
         if before is not None and number > before + 1:
             yield "", "...", _FRAME
         before = number
-        texts = list(excerpt_lines(list(group)))
+        texts = list(excerpt_lines(list(group), columns))
         yield str(number), texts[0][0], "bold"
         for text, sign in texts[1:]:
             yield "", text, severity if sign == "^" else _FRAME

@@ -12,9 +12,18 @@ FORMATS = ("full", "concise", "json", "github", "sarif")
 
 
 def render(
-    diagnostics: Sequence[Diagnostic], output_format: str, *, color: bool, complete: bool
+    diagnostics: Sequence[Diagnostic],
+    output_format: str,
+    *,
+    color: bool,
+    complete: bool,
+    columns: int = 0,
 ) -> str:
-    """Render diagnostics in one of FORMATS; ``complete`` if all was read that had to be."""
+    """Render diagnostics in one of FORMATS.
+
+    ``complete`` if all was read that had to be; ``columns`` for lines of sources, 0 for as many as
+    where there is no terminal.
+    """
     match output_format:
         case "concise":
             return as_lines(diagnostics)
@@ -32,9 +41,10 @@ def render(
             return as_sarif(diagnostics, complete=complete)
         case _:
             # Every verb imports this file for FORMATS, and few write findings.
-            from rulec.report.findings.diagnostics_text import render_diagnostics
+            from rulec.report.findings.diagnostics_text import MAX_WIDTH, render_diagnostics
 
-            return render_diagnostics(diagnostics, color).rstrip("\n")
+            shown = render_diagnostics(diagnostics, color, columns=columns or MAX_WIDTH)
+            return shown.rstrip("\n")
 
 
 def as_lines(diagnostics: Iterable[Diagnostic]) -> str:

@@ -13,7 +13,7 @@ from rulec.diagnostics import Diagnostic
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Atom, Constant
 from rulec.logic.printing import formula_text, number_in_words
-from rulec.report.findings.diagnostics_text import render_diagnostics
+from rulec.report.findings.diagnostics_text import excerpt_width, render_diagnostics
 from rulec.report.text.terminal_text import styled, visible, wants_color
 from rulec.rulebook.rulebook_model import ExampleState
 from rulec.vocabulary import Quantity, Vocabulary
@@ -38,7 +38,9 @@ def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]
         if not outcome.passed
     ]
     if problems:
-        details = render_diagnostics(problems, wants_color(sys.stdout), summary=False)
+        details = render_diagnostics(
+            problems, wants_color(sys.stdout), summary=False, columns=excerpt_width(sys.stdout)
+        )
         lines += ["", details.rstrip("\n"), ""]
     if covered is not None:
         for run, rules in zip(runs, covered, strict=True):

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 import click
 
@@ -23,9 +23,9 @@ PAGE_WIDTH = 100
 """The width of a text that goes to no terminal."""
 
 
-def page_width() -> int:
-    """Width of a text on standard output, in characters."""
-    if not sys.stdout.isatty():
+def page_width(stream: TextIO | None = None) -> int:
+    """Width of a text on standard output, or another stream, in characters."""
+    if not (stream or sys.stdout).isatty():
         return PAGE_WIDTH
     # Archives and their packing, 3 ms: only for a terminal.
     from shutil import get_terminal_size

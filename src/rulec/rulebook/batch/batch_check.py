@@ -196,7 +196,7 @@ def find_sources(
         raise NAME_NOT_FOUND.error(
             None,
             f"there is no rulebook, vocabulary or folder `{reference}`",
-            help=search.suggest(reference, [*rulebooks, *vocabularies]),
+            help=search.meant_by(reference, [*rulebooks, *vocabularies], search_path),
             notes=(search.BY_PATH,),
         )
     return FoundSources([Path(reference)])

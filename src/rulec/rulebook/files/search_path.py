@@ -54,10 +54,18 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
     if found is not None:
         return found
     known = available_rulebooks(search_path)
-    way_out = _by_title(text, known, search_path) or suggest(text, known)
+    way_out = meant_by(text, known, search_path)
     raise NAME_NOT_FOUND.error(
         None, f"there is no rulebook `{text}`", help=way_out, notes=(BY_PATH,)
     )
+
+
+def meant_by(name: str, known: Sequence[str], search_path: Sequence[Path]) -> str:
+    """What may be meant by a name that nothing has: a file of another ending, a country."""
+    if "." in name and _is_file(Path(name)):
+        renamed = Path(name).with_suffix(SUFFIX).name
+        return f"the name of a rulebook's file ends in `{SUFFIX}`: call it `{renamed}`"
+    return _by_title(name, known, search_path) or suggest(name, known)
 
 
 def _by_name(name: str, search_path: Sequence[Path]) -> Path | None:
@@ -129,6 +137,28 @@ def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Pa
     return path
 
 
+OWN_NAMES = {
+    "at": ("österreich", "oesterreich", "autriche"),
+    "be": ("belgique", "belgië", "belgie", "belgien"),
+    "ch": ("schweiz", "suisse", "svizzera"),
+    "cn": ("中国", "zhongguo", "chine"),
+    "de": ("deutschland", "allemagne", "stvo"),
+    "es": ("españa", "espana", "spanien", "espagne"),
+    "fr": ("frankreich", "code de la route"),
+    "gb": ("uk", "england", "britain", "great britain", "highway code"),
+    "ie": ("éire", "eire"),
+    "in": ("bharat",),
+    "it": ("italia", "italien", "italie"),
+    "jp": ("日本", "nippon", "nihon", "japon"),
+    "kr": ("한국", "hanguk", "south korea"),
+    "nl": ("nederland", "holland", "niederlande"),
+    "pl": ("polska", "polen"),
+    "se": ("sverige", "schweden"),
+    "us": ("usa", "america"),
+    "us-ca": ("ca", "calif"),
+}
+"""What those who live there, their neighbours and lawyers call the countries that ship."""
+
 _TITLE = re.compile(rb'^title[ \t]+"([^"\n]*)"', re.M)
 
 
@@ -139,7 +169,8 @@ def _by_title(name: str, known: Sequence[str], search_path: Sequence[Path]) -> s
         with suppress(RulecError):
             title = _TITLE.search(read_bytes(find_rulebook(book, search_path)))
             shown = title[1].decode("utf-8", "replace") if title else ""
-            if len(name) > 3 and shown.casefold().startswith(name.casefold()):
+            fits = len(name) > 3 and shown.casefold().startswith(name.casefold())
+            if fits or name.casefold() in OWN_NAMES.get(book, ()):
                 found.append(f"`{book}` ({shown})")
     return f"did you mean {' or '.join(found)}?" if found else ""
 
@@ -177,8 +208,15 @@ def read_bytes(path: Path, use: Span | None = None) -> bytes:
     if shown is not None:
         return shown
     refuse_no_source(path, labels)
-    with opened(path, labels=labels) as stream:
+    with opened(path, _instead_of(path), labels=labels) as stream:
         return stream.read(MAX_SOURCE_BYTES + 1)
+
+
+def _instead_of(path: Path) -> str:
+    """The way out where a file cannot be read: the rulebook that ships under its name."""
+    if not path.exists() and _by_name(path.stem, ()) is not None:
+        return f"`{path.stem}` ships with rulec: leave out `{SUFFIX}`"
+    return "check its name and its permissions"
 
 
 def _vocabulary_folders(user: Path | None, search_path: Sequence[Path]) -> list[Path]:

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from itertools import chain
+from pathlib import PurePath
 from typing import IO, TYPE_CHECKING, Any, cast
 
 import msgspec
@@ -49,6 +50,9 @@ class _Outline(_Header):
 _TRACE = json_line_problems.Kind(
     "trace", _Record, 'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}'
 )
+_OF_TEXTS = (".md", ".markdown", ".txt", ".rst", ".html", ".py", ".rules", ".toml", ".yml", ".yaml")
+"""How files end that are mostly written for people, of which not every line need be complained."""
+
 _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
 
@@ -203,6 +207,12 @@ def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
         )
     if {b"trace", b"step"} <= set(first[:_LONGEST_HEAD_BYTES].strip().split(b",")):
         return _TRACE.bad("these are no traces in JSON, but CSV", place, "add `--input-format csv`")
+    if PurePath(place.file).suffix.lower() in _OF_TEXTS and not first.lstrip().startswith(
+        (b"{", b"[")
+    ):
+        return _TRACE.bad(
+            "these are no traces, but text", SourceLocation(place.file), _TRACE.example
+        )
     if first.startswith(b"[") and json_line_problems.is_beginning(first):
         message = "these are no traces, a line each, but a list in JSON"
         return _TRACE.bad(message, place, _TRACE.no_list)

@@ -1,0 +1,132 @@
+"""What to try where a command is given wrongly: an example, the word that is meant."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import click
+
+from rulec.cli.verb_table import VERBS
+from rulec.diagnostics import nearest_name
+
+_TRACES = "`rulec traces s2 -r de -o traces.jsonl` writes some to try"
+_RECORDINGS = "`rulec formats` lists what recorded traffic may be"
+
+EXAMPLES = {
+    "audit": ("rulec audit de",),
+    "analyze": ("rulec analyze de",),
+    "compile": ("rulec compile de -o build/de",),
+    "completion": ("rulec completion bash",),
+    "diff": ("rulec diff de nl",),
+    "doc": ("rulec doc de -o de.html",),
+    "draw drive": ("rulec draw drive drive.xml -r de -o drive.svg", _RECORDINGS),
+    "draw graph": ("rulec draw graph s2 -o graph.svg",),
+    "draw scene": ("rulec draw scene s2 -r de -o scene.svg",),
+    "draw trace": ("rulec draw trace traces.jsonl -r de -o trace.svg", _TRACES),
+    "draw": ("rulec draw scene s2 -r de -o scene.svg",),
+    "envelopes": ("rulec envelopes s2 -r de -o envelopes.csv",),
+    "explain": ("rulec explain R0207",),
+    "find": ("rulec find '(v: vehicle) gap(v) <= 10 m' traces.jsonl", _TRACES, _RECORDINGS),
+    "fleet": ("rulec fleet drives -r de -o findings", _RECORDINGS),
+    "maneuvers": ("rulec maneuvers s2 -r de", "`rulec list scenarios` shows those that ship"),
+    "monitor": ("rulec monitor de < states.jsonl",),
+    "new": ("rulec new belgium",),
+    "rates": ("rulec rates findings.csv", "`rulec verify --exposure -o findings.csv` writes one"),
+    "show": ("rulec show de bus_leaving",),
+    "traces": ("rulec traces s2 -r de -o traces.jsonl",),
+    "verify": ("rulec verify traces.jsonl -r de", _TRACES, _RECORDINGS),
+    "verify-compiled": ("rulec verify-compiled build/de/de.json", "`rulec compile` writes one"),
+}
+"""By verb: a command as it may be given, and where what it reads comes from."""
+
+_NO_CHOICE = re.compile(r"'(?P<given>.*)' is not one of ")
+_NO_NUMBER = re.compile(r"'(?P<given>.*)' is not a valid integer")
+_NO_COMMAND = re.compile(r"No such command '(?P<given>.*?)'\.")
+
+
+def reworded(problem: click.ClickException) -> str:
+    """The message, in the words that are used for sources, with what may be meant."""
+    message = problem.format_message()
+    if isinstance(problem, click.NoSuchOption) and problem.ctx is not None:
+        known = [option for one in problem.ctx.command.params for option in one.opts]
+        fitting = [option for option in known if option.startswith(problem.option_name)]
+        near = fitting[0] if fitting else nearest_name(problem.option_name, known)
+        way_out = f"; did you mean `{near}`?" if near else ""
+        return f"there is no option `{problem.option_name}`{way_out}"
+    param = problem.param if isinstance(problem, click.BadParameter) else None
+    kind = None if param is None else param.type
+    if (
+        param is not None
+        and isinstance(kind, click.types.IntParamType)
+        and (found := _NO_NUMBER.match(problem.message))
+    ):
+        return f"{param.opts[-1]}: `{found['given']}` is no whole number"
+    if (
+        param is not None
+        and isinstance(kind, click.Choice)
+        and (found := _NO_CHOICE.search(problem.message))
+    ):
+        given, choices = found["given"], [str(choice) for choice in kind.choices]
+        whose = "" if param.param_type_name == "argument" else f"{param.opts[-1]}: "
+        near = nearest_name(given, choices)
+        way_out = f"did you mean `{near}`?" if near else f"it is one of {', '.join(choices)}"
+        return f"{whose}there is no `{given}`; {way_out}"
+    context = getattr(problem, "ctx", None)
+    if context is not None and (found := _NO_COMMAND.match(message)):
+        names = context.command.list_commands(context)
+        near = nearest_name(found["given"], names)
+        way_out = f"did you mean `{near}`?" if near else f"it is one of {', '.join(names)}"
+        return f"`{context.command_path} {found['given']}` is no command; {way_out}"
+    return message
+
+
+def ways_out(problem: click.UsageError) -> Iterator[str]:
+    """Examples of the command, where it lacks something."""
+    context = problem.ctx
+    if context is None:
+        return
+    if isinstance(problem, click.MissingParameter) and problem.param is not None:
+        if problem.param.name in ("rulebook", "rulebooks"):
+            yield "`rulec list rulebooks` shows which there are, such as `de`"
+            return
+    elif not _NO_COMMAND.match(problem.format_message()):
+        return
+    verb = context.command_path.removeprefix("rulec").strip()
+    example, *sources = EXAMPLES.get(verb, ("",))
+    if example:
+        yield f"such as `{example}`"
+    yield from sources
+
+
+def unknown_verb(name: str) -> str:
+    """What is said of a verb that there is not."""
+    meant = _OTHER_WORDS.get(name.casefold()) or nearest_name(name, VERBS)
+    way_out = f"did you mean `{meant}`?" if meant else "`rulec help` lists them"
+    # Looking for files and its messages, 3 ms: only where something is wrong.
+    from rulec.rulebook.files.search_path import available_rulebooks
+
+    if name.endswith(".rules") or name in available_rulebooks():
+        way_out = f"for a rulebook it stands behind one, as in `rulec check {name}`"
+    return f"there is no command `{name}`; {way_out}"
+
+
+_OTHER_WORDS = {
+    "analyse": "analyze",
+    "build": "compile",
+    "compare": "diff",
+    "coverage": "test --coverage",
+    "create": "new",
+    "docs": "doc",
+    "format": "fmt",
+    "info": "show",
+    "init": "new",
+    "judge": "verify",
+    "lint": "check",
+    "plan": "maneuvers",
+    "plot": "draw",
+    "run": "verify",
+    "validate": "check",
+    "version": "--version",
+}
+"""What other programs call what a verb does."""

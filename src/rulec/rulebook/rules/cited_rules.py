@@ -1,0 +1,48 @@
+"""What is wrong within a rule, with the provision that the rule comes from."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from rulec.diagnostics import Diagnostic
+from rulec.syntax import tree
+
+
+def with_provisions(
+    findings: Iterable[Diagnostic], books: Sequence[tree.File]
+) -> tuple[Diagnostic, ...]:
+    """Findings, those within a rule with a note of what it cites.
+
+    ``books`` are those that a rulebook extends, the most general first, and itself: an override
+    that cites nothing is the rule of what is overridden.
+    """
+    found = tuple(findings)
+    if not found:
+        return found
+    cited: dict[str, str] = {}
+    rules: dict[str, list[tuple[int, int, str]]] = {}
+    for book in books:
+        for item in book.items:
+            if not isinstance(item, tree.RuleItem):
+                continue
+            if item.cite is not None:
+                cited[item.name.text] = item.cite.value
+            if provision := cited.get(item.name.text):
+                place = item.span.place
+                lines = (place.line or 0, place.end_line or 0)
+                note = f"rule `{item.name.text}` is {provision}"
+                rules.setdefault(place.file, []).append((*lines, note))
+    return tuple(_noted(finding, rules) for finding in found)
+
+
+def _noted(finding: Diagnostic, rules: dict[str, list[tuple[int, int, str]]]) -> Diagnostic:
+    place = finding.place
+    if place is None or place.line is None:
+        return finding
+    within = rules.get(place.file, [])
+    index = bisect_right(within, place.line, key=lambda one: one[0]) - 1
+    if index < 0 or place.line > within[index][1]:
+        return finding
+    return replace(finding, notes=(*finding.notes, within[index][2]))
