@@ -51,6 +51,11 @@ def exclusion() -> Exclusion | None:
     return None if file is None or not patterns else Exclusion(file.parent, tuple(patterns))
 
 
+def settings_file() -> Path | None:
+    """The ``rulec.toml`` in the working folder or above it; None if there is none."""
+    return _nearest(Path.cwd())
+
+
 def _nearest(folder: Path) -> Path | None:
     files = (place / FILE_NAME for place in (folder, *folder.parents))
     return next((file for file in files if file.is_file()), None)

@@ -5,11 +5,13 @@ import json
 import os
 import subprocess
 import sys
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
 
 from rulec.cli.main import main
+from rulec.resources import rulebooks_folder
 
 BAD = Path(__file__).resolve().parents[1] / "programs" / "bad"
 GOOD = "rulebook good\nuse paper\nhard rule r (v: vehicle) { require always not r(v) }\n"
@@ -89,7 +91,7 @@ def test_a_vocabulary_that_several_use_is_complained_about_once(folder, capsys):
         (["a\0b.rules"], "cannot be read"),
         ([""], "there is no rulebook"),
         (["x*.rules"], "no rulebook and no vocabulary is called like that"),
-        (["esterle2019", "--output-format", "xml"], "'sarif'"),
+        (["esterle2019", "--output-format", "xml"], "github, sarif"),
     ],
 )
 def test_what_cannot_be_answered(folder, capsys, arguments, words):
@@ -202,3 +204,39 @@ def test_fixes_are_written_and_leave_nothing_to_say(capsys, tmp_path):
         f"6 fixes written to {path}\n",
     )
     assert check(capsys, "-", "--fix")[0] == 2
+
+
+LOCKED = (
+    "rulebook mine\nextends esterle2019\nuse paper\nhard rule r { require always not CONGESTED }\n"
+)
+
+
+def test_what_ships_is_locked_by_its_content(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rulec.toml").write_text("")
+    (tmp_path / "laws").mkdir()
+    (tmp_path / "laws/mine.rules").write_text(LOCKED)
+    monkeypatch.chdir("laws")
+    assert main(["check", "--lock"]) == 0
+    locked = (tmp_path / "rulec.lock").read_text()
+    names = [line.split('"')[1] for line in locked.splitlines() if line[0] == '"']
+    assert names == ["esterle2019/esterle2019.rules", "vocabulary/paper.rules"]
+    source = rulebooks_folder() / "vocabulary/paper.rules"
+    assert f'"vocabulary/paper.rules" = "{sha256(source.read_bytes()).hexdigest()}"\n' in locked
+    capsys.readouterr()
+    assert main(["check"]) == 0
+    (tmp_path / "rulec.lock").write_text(locked.replace('= "', '= "0') + '"none.rules" = "1"\n')
+    capsys.readouterr()
+    assert main(["check", "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert [(one["code"], one["message"].split("`")[1]) for one in found] == [
+        ("R0725", name) for name in (*names, "none.rules")
+    ]
+
+
+@pytest.mark.parametrize("text", ["de", '"../x" = "1"', "de = 1", '"/etc/passwd" = "1"'])
+def test_a_lock_that_is_none(text, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rulec.lock").write_text(text)
+    assert main(["check", "esterle2019"]) == 2
+    assert "error[R0726]" in capsys.readouterr().err

@@ -70,7 +70,8 @@ def reworded(problem: click.ClickException) -> str:
         given, choices = found["given"], [str(choice) for choice in kind.choices]
         whose = "" if param.param_type_name == "argument" else f"{param.opts[-1]}: "
         near = nearest_name(given, choices)
-        way_out = f"did you mean `{near}`?" if near else f"it is one of {', '.join(choices)}"
+        every = f"it is one of {', '.join(choices)}"
+        way_out = f"did you mean `{near}`? ({every})" if near else every
         return f"{whose}there is no `{given}`; {way_out}"
     context = getattr(problem, "ctx", None)
     if context is not None and (found := _NO_COMMAND.match(message)):

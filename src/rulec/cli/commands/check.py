@@ -35,6 +35,12 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Write into the files what warnings offer. It may change what rules mean: read it.",
 )
+@click.option(
+    "--lock",
+    is_flag=True,
+    help="Write into rulec.lock what ships with rulec and these build upon, by its hash; `check` "
+    "says from then on what is another one.",
+)
 @verbose_option
 @watch_option
 @at_option
@@ -46,6 +52,7 @@ def command(
     at: str,
     no_cache: bool,
     fix: bool,
+    lock: bool,
     verbose: bool,
     watch: bool,
 ) -> int:
@@ -60,6 +67,11 @@ def command(
     sources = sources or (".",)
     if fix and "-" in sources:
         raise click.UsageError("`-` is standard input and cannot be written; write it to a file")
+    if lock and "-" in sources:
+        raise click.UsageError("`-` is standard input; a lock is of files")
+
+    # Rulebooks and what is remembered of them, 10 ms: not for --help.
+    from rulec.rulebook.batch.shipped_lock import not_as_locked, write_lock
 
     def run() -> int:
         done = _checked(sources, at, recalls=not no_cache)
@@ -70,8 +82,11 @@ def command(
             number, changed = write_fixes(done.files, done.findings)
             print_remark(f"{counted(number, 'fix', 'fixes')} written to {', '.join(changed)}")
             done = _checked(sources, at, recalls=not no_cache)
+        if lock and not done.unread:
+            path, number = write_lock(done.files, search_path(), at)
+            print_remark(f"rulec: wrote {path}: {counted(number, 'file')} that rulec ships")
         status = print_findings(
-            done.findings,
+            (*done.findings, *not_as_locked()),
             done.unread,
             nothing=f"{counted(len(done.files), 'file')} checked",
             to=to,

@@ -141,7 +141,7 @@ def rulebooks_meant(
         found = find_sources(reference, search_path, excluded)
         on_the_way.left_alone += found.left_alone
         on_the_way.refused += found.refused
-        rulebooks = [path for path in found.paths if not _is_vocabulary(path)]
+        rulebooks = [path for path in found.paths if not is_vocabulary(path)]
         if found.paths and not rulebooks:
             on_the_way.refused.append(
                 NOTHING_LEFT.at(
@@ -155,7 +155,8 @@ def rulebooks_meant(
     return list(names), on_the_way
 
 
-def _is_vocabulary(path: Path) -> bool:
+def is_vocabulary(path: Path) -> bool:
+    """True for a file that says that it is one."""
     with suppress(RulecError):
         text = beginning_of(search.read_bytes(path))
         start, end = first_word_at(text)
