@@ -30,7 +30,8 @@ def in_arrays(trace, vocabulary):
         said = [state.get(name, NOTHING) for state in trace.states]
         if declaration.parameters:
             rows = about_objects(said, trace, spans, (vocabulary, declaration.parameters[0]))
-            parts["only"][name] = np.array([any(x is not NOTHING for x in row) for row in rows])
+            said_of = [any(x is not NOTHING for x in row) for row in rows]
+            parts["only"][name] = np.array(said_of, dtype=bool)
             said = [value for row in rows for value in row]
         parts["about" if declaration.parameters else "world"][name] = column(
             name, said, declaration, parts
@@ -94,8 +95,8 @@ def column(name, values, declaration, parts):
         case Quantity():
             if not all(type(value) in (int, float, Interval) for value in known):
                 raise CannotSayError
-    ends = [ends_of(value) for value in values]
-    low, high = (np.array(column, dtype=float) for column in zip(*ends, strict=True))
+    # Of nobody there are none
+    low, high = np.array([ends_of(value) for value in values], dtype=float).reshape(-1, 2).T
     if not np.isfinite(low + high).all():
         raise CannotSayError
     if any(isinstance(value, Interval) for value in known):

@@ -8,9 +8,9 @@ from rulec.planning.product.graph_instances import HARD, SOFT, instances, violat
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.pruning import violating
 from rulec.planning.trace_history import past_of
-from rulec.trace import Trace, TraceGraph
+from rulec.trace import TraceGraph
 from support.engines.engine import each, said
-from support.oracles.presence import there
+from support.oracles.presence import part, stays_of, there
 from support.oracles.state_oracle import number
 
 
@@ -55,8 +55,7 @@ def after(past_as):
     @each
     def judge_one(rulebook, compiled, trace):
         n = len(trace.states) // 2
-        always = (0, len(trace.states) - 1)
-        stays = {name: trace.present.get(name, always) for name in trace.objects}
+        stays = stays_of(trace)
         before = part(trace, stays, 0, n - 1)
         graph = chain(part(trace, stays, n, len(trace.states) - 1))
         past = past_of(graph, past_as(before, compiled), compiled, number(trace.step_s), BOTH)
@@ -66,17 +65,6 @@ def after(past_as):
         return said([*past.violations, *shifted])
 
     return judge_one
-
-
-def part(trace, stays, first, last):
-    """The states from one to another, and those who are there in some of them."""
-    stays = {
-        name: (max(one, first) - first, min(end, last) - first)
-        for name, (one, end) in stays.items()
-        if max(one, first) <= min(end, last)
-    }
-    objects = {name: trace.objects[name] for name in stays}
-    return Trace(trace.id, trace.step_s, objects, trace.states[first : last + 1], stays)
 
 
 def as_a_trace(trace, compiled):

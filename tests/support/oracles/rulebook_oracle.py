@@ -35,7 +35,7 @@ class Oracle:
 
     def __init__(self, rulebook):
         self.rulebook = rulebook
-        self._known = {}
+        self._known, self._letters = {}, {}
 
     def judged(self, trace):
         """All that is violated, sorted; or why nothing can be said."""
@@ -47,7 +47,10 @@ class Oracle:
         for rule in self.rulebook.rules:
             about = self._about(rule, number(trace.step_s))
             for objects, first, last in reading.choices(rule):
-                word = [reading.letter(about.formula, objects, n) for n in range(first, last + 1)]
+                word = [
+                    self._letter(reading, rule.name, about.formula, objects, n)
+                    for n in range(first, last + 1)
+                ]
                 wrong = {
                     "R0504" if one is None else "R0508" for one in word if one not in about.letters
                 }
@@ -57,6 +60,15 @@ class Oracle:
                     step = -1 if lost is None else first + lost
                     found.append(Said(rule.name, tuple(objects.values()), step, rule.strength))
         return Refused(frozenset(codes)) if codes else tuple(sorted(found))
+
+    def _letter(self, reading, name, formula, objects, n):
+        # What was read of a state is kept with it, so that no other has its number meanwhile
+        state, types = reading.trace.states[n], reading.trace.objects
+        there = tuple((one, types[one]) for one in reading.there(n))
+        key = name, tuple(objects.values()), id(state), there
+        if key not in self._letters:
+            self._letters[key] = reading.letter(formula, objects, n), state
+        return self._letters[key][0]
 
     def _about(self, rule, step_s):
         if (rule.name, step_s) not in self._known:

@@ -15,6 +15,7 @@ from rulec.logic.formula import (
     Unary,
     atoms_of,
 )
+from support.oracles.presence import there
 
 
 def as_facts_have_it(rulebook, trace):
@@ -27,6 +28,8 @@ def as_facts_have_it(rulebook, trace):
         if (one.left.value, one.right.value) == (None, None)
         if one.left.arguments == one.right.arguments
     ]
+    if not links:
+        return trace
     states = [dict(state) for state in trace.states]
     for state, (cause, effect) in product(states, links * len(links)):
         assert len(cause.arguments) < 2, "this reading knows of signals of one object only"
@@ -53,12 +56,11 @@ class Reading:
         self.rulebook, self.trace = rulebook, trace
         self.types = rulebook.vocabulary.types
         self.declarations = rulebook.vocabulary.declarations
+        self._there = [list(there(trace, n)) for n in range(len(trace.states))]
 
     def there(self, n):
         """The objects that are there in a state."""
-        last = len(self.trace.states) - 1
-        stays = {name: self.trace.present.get(name, (0, last)) for name in self.trace.objects}
-        return [name for name, (first, end) in stays.items() if first <= n <= end]
+        return self._there[n]
 
     def fits(self, name, kind):
         """Is an object of a type, or of one below it?"""
