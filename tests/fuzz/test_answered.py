@@ -47,6 +47,9 @@ ANSWERED = {
         "trace/test_large_traces.py::test_a_row_of_csv_has_an_end",
         "trace/test_large_traces.py::test_many_columns_are_few_enough",
     ),
+    "rows that are each refused": (
+        "monitoring/test_verify.py::test_a_refusal_keeps_nothing_of_what_was_at_hand",
+    ),
     "explanation of a long trace": (
         MEASURED,
         "monitoring/test_explanation.py::test_a_long_trace_is_shown_around_the_decisive_state",

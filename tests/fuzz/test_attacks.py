@@ -83,6 +83,18 @@ def parquet_of_one_trace(n_states):
     return sink.getvalue()
 
 
+def parquet_of_refused(n_rows):
+    """As many traces of one state, each with a value that there is not."""
+    table = {
+        "trace": [f"t{number}" for number in range(n_rows)],
+        "step": pyarrow.array(numpy.zeros(n_rows, numpy.int8)),
+        "p": pyarrow.array(numpy.arange(n_rows)),
+    }
+    sink = pyarrow.BufferOutputStream()
+    pyarrow.parquet.write_table(pyarrow.table(table), sink)
+    return sink.getvalue().to_pybytes()
+
+
 THIRTY = {f"o{number}": "car" for number in range(30)}
 FEW = {"beside": {"o1": True, "o2": True, "o3": True}}
 PARITY = " xor ".join(f"p{number}" for number in range(14))
@@ -271,6 +283,12 @@ COSTLY_TO_MAKE = {
         ["verify", "t.parquet", "-r", "./soon.rules"],
         2,
         "R0718",
+    ),
+    "60,000 rows of Parquet that are each refused": (
+        {"t.parquet": lambda: parquet_of_refused(60_000)},
+        ["verify", "t.parquet", "-r", "./soon.rules"],
+        2,
+        "59,990 more of this kind",
     ),
     "a row of 200,000 columns": (
         {

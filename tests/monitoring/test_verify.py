@@ -235,6 +235,14 @@ def test_one_bad_trace_does_not_stop_the_others():
     assert (answers[1].trace, answers[2].trace) == (None, "t")
 
 
+def test_a_refusal_keeps_nothing_of_what_was_at_hand():
+    """There may be one for each row of a file of millions."""
+    error = verify_or_reason(trace("..."), RULES).error
+    assert (error.__traceback__, error.__context__, error.__cause__) == (None, None, None)
+    with pytest.raises(RulecError, match=error.diagnostics[0].code):
+        raise error
+
+
 def measured(formula, state):
     rules = compile_rulebook(Rulebook("test", MEASURED, (rule("A", formula, "v: car"),)))
     cars = {"car1": "car", "car2": "car"}

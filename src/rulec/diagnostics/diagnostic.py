@@ -98,6 +98,15 @@ class RulecError(Rows, Exception):
         return type(self), (self.diagnostics,)
 
 
+def as_answer(error: RulecError) -> RulecError:
+    """The error without the frames that it came through, which hold all that they had at hand.
+
+    For errors of which there may be one for each row of a file.
+    """
+    error.__traceback__ = error.__cause__ = error.__context__ = None
+    return error
+
+
 def _one_line(diagnostic: Diagnostic) -> str:
     where = "" if diagnostic.place is None else f"{address(diagnostic.place)}: "
     return f"{where}{diagnostic.message} [{diagnostic.code}]"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
+from functools import lru_cache
 
 _MOST_NAMED = 8
 _MOST_SEARCHED = 500
@@ -21,8 +22,13 @@ def nearest_name(name: str, known: Iterable[str], alike: float = 0.6) -> str | N
     same = by_folded.get(name.casefold())
     if same is not None or len(by_folded) > _MOST_SEARCHED:
         return same
-    close = get_close_matches(name.casefold(), list(by_folded), n=1, cutoff=alike)
+    close = _closest(name.casefold(), tuple(by_folded), alike)
     return by_folded[close[0]] if close else None
+
+
+@lru_cache(maxsize=64)  # one mistake in each row of a file is one search
+def _closest(name: str, known: tuple[str, ...], alike: float) -> list[str]:
+    return get_close_matches(name, known, n=1, cutoff=alike)
 
 
 def did_you_mean(name: str, known: Iterable[str], alike: float = 0.6) -> str:

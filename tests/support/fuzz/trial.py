@@ -20,7 +20,7 @@ from support.fuzz.targets import STANDARD_INPUT, TARGETS, Workplace
 
 STATUSES = {0, 1, 2}
 LONGEST_S = 10
-LONGEST_WAIT_S = 100
+LONGEST_WAIT_S = 600
 MOST_BYTES = 2 << 30
 COMMANDS = re.compile(r"^::(?!error |warning |notice )", re.MULTILINE)
 """What a runner of workflows would obey, but for annotations."""
@@ -74,13 +74,13 @@ def _try_one(trial, place, seed):
     with _quiet(typed) as streams, _in(place.folder):
         # Others may have the machine: it is processor time that counts, and an end of all waiting.
         signal.signal(signal.SIGPROF, _hang)
-        signal.signal(signal.SIGALRM, _hang)
+        signal.signal(signal.SIGALRM, _wait)
         signal.setitimer(signal.ITIMER_PROF, LONGEST_S)
         signal.alarm(LONGEST_WAIT_S)
         try:
             status = int(main(words))
-        except HangError:
-            problem = f"still at it after {LONGEST_S} s"
+        except HangError as error:
+            problem = str(error)
         except BaseException as error:
             problem = f"{type(error).__name__}: {error}"
         finally:
@@ -113,7 +113,13 @@ def _in(folder):
 
 
 def _hang(*_):
-    raise HangError
+    message = f"still at it after {LONGEST_S} s of processor time"
+    raise HangError(message)
+
+
+def _wait(*_):
+    message = f"no answer after {LONGEST_WAIT_S} s"
+    raise HangError(message)
 
 
 class _Text(io.TextIOWrapper):

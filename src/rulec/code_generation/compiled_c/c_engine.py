@@ -15,6 +15,7 @@ from rulec.code_generation.code_messages import C_COMPILER_FAILED, no_engine_in_
 from rulec.code_generation.compiled_c.c_library import CLibrary, compiler, is_all_known
 from rulec.code_generation.monitor_layout import VERDICTS, RuleLayout, monitor_layout
 from rulec.diagnostics import RulecError
+from rulec.diagnostics.diagnostic import as_answer
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, Cast
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
@@ -60,7 +61,7 @@ class CEngine:
         except RulecError as error:
             if error.diagnostics[0].code == C_COMPILER_FAILED.code:
                 raise  # not of this trace alone
-            return NotJudged(item.id, error)
+            return NotJudged(item.id, as_answer(error))
         self.judged[verdict.engine] += 1
         return verdict
 

@@ -10,6 +10,7 @@ from itertools import chain, groupby, islice
 from typing import Any, cast, get_args
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
+from rulec.diagnostics.diagnostic import as_answer
 from rulec.resource_limits import STATES
 from rulec.trace.trace_messages import NOT_A_TABLE
 from rulec.trace.trace_model import Ending, State, Trace
@@ -161,7 +162,7 @@ class _Building:
                 self._add(number, cells)
             self._end_state()
         except RulecError as error:
-            return error
+            return as_answer(error)
         always = (0, len(self.states) - 1)
         return Trace(
             id=str(self.name),
