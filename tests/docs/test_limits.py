@@ -42,9 +42,7 @@ FIXED = {
     "bytes of a packed file, unpacked": files.LARGEST_UNPACKED,
     "bytes of one line of traces": json_line_problems.LONGEST_LINE_BYTES,
     "characters of a row of CSV": table_reader.LONGEST_ROW,
-    "bytes of a column in a row group of Parquet, unpacked, beside 1,024 a row": (
-        parquet.LARGEST_COLUMN
-    ),
+    "bytes of a row group of Parquet, unpacked, beside 1,024 a cell": parquet.LARGEST_GROUP,
     "time steps of a recording, from the first to the last": recording.MOST_STEPS,
     "time steps of a recording for one that is in it": recording.SPARSEST,
     "cells of a table of a recording in Parquet, its rows times the columns that are read": (

@@ -73,6 +73,7 @@ ANSWERED = {
         MEASURED,
         "trace/test_tables.py::test_parquet_with_a_text_that_is_not_utf8",
     ),
+    "Parquet whose statistics end the process that reads them": (MEASURED,),
     "a damaged cache": (
         "rulebook/test_recollection.py::test_damage_costs_time_only",
         "automata/test_compiled_cache.py::test_a_damaged_file_is_made_anew",

@@ -67,6 +67,16 @@ def parquet_of_no_text():
     return sink.getvalue().to_pybytes().replace(b"tQQ", b"t\xff\xff")
 
 
+def parquet_of_other_statistics():
+    """Its statistics count what is missing in a column; its schema says that nothing can be."""
+    sink = pyarrow.BufferOutputStream()
+    pyarrow.parquet.write_table(pyarrow.table({"trace": ["a"], "step": [0], "p": [True]}), sink)
+    optional, required = b"\x25\x02\x18\x05trace", b"\x25\x00\x18\x05trace"
+    data = sink.getvalue().to_pybytes()
+    assert optional in data
+    return data.replace(optional, required)
+
+
 def parquet_of_one_trace(n_states):
     steps = pyarrow.array(numpy.arange(n_states))
     same = pyarrow.DictionaryArray.from_arrays(
@@ -193,6 +203,12 @@ COSTLY = {
     ),
     "Parquet with a text that is none": (
         {"t.parquet": parquet_of_no_text},
+        ["verify", "t.parquet", "-r", "./soon.rules"],
+        2,
+        "R0509",
+    ),
+    "Parquet with statistics of another schema": (
+        {"t.parquet": parquet_of_other_statistics},
         ["verify", "t.parquet", "-r", "./soon.rules"],
         2,
         "R0509",

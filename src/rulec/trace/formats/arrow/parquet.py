@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 _ROWS_AT_ONCE = 1 << 17
 
-LARGEST_COLUMN, _LARGE_CELL = 1 << 26, 1 << 10
-"""Bytes of a row group's column, beside those of cells that are long already."""
+LARGEST_GROUP, _LARGE_CELL = 1 << 26, 1 << 10
+"""Bytes of a row group, beside those of cells that are long already."""
 
 _MARK = b"PAR1"
 """How Parquet begins and ends."""
@@ -80,12 +80,12 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
 def _check_sizes(metadata: Any, file: str) -> None:
     """Refuse cells that are decoded as a whole and take gigabytes, packed into a few bytes."""
     for group in (metadata.row_group(number) for number in range(metadata.num_row_groups)):
-        for column in (group.column(number) for number in range(group.num_columns)):
-            if column.total_uncompressed_size > LARGEST_COLUMN + _LARGE_CELL * group.num_rows:
-                size = column.total_uncompressed_size
-                message = f"the column `{column.path_in_schema}` has {size:,} bytes unpacked"
-                way_out = f"for {group.num_rows:,} rows that is too much: no cell is as long"
-                raise problem(message, SourceLocation(file), way_out)
+        # Not those of single columns: what is wrong with their statistics would end the process
+        size = abs(group.total_byte_size)
+        if size > LARGEST_GROUP + _LARGE_CELL * group.num_rows * group.num_columns:
+            message = f"{group.num_rows:,} rows in one group have {size:,} bytes unpacked"
+            way_out = f"for {group.num_columns} columns that is too much: no cell is as long"
+            raise problem(message, SourceLocation(file), way_out)
 
 
 def _texts(schema: Any, pyarrow: Any) -> list[str]:
