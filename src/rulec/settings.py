@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import stat
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
 from rulec.file_messages import OUT_OF_TREE, WRONG_SETTINGS
 from rulec.files import MAX_SETTINGS_BYTES, decoded, opened, read_whole
 from rulec.toml import parsed_toml
-from rulec.work_trees import leads_out, refuse_link_out, tree_of
+from rulec.work_trees import leads_out, refuse_no_source, tree_of
 
 FILE_NAME = "rulec.toml"
 _HOW = 'such as `search_path = ["rulebooks"]`'
@@ -58,12 +59,13 @@ def settings_file() -> Path | None:
 
 def _nearest(folder: Path) -> Path | None:
     files = (place / FILE_NAME for place in (folder, *folder.parents))
-    return next((file for file in files if file.is_file()), None)
+    # A pipe or a link to nowhere is refused, and not passed over for settings of somebody above.
+    return next((file for file in files if os.path.lexists(file) and not file.is_dir()), None)
 
 
 def _read(file: Path) -> Mapping[str, list[str]]:
     """The settings, each a list of texts."""
-    refuse_link_out(file)
+    refuse_no_source(file)
     with opened(file) as stream:
         source = decoded(str(file), read_whole(stream, file, MAX_SETTINGS_BYTES))
     settings: dict[str, Any] = parsed_toml(source, WRONG_SETTINGS, _HOW)

@@ -169,6 +169,12 @@ ANSWERED = {
         "rulebook/test_source_walk.py::test_what_is_misspelt_or_begun_is_not",
         "rulebook/test_source_walk.py::test_nothing_left_is_not_answered",
     ),
+    "lists of what git ignores that never end, or are elsewhere": (
+        MEASURED,
+        "rulebook/test_git_ignores.py::test_a_hostile_pattern_takes_few_steps",
+        "rulebook/test_git_ignores.py::test_a_linked_list_of_patterns_and_a_pipe_are_not_read",
+        "settings/test_search_path.py::test_a_pipe_is_no_file_of_settings",
+    ),
     "names that drive a terminal or a runner": (
         "cli/test_hostile_names.py::test_no_line_of_any_output_drives_anything",
         "cli/test_verify.py::test_names_cannot_drive_the_terminal",

@@ -213,6 +213,18 @@ COSTLY = {
         2,
         "R0509",
     ),
+    "100 kB of patterns that git would ignore by, and files that nearly match": (
+        {
+            ".gitignore": lambda: "".join(f"{'*a' * 115}{n:06}b\n" for n in range(400)),
+            **{
+                f"{'a' * 240}{n:03}.rules": lambda: "rulebook a\nhard rule r { require true }\n"
+                for n in range(60)
+            },
+        },
+        ["check", "."],
+        0,
+        "1 warning",
+    ),
     "a threshold of 1e308": (
         {"ZAM_Road-1_1_T-1.xml": lambda: recorded(29)},
         ["verify", "ZAM_Road-1_1_T-1.xml", "-r", "de", "--threshold", "smoothing_s=1e308"],

@@ -1,5 +1,6 @@
 """What git ignores, as git itself says it."""
 
+import os
 import subprocess
 
 import pytest
@@ -75,14 +76,22 @@ def test_a_hostile_pattern_takes_few_steps():
     pattern = pattern_of("*a" * 2000 + "b")
     assert pattern is not None
     assert not pattern.matches(["a" * 255], is_folder=False)
+    shorter = pattern_of("*?a" * 120 + "*b")
+    assert shorter is not None
+    assert not shorter.matches(["a" * 255], is_folder=False)
+    assert shorter.matches([f"{'a' * 254}b"], is_folder=False)
     deep = pattern_of("**/a/" * 200 + "b")
     assert deep is not None
     assert not deep.matches(["a"] * 400, is_folder=False)
 
 
-def test_a_linked_list_of_patterns_is_not_read(tree, tmp_path):
+@pytest.mark.parametrize("name", [".gitignore", ".git/info/exclude"])
+def test_a_linked_list_of_patterns_and_a_pipe_are_not_read(name, tree, tmp_path):
     (tmp_path / "secret").write_text("*.rules\n")
-    (tree / ".gitignore").unlink()
-    (tree / ".gitignore").symlink_to(tmp_path / "secret")
+    (tree / name).unlink(missing_ok=True)
+    (tree / name).symlink_to(tmp_path / "secret")
     assert ignored_here(tree) == set()
-    (tree / ".gitignore").unlink()
+    (tree / name).unlink()
+    os.mkfifo(tree / name)
+    assert ignored_here(tree) == set()
+    (tree / name).unlink()

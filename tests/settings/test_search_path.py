@@ -1,5 +1,7 @@
 """``rulec.toml``: found upward, read with care, obeyed by every verb."""
 
+import os
+
 import pytest
 
 from rulec.cli.main import main
@@ -70,6 +72,17 @@ def test_names_that_are_too_long_are_no_folders(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(project(tmp_path, f'search_path = ["{"a" * 300}"]'))
     assert main(["list"]) == 2
     assert "error[R0704]" in capsys.readouterr().err
+
+
+def test_a_pipe_is_no_file_of_settings(tmp_path):
+    inside = project(tmp_path, 'search_path = ["books"]')
+    os.mkfifo(inside / "rulec.toml")
+    with pytest.raises(RulecError, match="R0731"):
+        search_path(inside)
+    (inside / "rulec.toml").unlink()
+    (inside / "rulec.toml").symlink_to("nowhere")
+    with pytest.raises(RulecError, match="R0701"):
+        search_path(inside)
 
 
 def test_a_link_to_settings_elsewhere_is_refused(tmp_path):

@@ -8,11 +8,10 @@ with the length of pattern times name, however many ``*`` there are. The user's 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TypeVar
 
 from rulec.work_trees import is_ordinary, leads_out
 
@@ -31,8 +30,8 @@ _CLASSES = {
     "xdigit": "0-9a-fA-F",
 }
 
-Part = TypeVar("Part")
-Name = TypeVar("Name")
+_LONGEST_NAME = 255
+_NOTHING = re.compile(r"(?!)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +44,7 @@ class IgnorePattern:
 
     def matches(self, names: Sequence[str], *, is_folder: bool) -> bool:
         """Tell whether it is about a path, given by its names below the file of patterns."""
-        return (is_folder or not self.folders_only) and _fit(
-            self.parts, names, "**".__eq__, _part_fits
-        )
+        return (is_folder or not self.folders_only) and _fit(self.parts, names)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +72,7 @@ def is_ignored(path: Path, files: Sequence[IgnoreFile], *, is_folder: bool) -> b
 def ignore_files(folder: Path, tree: Path) -> list[IgnoreFile]:
     """The patterns of a folder and of all above it up to the top of its work tree."""
     above = [place for place in folder.parents if place == tree or tree in place.parents]
-    own = _patterns(tree / ".git" / "info" / "exclude")
-    found = [IgnoreFile(tree, own)] if own else []
+    found = _patterns_of(tree / ".git" / "info" / "exclude", tree, tree)
     for place in (*reversed(above), folder):
         found += patterns_in(place, tree)
     return found
@@ -84,7 +80,10 @@ def ignore_files(folder: Path, tree: Path) -> list[IgnoreFile]:
 
 def patterns_in(folder: Path, tree: Path) -> list[IgnoreFile]:
     """The patterns of a folder's own ``.gitignore``, if it has one that is its own."""
-    file = folder / ".gitignore"
+    return _patterns_of(folder / ".gitignore", folder, tree)
+
+
+def _patterns_of(file: Path, folder: Path, tree: Path) -> list[IgnoreFile]:
     if not is_ordinary(file) or leads_out(file, tree):
         return []
     return [IgnoreFile(folder, _patterns(file))]
@@ -119,28 +118,57 @@ def pattern_of(line: str) -> IgnorePattern | None:
 
 
 def _part_fits(part: str, name: str) -> bool:
-    return _fit(_signs(part), name, lambda sign: sign == "*", _sign_fits)
+    return _expression(part).fullmatch(name) is not None
 
 
-def _fit(
-    pattern: Sequence[Part],
-    names: Sequence[Name],
-    is_wild: Callable[[Part], bool],
-    fits: Callable[[Part, Name], bool],
-) -> bool:
-    """Match a row of things; what is wild stands for any number of them.
+@lru_cache(maxsize=4096)
+def _expression(part: str) -> re.Pattern[str]:
+    """A part as a regular expression that never goes back to an earlier ``*``."""
+    signs = _signs(part)
+    if sum(sign != "*" for sign in signs) > _LONGEST_NAME:
+        return _NOTHING
+    first, *others = _between_stars(signs)
+    # What a look ahead has found stays as it is: the nearest place is as good as any later one.
+    middle = [f"(?=(?P<g{n}>.*?{one}))(?P=g{n})" for n, one in enumerate(others[:-1])]
+    try:
+        return re.compile(
+            "".join([first, *middle, *(f".*{one}" for one in others[-1:])]), re.DOTALL
+        )
+    except re.error:  # a class of signs that is none
+        return _NOTHING
 
-    Only the last wild part is tried anew, since where an earlier one ends makes no difference.
+
+def _between_stars(signs: Sequence[str]) -> list[str]:
+    """Regular expressions of what stands before, between and after the ``*``."""
+    found = [""]
+    for sign in signs:
+        if sign == "*":
+            found.append("")
+        else:
+            found[-1] += _of_sign(sign)
+    return found
+
+
+def _of_sign(sign: str) -> str:
+    if sign == "?":
+        return "."
+    return re.escape(sign[1:]) if sign.startswith("\\") else _class(sign)
+
+
+def _fit(pattern: Sequence[str], names: Sequence[str]) -> bool:
+    """Match a path; ``**`` stands for any number of names.
+
+    Only the last ``**`` is tried anew, since where an earlier one ends makes no difference.
     """
     # Behind the last part, `**` is everything inside, but not the folder itself.
     least = 1 if pattern and len(pattern) > 1 and pattern[-1] == "**" else 0
     at = here = 0
     again: tuple[int, int] | None = None
     while here < len(names):
-        if at < len(pattern) and is_wild(pattern[at]):
+        if at < len(pattern) and pattern[at] == "**":
             again = (at, here)
             at += 1
-        elif at < len(pattern) and fits(pattern[at], names[here]):
+        elif at < len(pattern) and _part_fits(pattern[at], names[here]):
             at += 1
             here += 1
         elif again is not None:
@@ -149,7 +177,7 @@ def _fit(
         else:
             return False
     left = pattern[at:]
-    return all(map(is_wild, left)) and not (least and len(left) == 1)
+    return all(part == "**" for part in left) and not (least and len(left) == 1)
 
 
 @lru_cache(maxsize=4096)
@@ -178,23 +206,10 @@ def _signs(part: str) -> tuple[str, ...]:
     return tuple(signs)
 
 
-def _sign_fits(sign: str, character: str) -> bool:
-    if sign == "?":
-        return True
-    if sign.startswith("\\"):
-        return sign[1:] == character
-    return _in_class(sign)(character)
-
-
-@lru_cache(maxsize=1024)
-def _in_class(sign: str) -> Callable[[str], bool]:
+def _class(sign: str) -> str:
     inside = sign[1:-1]
     negated = inside[:1] in ("!", "^")
     inside = inside[1:] if negated else inside
     classes = "".join(_CLASSES.get(name, "") for name in _NAMED_CLASS.findall(inside))
     escaped = re.sub(r"[\[\]^&~|]", r"\\\g<0>", _NAMED_CLASS.sub("", inside))
-    try:
-        found = re.compile(f"[{'^' if negated else ''}{escaped}{classes}]").fullmatch
-    except re.error:
-        return lambda _: False
-    return lambda character: found(character) is not None
+    return f"[{'^' if negated else ''}{escaped}{classes}]"
