@@ -146,14 +146,6 @@ def test_each_rule_at_the_step_of_its_own_examples(compiled):
 ANSWERED_TOO = rule("too", always(implies(P, within(2, Q))))
 
 
-def test_not_every_step_is_kept_for_ever(compiled, monkeypatch):
-    monkeypatch.setattr(step_compilation, "MOST_STEPS", 2)
-    every = StepCompiler(book(ANSWERED))
-    for step in (1, HALF, Fraction(1, 4), 1):
-        assert every(Fraction(step)).rules[0].step_s == step
-    assert len(compiled) == 4
-
-
 def test_a_rule_without_examples_fits_any_step_that_its_bounds_fit():
     """Its bound of half a second is no multiple of the 1 s that examples would have."""
     quick = book(rule("quick", always(implies(P, within(Fraction(1, 2), Q)))))
@@ -238,6 +230,20 @@ def test_there_is_a_limit_on_the_steps_that_are_compiled_for(compiled):
             every(Fraction(1, 5))
     (said,) = refused.value.diagnostics
     assert "--limit steps=NUMBER" in said.help
+    assert len(compiled) == 3
+
+
+def test_a_step_that_is_met_again_does_not_count_again(compiled, monkeypatch):
+    """Also if others, of which many may be refused, have come in between."""
+    monkeypatch.setattr(step_compilation, "MOST_STEPS", 2)
+    every = StepCompiler(book(ANSWERED))
+    with in_force(["steps=2"]):
+        for number in (1, 2, 4, 1, 2, 4):
+            every(Fraction(1, number))
+        for number in (5, 8, 10):
+            with pytest.raises(RulecError, match="R0718"):
+                every(Fraction(1, number))
+        every(Fraction(1, 2))
     assert len(compiled) == 3
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
 
 MOST_STEPS = 100
-"""Machines for so many steps are kept."""
+"""Answers for so many steps are kept. Machines stay: the limit ``steps`` is on those made."""
 
 
 class StepCompiler:
@@ -50,7 +50,6 @@ class StepCompiler:
         if step_s not in self._answers:
             if len(self._answers) >= MOST_STEPS:
                 self._answers.clear()
-                self._machines.clear()
             try:
                 self._answers[step_s] = self._compiled(self.rulebook.rules, step_s)
             except RulecError as error:
