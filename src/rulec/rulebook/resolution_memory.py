@@ -120,7 +120,7 @@ class ResolutionMemory:
     def _provisions(self, rule: tree.RuleItem, laid: Overlay) -> tuple[object, ...]:
         """The options, parameters and definitions that a rule uses, in a fixed order."""
         found: dict[str, tuple[object, ...]] = {}
-        waiting = {*names_used(rule), *names_in_examples(rule)}
+        waiting = set(self._names_used(rule))
         while waiting:
             name = waiting.pop()
             if name in found:
@@ -136,7 +136,8 @@ class ResolutionMemory:
         if known is None or known[0] is not item:
             if len(self._used) > 10_000:
                 self._used.clear()
-            known = self._used[id(item)] = (item, frozenset(names_used(item)))
+            in_examples = names_in_examples(item) if isinstance(item, tree.RuleItem) else ()
+            known = self._used[id(item)] = (item, frozenset([*names_used(item), *in_examples]))
         return known[1]
 
 

@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError
@@ -68,7 +69,10 @@ def _definitions(search_path: Sequence[Path]) -> dict[str, frozenset[str]]:
     found = {}
     for book in search.available_rulebooks(search_path):
         with suppress(RulecError):
-            text = search.read_bytes(search.find_rulebook(book, search_path))
-            names = _DEFINITION.findall(text.decode(errors="replace"))
-            found[book] = frozenset(names)
+            found[book] = _defined_in(search.read_bytes(search.find_rulebook(book, search_path)))
     return found
+
+
+@lru_cache(maxsize=128)
+def _defined_in(text: bytes) -> frozenset[str]:
+    return frozenset(_DEFINITION.findall(text.decode(errors="replace")))
