@@ -70,6 +70,26 @@ def test_a_rule_keeps_its_topic(books):
     assert over == UPON.replace("keep_far", "distance")
 
 
+def test_only_topics_that_know_a_rule_by_most_of_its_name_list_it_anew(editor):
+    text = (
+        "rulebook listed\nsignal fog\n"
+        'topics { wide "Wide" of stay; narrow "Narrow" of stay_far }\n'
+        "hard rule stay_far { require never fog }\n"
+        "hard rule stay_left { require never fog }\n"
+    )
+    assert editor.open("listed.rules", text) == []
+    params = editor.position_params(
+        lsp.RenameParams, "listed.rules", at(text, "rule stay_far"), new_name="distance"
+    )
+    changes = editor.ask(lsp.TEXT_DOCUMENT_RENAME, params).changes
+    now = edited(text, changes[editor.uri("listed.rules")])
+    assert now == text.replace("stay_far", "distance")
+    params.new_name, params.position = "left", at(text, "rule stay_left")
+    changes = editor.ask(lsp.TEXT_DOCUMENT_RENAME, params).changes
+    now = edited(text, changes[editor.uri("listed.rules")])
+    assert now == text.replace("stay_left", "left").replace("of stay;", "of stay, left;")
+
+
 def test_a_variable_also_in_short_forms(books):
     ground, over = renamed(books, "ground.rules", at(BASE, "keep_far(o"), "car")
     rule = BASE[BASE.index("hard") :]

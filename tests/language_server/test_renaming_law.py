@@ -43,7 +43,9 @@ def after_renaming(law, name, folder):
     """A copy of the books in which a name is another one."""
     path, names = opened(law)
     shutil.copytree(law[0], folder)
-    thing = next(one.thing for one in names.all() if one.thing.name == name)
+    kinds = ("rule", "definition", "parameter")  # a word of a vocabulary may be called so, too
+    things = (one.thing for one in names.all() if one.thing.name == name)
+    thing = next(one for one in things if one.kind in kinds)
     for uri, changes in renamed(thing, NEW, names, law[1]).items():
         document = law[1].document(uri)
         copy = folder / document.path.relative_to(law[0])

@@ -117,12 +117,15 @@ def _in_topics(
     )
     done: set[tuple[str, int]] = set()
     for book in books_with(thing, names, editor):
+        longest = _longest_listed(thing.name, book)
         for file in book.chain.books:
             uri = uri_of(file.span.source.name)
             path = path_of(uri)
             if path is not None and editor.is_read_only(path):
                 continue
             for entry in _topic_entries(file):
+                if not any(one.text == longest for one in entry.rules):
+                    continue
                 change = _in_topic(entry, thing.name, name, book, others)
                 if change is not None and (uri, change.start) not in done:
                     done.add((uri, change.start))
@@ -138,6 +141,14 @@ def _topic_entries(file: tree.File) -> Iterator[tree.TopicEntry]:
     for item in file.items:
         if isinstance(item, tree.TopicsItem):
             yield from item.entries
+
+
+def _longest_listed(rule: str, book: DocumentNames) -> str:
+    """The longest beginning of a rule's name that a topic lists: it alone says its topics."""
+    files = book.chain.books
+    entries = (entry for file in files for entry in _topic_entries(file))
+    listed = (one.text for entry in entries for one in entry.rules)
+    return max((one for one in listed if f"{rule}_".startswith(f"{one}_")), key=len, default="")
 
 
 def _in_topic(
