@@ -82,6 +82,25 @@ def test_what_is_generated_is_right(layout):
     assert parts[1].n == sum(len(own.successors) * len(own.successors[0]) for own in machines)
 
 
+COUNTING = """\
+rulebook counting
+type thing
+type car is thing
+signal near(o: thing)
+fact count o: car (near(o)) <= 2
+hard rule alone (t: thing, c: car) {
+  require always (count o: car (count r: thing (r != o and near(r)) < 1) >= 2
+    implies near(t) or near(c))
+}
+"""
+
+
+def test_facts_that_count_and_counts_of_counts_are_no_fault():
+    """C does not look at the facts; where not all is known it tells more of such a count."""
+    compiled = rulec.compile_rulebook(rulec.parse_rulebook(COUNTING), step_s=1)
+    assert differs_in(CLibrary(monitor_layout(compiled, {}), optimised=False)) == []
+
+
 QUICK = ["at least for more than", "a seat for two"]
 LATER = [pytest.param(fault, marks=pytest.mark.long) for fault in FAULTS if fault not in QUICK]
 

@@ -69,7 +69,8 @@ def _probes_of(
         sharp = True
         if isinstance(read, NumberRead) and ready.subject is None:
             total = weighted_sum(read.terms, binding, view)
-            if len(read.terms) > 1 and counted and isinstance(total, Unknown):
+            unclear = (len(read.terms) > 1 and counted) or nests(read)
+            if unclear and isinstance(total, Unknown):
                 continue
             clear = isinstance(total, Unknown) and not weighs(read)
             sharp = clear or (not isinstance(total, Unknown) and _is_clear(read, total))
@@ -102,6 +103,15 @@ def weighs(what: Read | NumberRead | ltl.Count) -> bool:
             return len(what.terms) > 1 or any(map(weighs, _counts(what)))
     sums = [one for one in ltl.atoms_of(what.body) if isinstance(one, ltl.Comparison)]
     return any(len(one.terms) > 1 or any(map(weighs, _counts(one))) for one in sums)
+
+
+def nests(read: Read | NumberRead) -> bool:
+    """Whether a count is of what counts: of what is not known Python tells less than C does."""
+    return not isinstance(read, Read) and any(
+        isinstance(one, ltl.Comparison) and _counts(one)
+        for count in _counts(read)
+        for one in ltl.atoms_of(count.body)
+    )
 
 
 def _counts(what: NumberRead | ltl.Comparison) -> list[ltl.Count]:
