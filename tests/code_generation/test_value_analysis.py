@@ -119,7 +119,7 @@ def test_it_has_no_alarm(book, objects, tmp_path):
     options = [
         "-eva",
         "-eva-auto-loop-unroll",
-        "1024",
+        "64",
         "-warn-special-float",
         "none",
         "-machdep",
