@@ -116,7 +116,7 @@ class EntangledReads:
         self._apart = None
         if local_parts is not None:
             self._apart = ReadsApart(
-                self._reads, self.subjects, binding, axioms, everybody, local_parts
+                self._reads, self.subjects, binding, axioms, everybody, known=local_parts
             )
         self.found: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}

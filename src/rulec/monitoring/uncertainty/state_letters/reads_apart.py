@@ -53,6 +53,7 @@ class _PartTable:
         binding: Mapping[str, str],
         axioms: Sequence[CompiledAxiom],
         objects: Mapping[str, str],
+        *,
         vocabulary: Vocabulary,
     ) -> None:
         self._reads, self._ready = reads, [read_digits(read) for read in reads]
@@ -110,6 +111,7 @@ class ReadsApart:
         binding: Mapping[str, str],
         axioms: Sequence[CompiledAxiom],
         everybody: PartialView,
+        *,
         known: KnownParts,
     ) -> None:
         self._binding, self._everybody = binding, everybody
@@ -184,7 +186,7 @@ class ReadsApart:
         key = reads, subjects, facts, (*binding.items(),), (*objects.items(),)
         if key not in known:
             vocabulary = self._everybody.vocabulary
-            known[key] = _PartTable(reads, subjects, binding, facts, objects, vocabulary)
+            known[key] = _PartTable(reads, subjects, binding, facts, objects, vocabulary=vocabulary)
         return known[key]
 
 
