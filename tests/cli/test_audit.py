@@ -205,8 +205,8 @@ def test_the_treaty_and_a_country(capsys):
     status, out, err = run(capsys, "vienna", "at", "--examples", *fatal)
     assert (status, err) == (0, "")
     assert "\nprovisions cited in at, and the rules they are in\n" in out
-    # What Austria's law says of it was not found.
-    assert "\n  Art. 19(d) " in out.split("\nat: ")[1].split("\nprovisions cited in vienna")[1]
+    # The railways' law, which says it in Austria, was not read.
+    assert "\n  Art. 11(8)(b) " in out.split("\nat: ")[1].split("\nprovisions cited in vienna")[1]
 
 
 def test_a_compiled_rulebook_is_not_enough(folder, capsys):
@@ -220,9 +220,9 @@ def test_a_narrow_page():
     assert all(len(line) <= 80 for line in text.splitlines())
     assert (
         """
-  near_side_passing                     legal information system RIS and pages
-                                        that quote it, of 2022; § 7(3a) from
-                                        memory
+  overtaking_against_a_sign  copy of the consolidated text, which has the
+                             amendments up to BGBl. I 52/2024; the sign from
+                             memory, to be checked
 """
         in text
     )

@@ -7,7 +7,7 @@ from rulec.diagnostics.code import Code
 NOT_AS_LOCKED = Code(
     "R0725",
     title="what ships with rulec is not what a project has locked",
-    why="`rulec check --lock` writes into `rulec.lock` the hash (SHA-256) of every rulebook and "
+    why="Into `rulec.lock` goes, by `rulec check --lock`, the hash (SHA-256) of every rulebook and "
     "vocabulary that ships with rulec and that the rulebooks of a project build upon. Another "
     "release of rulec may have another law of the same name. Then `rulec check` says which file "
     "differs, until the project has looked at what has changed and locks it anew.",

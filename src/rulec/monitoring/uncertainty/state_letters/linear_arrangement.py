@@ -19,7 +19,7 @@ from rulec.witnesses.fourier_motzkin import LinearBound, TooManyBoundsError, sol
 MOST_POINTS = 1 << 12
 """Of more cells no points are given."""
 
-MOST_BOUNDS = 1 << 18
+MOST_BOUNDS = 1 << 15
 """So many inequalities are made by elimination in all for the cells of three or more numbers."""
 
 Point = dict[Term, Fraction]
