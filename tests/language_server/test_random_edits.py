@@ -90,6 +90,18 @@ def test_what_stands_outside_of_rules_depends_on_the_last_one_however_far_above(
     assert [label.place.line for label in outside.labels] == [2]
 
 
+def test_a_mistake_in_an_edited_rule_still_names_its_provision(tmp_path):
+    path = tmp_path / "small.rules"
+    workspace = EditorWorkspace((tmp_path,))
+    workspace.check(workspace.open(path.as_uri(), BOOK))
+    edited_rule = BOOK.replace("  require never", '  cite "Art. 3"\n  require never')
+    for text in (edited_rule, edited_rule.replace("# Above.", "\n\n")):
+        checked = workspace.check(workspace.open(path.as_uri(), text))
+        assert checked.findings == diagnose(str(path), text.encode(), path).findings
+        (wrong,) = [one for one in checked.findings if "at_thing_x" in one.message]
+        assert wrong.notes == ("rule `third` is Art. 3",)
+
+
 def test_a_pause_changes_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(parsed_text, "_LITTLE_GROWTH", 0)
     path = tmp_path / "small.rules"

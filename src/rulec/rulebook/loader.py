@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import date
 from pathlib import Path
@@ -238,16 +238,22 @@ def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
     return list(first.values())
 
 
-def said(trees: Trees, found: Sequence[Diagnostic], source: Source) -> tuple[Diagnostic, ...]:
+def said(
+    trees: Trees,
+    found: Sequence[Diagnostic],
+    source: Source,
+    placed: Callable[[SourceLocation], SourceLocation] = lambda place: place,
+) -> tuple[Diagnostic, ...]:
     """What is said of what was found, in order.
 
     That is not what comments of the source allow, and with books and vocabularies that have the
-    words that nothing is called here.
+    words that nothing is called here. ``placed`` leads from places of the trees to those of what
+    was found, where a text was edited since it was first parsed.
     """
     findings = in_order(trees.name, judged_allowances(found, source))
     read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]
     known = with_words_elsewhere(findings, read, trees.search_path)
-    return with_provisions(known, trees.books)
+    return with_provisions(known, trees.books, placed)
 
 
 def in_order(main: str, mistakes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

@@ -152,7 +152,8 @@ class EditorWorkspace:
                 return CheckedDocument(name, path, parsed, None, error.diagnostics)
             resolved = document.memory.resolved(trees)
         found = [*parsed.mistakes, *map(parsed.in_text, resolved.findings)]
-        return CheckedDocument(name, path, parsed, resolved, said(trees, found, source))
+        findings = said(trees, found, source, parsed.placed)
+        return CheckedDocument(name, path, parsed, resolved, findings)
 
     def rest(self) -> None:
         """Do in a pause what would make a keystroke slow, so that it need not be done then."""

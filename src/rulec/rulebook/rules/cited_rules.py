@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
-from rulec.diagnostics import Diagnostic
+from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.syntax import tree
 
 
 def with_provisions(
-    findings: Iterable[Diagnostic], books: Sequence[tree.File]
+    findings: Iterable[Diagnostic],
+    books: Sequence[tree.File],
+    placed: Callable[[SourceLocation], SourceLocation],
 ) -> tuple[Diagnostic, ...]:
     """Findings, those within a rule with a note of what it cites.
 
     ``books`` are those that a rulebook extends, the most general first, and itself: an override
-    that cites nothing is the rule of what is overridden.
+    that cites nothing is the rule of what is overridden. ``placed`` leads from where their trees
+    say that something is to where findings do.
     """
     found = tuple(findings)
     if not found:
@@ -30,7 +33,7 @@ def with_provisions(
             if item.cite is not None:
                 cited[item.name.text] = item.cite.value
             if provision := cited.get(item.name.text):
-                place = item.span.place
+                place = placed(item.span.place)
                 lines = (place.line or 0, place.end_line or 0)
                 note = f"rule `{item.name.text}` is {provision}"
                 rules.setdefault(place.file, []).append((*lines, note))
