@@ -28,7 +28,7 @@ place = "%s %s" % ({"Darwin": "macOS"}.get(system, system), machine)
 if system == "Linux":
     place += " with glibc " + libc if libc else " without glibc"
     if machine == "x86_64" and libc and [int(n) for n in libc.split(".")[:2]] >= [2, 34]:
-        place = "wheel"
+        place = "wheel" if sys.version_info < (3, 14) else place + " and Python " + version
 sys.stdout.write("\n".join((version, venv, place, os.path.realpath(sys.executable))))
 '
 
@@ -37,7 +37,7 @@ find_python() {
     if [ -n "${RULEC_PYTHON:-}" ]; then
         set -- "$RULEC_PYTHON"
     else
-        set -- python3 python3.13 python3.12 python3.11 python3.10 python
+        set -- python3 python3.13 python3.12 python3.11 python3.10 python3.14 python
     fi
     seen=
     for candidate in "$@"; do
@@ -55,7 +55,7 @@ find_python() {
 $answer
 EOF
         case $version in
-        3.10 | 3.11 | 3.12 | 3.13)
+        3.10 | 3.11 | 3.12 | 3.13 | 3.14)
             if [ "$venv" = venv ] || [ -n "$uv" ]; then return; fi
             seen="$seen, $candidate ($version) lacks venv and ensurepip (on Debian and Ubuntu: \
 apt install python$version-venv)"
@@ -65,7 +65,7 @@ apt install python$version-venv)"
         esac
     done
     seen=${seen#, }
-    stop "a Python from 3.10 to 3.13 with venv is needed; ${seen:-there is none on PATH}." \
+    stop "a Python from 3.10 to 3.14 with venv is needed; ${seen:-there is none on PATH}." \
         "Install one${uv:+ (uv python install 3.13)}, or set RULEC_PYTHON to one, and call again."
 }
 
@@ -82,6 +82,6 @@ check_platform() {
         stop "RULEC_OWN_SPOT asks for a Spot of your own, but $python has none. Set RULEC_PYTHON to" \
             "the Python into which it was installed."
     own_spot=
-    say "Spot comes ready-made only for Linux on x86-64 with glibc 2.34 or newer, and this is $place." \
-        "rulec compiles without it; for a Spot of your own see docs/installation.md."
+    say "Spot comes ready-made only for Linux on x86-64 with glibc 2.34 or newer and Python up to" \
+        "3.13, and this is $place. rulec compiles without it; for a Spot of your own see docs/installation.md."
 }

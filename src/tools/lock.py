@@ -18,7 +18,7 @@ from rulec.toml import parsed_toml
 
 ROOT = Path(__file__).resolve().parents[2]
 LOCKS = ROOT / "src" / "launcher" / "locks"
-PYTHONS = ("3.10", "3.11", "3.12", "3.13")
+PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14")
 PURPOSES = {"": (), "-test": ("--extra", "test")}
 """Ending of a lock's name -> what it has beyond rulec's own needs."""
 UV = ("uv", "pip", "compile", "--quiet", "--universal", "--generate-hashes", "--no-header")

@@ -2,7 +2,7 @@
 
 import pytest
 
-ALL = "python3 python3.13 python3.12 python3.11 python3.10 python"
+ALL = "python3 python3.13 python3.12 python3.11 python3.10 python3.14 python"
 WAY_OUT = "or set RULEC_PYTHON to one, and call again."
 
 
@@ -24,20 +24,20 @@ def refused(checkout, **variables):
     return result.stderr
 
 
-@pytest.mark.parametrize("minor", [10, 11, 12, 13])
+@pytest.mark.parametrize("minor", [10, 11, 12, 13, 14])
 def test_every_supported_version_is_taken(checkout, minor):
     checkout.add_tool("python3", version=[3, minor, 0])
     assert chosen(checkout) == f"3.{minor}"
 
 
-@pytest.mark.parametrize("version", [[2, 7, 18], [3, 9, 0], [3, 14, 0], [4, 10, 0]])
+@pytest.mark.parametrize("version", [[2, 7, 18], [3, 9, 0], [3, 15, 0], [4, 10, 0]])
 def test_other_versions_are_refused_by_name(checkout, version):
     checkout.add_tool("python3", version=version)
     assert f"; python3 is {version[0]}.{version[1]}. " in refused(checkout)
 
 
 def test_wrong_or_broken_ones_are_passed_over(checkout):
-    checkout.add_tool("python3", version=[3, 14, 0])
+    checkout.add_tool("python3", version=[3, 15, 0])
     checkout.add_script("python3.13", "echo 'pyenv: python3.13: command not found' >&2; exit 127")
     checkout.add_tool("python3.12", version=[3, 12, 1])
     assert chosen(checkout) == "3.12"
@@ -51,11 +51,11 @@ def test_order_is_that_of_the_manual(checkout):
 
 
 def test_every_unfit_one_is_named(checkout):
-    checkout.add_tool("python3", version=[3, 14, 0])
+    checkout.add_tool("python3", version=[3, 15, 0])
     checkout.add_script("python3.12", "exit 1")
     checkout.add_tool("python", version=[2, 7, 18])
     said = refused(checkout)
-    assert "python3 is 3.14, python3.12 does not run, python is 2.7." in said
+    assert "python3 is 3.15, python3.12 does not run, python is 2.7." in said
 
 
 def test_none_at_all(checkout):
@@ -64,7 +64,7 @@ def test_none_at_all(checkout):
 
 
 def test_uv_could_bring_one(checkout):
-    checkout.add_tool("python3", version=[3, 14, 0])
+    checkout.add_tool("python3", version=[3, 15, 0])
     checkout.add_tool("uv")
     assert "Install one (uv python install 3.13), or set" in refused(checkout)
 

@@ -22,8 +22,7 @@ PYODIDE_FILES = (
 )
 """Python itself, as the package ``pyodide`` has it: Python 3.14 in WebAssembly.
 
-It is the release for which PyPI has a build of msgspec. That rulec is installed on no more than
-3.13 is because of Spot's wheel, which the page does without.
+It is the release for which PyPI has a build of msgspec.
 """
 
 PLATFORM = (
