@@ -265,6 +265,7 @@ def test_a_past_as_deep_as_a_formula_may_be():
     assert deepest.machine == plain.machine
 
 
+@pytest.mark.spot
 def test_phases_in_phases_that_explode_are_an_error():
     """On the left a sequence is said twice, and what stands in it four times."""
     deep = reduce(lambda inner, _: Binary(BinaryOperator.THEN, inner, Q), range(99), P)

@@ -59,6 +59,7 @@ def run(*arguments):
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.spot
 def test_a_benchmark_by_name_prints_its_table_and_the_machine():
     done = run("compiling", "--rounds", "1")
     assert (done.returncode, done.stderr) == (0, "")
@@ -83,6 +84,7 @@ def test_a_benchmark_that_breaks_is_said(monkeypatch, tmp_path, capfd):
     assert said.err.endswith("RuntimeError: no figures\nthe benchmark fails broke\n")
 
 
+@pytest.mark.spot
 def test_benchmarks_find_what_they_import():
     program = f"import sys; sys.path.insert(0, {str(HERE)!r}); import {', '.join(every.NAMES)}"
     environment = every.environment()

@@ -15,7 +15,6 @@ from pathlib import Path
 import pytest
 
 from rulec.automata.alphabet import propositions_of, reads_of
-from rulec.automata.spot_bridge import explore, translate
 from rulec.automata.tables import build_machine
 from rulec.automata.worker.random_words import verdict
 from rulec.logic.bounds import PAST, operations_of
@@ -31,6 +30,8 @@ from support.generators.timed_formulas import (
     timed_words,
     without_bounds,
 )
+
+spot_bridge = pytest.importorskip("rulec.automata.spot_bridge")
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"
@@ -84,8 +85,8 @@ def in_flloat(formula, names):
 
 def by_machine(formula, words):
     reads = reads_of(formula, TIMED_VOCABULARY)
-    found = translate(formula, reads, "finite")
-    machine = build_machine(explore(found, reads), reads)
+    found = spot_bridge.translate(formula, reads, "finite")
+    machine = build_machine(spot_bridge.explore(found, reads), reads)
     return [verdict(machine, [letter_number(reads, state) for state in word]) for word in words]
 
 
