@@ -20,20 +20,8 @@ from rulec.code_generation.rust_files import crate_texts
 from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.code_generation.written_names import prefix_of
 from support.builders.hostile_books import PARTS, hostile
+from support.builders.monitored_books import WATCHED
 
-BOOK = """\
-rulebook watched
-type car
-signal stop, standing default false
-light is one of red, amber, green
-quantity speed in km/h default 0
-quantity gap(o: car) in m
-quantity between(o: car, p: car) in m default 100
-hard rule stops { require always (stop implies eventually[<= 2 steps] standing) }
-hard rule waits { require always (red implies speed <= 5 km/h) }
-soft rule keeps_away (c: car) { require always gap(c) >= 2.5 m }
-soft rule lets_in (c: car, d: car) { require always (between(c, d) >= 10 m or gap(c) >= 2.5 m) }
-"""
 NAMES = ["watched", "car", "stop", "standing", "light", "red", "amber", "green", "speed", "gap"]
 NAMES += ["between", "stops", "waits", "keeps_away", "lets_in", "c"]
 WRITTEN = {"c": monitor_texts, "ros2": ros2_texts, "rust": crate_texts}
@@ -42,7 +30,7 @@ WRITTEN = {"c": monitor_texts, "ros2": ros2_texts, "rust": crate_texts}
 @pytest.fixture(scope="module")
 def books():
     """The rulebook as it is, and hostile ones in which each name has another evil one."""
-    plain = rulec.compile_rulebook(rulec.parse_rulebook(BOOK), step_s=1)
+    plain = rulec.compile_rulebook(rulec.parse_rulebook(WATCHED), step_s=1)
     turned = [NAMES[n:] + NAMES[:n] for n in (0, 5, 11)]
     evil = [hostile(plain, names) for names in turned]
     assert {rule.name for book in evil for rule in book.rules} <= {*PARTS}

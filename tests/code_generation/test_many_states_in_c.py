@@ -14,38 +14,21 @@ from rulec.code_generation.monitor_layout import monitor_layout
 from rulec.code_generation.proof.both_monitors import BothMonitors
 from rulec.code_generation.proof.random_drives import drives, table_drives
 from rulec.rulebook.files.search_path import available_rulebooks
+from support.builders.monitored_books import NARROW
 
 pytestmark = [
     pytest.mark.long,
     pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler"),
 ]
-
-NUMBERS = """\
-rulebook numbers
-type car
-signal stop, standing default false
-light is one of red, amber, green default green
-quantity speed in km/h default 0
-quantity limit in km/h default 50
-quantity gap(o: car) in m
-signal parked(o: car) default false
-hard rule stops { require always (stop implies eventually[<= 3 steps] standing) }
-hard rule waits { require always (red implies speed <= 5 km/h) }
-hard rule crawls { require always (count c: car (parked(c)) >= 2 implies speed < 36 km/h) }
-hard rule keeps { require always speed - limit <= 0 km/h }
-soft rule keeps_away (c: car) {
-  require always (gap(c) < 8.3 m implies next (gap(c) >= 8.3 m or parked(c)))
-}
-"""
-MANY = {"esterle2019": (6_000_000, 500_000, 3_200_000), "numbers": (200_000, 30_000, 100_000)}
+MANY = {"esterle2019": (6_000_000, 500_000, 3_200_000), "narrow": (200_000, 30_000, 100_000)}
 FEWER = (1_000, 300, 1_500)
-BOOKS = ["numbers", *sorted({*available_rulebooks()} - {"schemas"})]
+BOOKS = ["narrow", *sorted({*available_rulebooks()} - {"schemas"})]
 
 
 @pytest.mark.parametrize("book", BOOKS)
 def test_states_are_judged_alike(book, record_property):
     """States of which all is known, of which not all is, and such as letters are made into."""
-    source = rulec.parse_rulebook(NUMBERS) if book == "numbers" else book
+    source = rulec.parse_rulebook(NARROW) if book == "narrow" else book
     layout = monitor_layout(rulec.compile_rulebook(source, step_s=1), {})
     library, chance = CLibrary(layout), Random(book)
     known, unknown, of_tables = MANY.get(book, FEWER)

@@ -17,27 +17,9 @@ from rulec.code_generation.monitor_layout import monitor_layout
 from rulec.code_generation.proof import monitor_proof
 from rulec.code_generation.proof.monitor_proof import proof_of
 from rulec.diagnostics import RulecError
+from support.builders.monitored_books import NARROW
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
-
-BOOK = """\
-rulebook narrow
-type car
-signal stop, standing default false
-light is one of red, amber, green default green
-quantity speed in km/h default 0
-quantity limit in km/h default 50
-quantity gap(o: car) in m
-signal parked(o: car) default false
-
-hard rule stops { require always (stop implies eventually[<= 3 steps] standing) }
-hard rule waits { require always (red implies speed <= 5 km/h) }
-hard rule crawls { require always (count c: car (parked(c)) >= 2 implies speed < 36 km/h) }
-hard rule keeps { require always speed - limit <= 0 km/h }
-soft rule keeps_away (c: car) {
-  require always (gap(c) < 8.3 m implies next (gap(c) >= 8.3 m or parked(c)))
-}
-"""
 FAULTS = {
     "a threshold that is passed a little later": (r"(floors_\d+\[1u\] = \{0x1\.)4", r"\g<1>5"),
     "a threshold in another unit": (r"(floors_\d+\[1u\] = \{)(0x1\.4[^}]*)", r"\g<1>3.6 * \2"),
@@ -61,7 +43,7 @@ FAULTS = {
 
 @pytest.fixture(scope="module")
 def layout():
-    return monitor_layout(rulec.compile_rulebook(rulec.parse_rulebook(BOOK), step_s=1), {})
+    return monitor_layout(rulec.compile_rulebook(rulec.parse_rulebook(NARROW), step_s=1), {})
 
 
 def differs(layout, source):

@@ -21,6 +21,7 @@ from rulec.monitoring.online.four_valued import best_of, worst_of
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN
+from support.builders.monitored_books import WATCHED
 
 STUB = Path(__file__).parent / "ros2_stub"
 KINDS = {
@@ -32,24 +33,11 @@ KINDS = {
     "Object": "Object",
 }
 FIELD = re.compile(r"([\w/]+)(\[\d*\])? (\w+)(?: ([^=\s#]\S*))?(?:  # .*)?")
-BOOK = """\
-rulebook watched
-type car
-signal stop, standing default false
-light is one of red, amber, green
-quantity speed in km/h default 0
-quantity gap(o: car) in m
-quantity between(o: car, p: car) in m default 100
-hard rule stops { require always (stop implies eventually[<= 2 steps] standing) }
-hard rule waits { require always (red implies speed <= 5 km/h) }
-soft rule keeps_away (c: car) { require always gap(c) >= 2.5 m }
-soft rule lets_in (c: car, d: car) { require always (between(c, d) >= 10 m or gap(c) >= 2.5 m) }
-"""
 
 
 @pytest.fixture(scope="module")
 def layout():
-    return monitor_layout(rulec.compile_rulebook(rulec.parse_rulebook(BOOK), step_s=1), {})
+    return monitor_layout(rulec.compile_rulebook(rulec.parse_rulebook(WATCHED), step_s=1), {})
 
 
 def message_lines(text):

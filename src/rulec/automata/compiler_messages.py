@@ -9,7 +9,7 @@ from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
 from rulec.logic.bounds import operations_of
 from rulec.logic.printing import formula_text
-from rulec.rulebook.rulebook_model import Rule
+from rulec.rulebook.rulebook_model import Rule, provision_note
 
 _SIGNALS = ", ".join(f"s{number}" for number in range(1, 18))
 _EACH = [f"not s{number}" for number in range(1, 18)]
@@ -131,7 +131,7 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
 
 
 def _provision(rule: Rule) -> tuple[str, ...]:
-    return (f"rule `{rule.name}` is {rule.cite}",) if rule.cite else ()
+    return (provision_note(rule.name, rule.cite),) if rule.cite else ()
 
 
 def _contradiction(rule: Rule, instances: tuple[AxiomInstance, ...]) -> Diagnostic:

@@ -123,6 +123,11 @@ def cited_law(cite: str, inherited_from: str) -> str:
     return f"inherited, not confirmed: {inherited_from} {cite}".rstrip() if inherited_from else cite
 
 
+def provision_note(rule: str, cite: str) -> str:
+    """What is said below a finding within a rule: which provision that is."""
+    return f"rule `{rule}` is {cite}"
+
+
 @dataclass(frozen=True, slots=True)
 class SourceFile:
     """Source file of a rulebook: base name and SHA-256 of content."""

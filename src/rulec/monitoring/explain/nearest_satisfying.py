@@ -108,8 +108,7 @@ def _costs(machine: MealyMonitor, near: Sequence[_Near]) -> list[Sequence[int]]:
     A state's classes mostly lead to few others, of which the nearest class counts.
     """
     states = range(len(machine.successors))
-    last: Sequence[int] = ()
-    last = [min(_totals(machine, state, near[-1].distances, last)) for state in states]
+    last = [min(_totals(machine, state, near[-1].distances, ())) for state in states]
     costs: list[Sequence[int]] = [(), last]
     ways: dict[int, list[list[tuple[int, int]]]] = {}
     for place in range(len(near) - 2, -1, -1):

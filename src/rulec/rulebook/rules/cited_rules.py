@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from rulec.diagnostics import Diagnostic, SourceLocation
+from rulec.rulebook.rulebook_model import provision_note
 from rulec.syntax import tree
 
 
@@ -35,7 +36,7 @@ def with_provisions(
             if provision := cited.get(item.name.text):
                 place = placed(item.span.place)
                 lines = (place.line or 0, place.end_line or 0)
-                note = f"rule `{item.name.text}` is {provision}"
+                note = provision_note(item.name.text, provision)
                 rules.setdefault(place.file, []).append((*lines, note))
     return tuple(_noted(finding, rules) for finding in found)
 

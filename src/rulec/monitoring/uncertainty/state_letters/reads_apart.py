@@ -97,6 +97,10 @@ class _Part(NamedTuple):
     table: _PartTable
 
 
+KnownParts: TypeAlias = "dict[object, _PartTable]"
+"""What is known of parts, by what they are."""
+
+
 class ReadsApart:
     """Reads of one rule that depend on these ``subjects``, in parts.
 
@@ -188,10 +192,6 @@ class ReadsApart:
             vocabulary = self._everybody.vocabulary
             known[key] = _PartTable(reads, subjects, binding, facts, objects, vocabulary=vocabulary)
         return known[key]
-
-
-KnownParts: TypeAlias = "dict[object, _PartTable]"
-"""What is known of parts, by what they are."""
 
 
 def _instances(axiom: CompiledAxiom, everybody: PartialView) -> Iterator[frozenset[Subject]]:
