@@ -11,8 +11,8 @@ from rulec import pipeline
 from rulec.api.rulebook_compilation import machines
 from rulec.automata import compiled_cache, compiler, prefix_machines
 from rulec.automata.bundle.mapped_tables import MappedTables, TableWriter, mapped
+from rulec.cache.cache_folder import cache_folder
 from rulec.diagnostics import RulecError
-from rulec.rulebook.batch.check_cache import cache_folder
 from support.builders.rulebook_projects import project_in
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"

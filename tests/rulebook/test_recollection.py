@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from rulec.cache import cache_folder as cache_folder_module
+from rulec.cache.cache_folder import cache_folder, program_digest
 from rulec.rulebook import loader
 from rulec.rulebook.batch import batch_check, check_cache
-from rulec.rulebook.batch.check_cache import CheckQuestion, cache_folder, recall, remember
+from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
 from support.builders.rulebook_projects import project_in
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"
@@ -148,17 +150,20 @@ def test_standard_input_is_recalled_by_its_text(folder, made):
 
 
 @pytest.mark.parametrize(
-    ("name", "value"),
-    [("__version__", "0.0.0"), ("package_files", lambda: [("a.py", Path(__file__).stat())])],
+    ("module", "name", "value"),
+    [
+        (check_cache, "__version__", "0.0.0"),
+        (cache_folder_module, "package_files", lambda: [("a.py", Path(__file__).stat())]),
+    ],
 )
-def test_another_rulec_checks_anew(folder, made, monkeypatch, name, value):
+def test_another_rulec_checks_anew(folder, made, monkeypatch, module, name, value):
     check()
     # As in another process, which asks once for the program's own files.
-    check_cache.program_digest.cache_clear()
-    monkeypatch.setattr(check_cache, name, value)
+    program_digest.cache_clear()
+    monkeypatch.setattr(module, name, value)
     check()
     check()
-    check_cache.program_digest.cache_clear()
+    program_digest.cache_clear()
     assert len(made) == 2
 
 

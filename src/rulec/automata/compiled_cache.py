@@ -23,14 +23,9 @@ from rulec.automata.bundle.mapped_rulebook import MappedRulebook, placed, rulebo
 from rulec.automata.bundle.mapped_tables import TableWriter, mapped
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.automata.worker import compiler_choice
+from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.rulebook.batch.check_cache import (
-    is_as_it_was,
-    program_digest,
-    tidy,
-    usable_folder,
-    write_own,
-)
+from rulec.rulebook.batch.check_cache import is_as_it_was
 from rulec.rulebook.files.search_path import Dependency, find_rulebook, read_bytes
 from rulec.version import __version__
 

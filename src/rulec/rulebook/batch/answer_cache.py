@@ -16,9 +16,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
 from rulec.diagnostics import RulecError
 from rulec.files import is_own
-from rulec.rulebook.batch.check_cache import program_digest, tidy, usable_folder, write_own
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.rulebook.files.source_walk import rules_files
 from rulec.version import __version__

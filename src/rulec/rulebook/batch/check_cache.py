@@ -10,18 +10,16 @@ from __future__ import annotations
 
 import json
 import os
-import stat
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
-from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
 from rulec.diagnostics import Diagnostic, Fix, Label, RulecError, SourceLocation
-from rulec.files import OF_OTHERS, is_own, written_whole
-from rulec.resources import package_files
+from rulec.files import is_own
 from rulec.rulebook.files.search_path import Dependency, locate_base, locate_vocabulary, read_bytes
 from rulec.version import __version__
 
@@ -57,47 +55,6 @@ class CheckQuestion:
     def stamp(self) -> list[str]:
         """The content that has to be as it was."""
         return [sha256(self.data).hexdigest(), self.day, __version__, program_digest()]
-
-
-def cache_folder() -> Path | None:
-    """``RULEC_CACHE_DIR``, or ``rulec`` in the user's cache folder; None without either."""
-    if own := os.environ.get("RULEC_CACHE_DIR"):
-        return Path(own)
-    shared = os.environ.get("XDG_CACHE_HOME", "")
-    if Path(shared).is_absolute():
-        return Path(shared, "rulec")
-    try:
-        return Path.home() / ".cache" / "rulec"
-    except RuntimeError:
-        return None
-
-
-def usable_folder() -> Path | None:
-    """The cache's folder, which may not be there yet; None if others can write to it, too.
-
-    Who writes there decides what is found. The default folder is closed to others.
-    """
-    folder = cache_folder()
-    if folder is None:
-        return None
-    try:
-        status = folder.stat()
-        if status.st_uid == os.geteuid() and not os.environ.get("RULEC_CACHE_DIR"):
-            folder.chmod(stat.S_IMODE(status.st_mode) & ~OF_OTHERS)
-            status = folder.stat()
-    except FileNotFoundError:
-        return folder
-    except (OSError, ValueError):
-        return None
-    return folder if is_own(status) else None
-
-
-def write_own(path: Path, data: bytes) -> None:
-    """Write a file of the cache, for its owner alone. Raises OSError, RulecError R0702."""
-    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    with written_whole(path) as stream:
-        stream.write(data)
-    path.chmod(0o600)
 
 
 def recall(question: CheckQuestion) -> tuple[Diagnostic, ...] | None:
@@ -177,20 +134,3 @@ def diagnostic_of(data: dict[str, Any]) -> Diagnostic:
     fix = None if mend is None else Fix(SourceLocation(**mend["place"]), mend["text"])
     parts = {"place": place, "labels": tuple(labels), "notes": tuple(data["notes"]), "fix": fix}
     return Diagnostic(**{**data, **parts})
-
-
-@cache
-def program_digest() -> str:
-    """A digest of rulec's own files, by their times and sizes as they were when first asked for."""
-    seen = sha256()
-    for path, status in package_files():
-        seen.update(f"{path}\0{status.st_mtime_ns}\0{status.st_size}\n".encode())
-    return seen.hexdigest()
-
-
-def tidy(folder: Path, pattern: str, most: int) -> None:
-    """Remove the half of some files that was unused longest, if there are too many."""
-    kept = list(folder.glob(pattern))
-    if len(kept) > most:
-        for path in sorted(kept, key=lambda file: file.stat().st_mtime)[: len(kept) // 2]:
-            path.unlink(missing_ok=True)

@@ -12,9 +12,9 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from hashlib import sha256
 
+from rulec.cache.cache_folder import program_digest, usable_folder, write_own
 from rulec.diagnostics import RulecError
 from rulec.files import is_own
-from rulec.rulebook.batch.check_cache import program_digest, usable_folder, write_own
 from rulec.version import __version__
 
 MOST_TEXTS = 10_000
