@@ -86,6 +86,15 @@ def test_json(capsys):
     assert [one["code"] for one in json.loads(out)] == ["R0504"]
 
 
+def test_several_codes(capsys):
+    _, out, _ = explain(capsys, "r0602", "R0101", "R0602")
+    assert [line[:6] for line in out.splitlines() if line[:2] == "R0"] == ["R0602:", "R0101:"]
+    _, out, _ = explain(capsys, "R0602", "R0101", "--output-format", "markdown")
+    assert out.count("\n# R0101: ") == 1
+    assert out.startswith("# R0602: ")
+    assert explain(capsys, "R0602", "R9999")[:2] == (2, "")
+
+
 def test_markdown_of_one_code(capsys):
     _, out, _ = explain(capsys, "R0606", "--output-format", "markdown")
     assert out.startswith("# R0606: horizon and step do not fit together\n\nThe horizon is cut")
@@ -103,8 +112,8 @@ def test_the_page_is_up_to_date(capsys):
     [
         (["R0602x"], "there is no code `R0602x`; did you mean `R0602`?"),
         (["verify"], "`rulec list codes` shows them all"),
-        ([], "give one code, or --all"),
-        (["R0101", "--all"], "give one code, or --all"),
+        ([], "give a code, or --all"),
+        (["R0101", "--all"], "give a code, or --all"),
     ],
 )
 def test_what_cannot_be_answered(arguments, words, capsys):

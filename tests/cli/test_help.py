@@ -60,7 +60,7 @@ def test_misuse_looks_like_other_mistakes(capsys):
     assert (status, out) == (2, "")
     first, usage, way_out = err.splitlines()
     assert first.startswith("error: there is no code `R9999x`")
-    assert usage == "  = usage: rulec explain [OPTIONS] [CODE]"
+    assert usage == "  = usage: rulec explain [OPTIONS] [CODE]..."
     assert way_out == "  = help: `rulec help explain` says more"
 
 

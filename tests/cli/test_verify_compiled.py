@@ -1,6 +1,7 @@
 """``rulec verify-compiled`` as its user meets it."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -49,6 +50,23 @@ def test_what_is_not_proved(file, tmp_path, capsys):
     assert "not proved, because a trace of one state is violated by its table, kept by its" in out
     assert "  state 0: p: " in out
     assert out.endswith("2 rules: 1 proved, 1 not proved\n")
+
+
+def test_folders_and_patterns(file, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for place in ("one/b.json", "one/deep/c.json", "one/.hidden/d.json"):
+        Path(place).parent.mkdir(parents=True, exist_ok=True)
+        Path(place).write_bytes(file.read_bytes())
+    Path("one/notes.json").write_text("{}")
+    Path("one/link").symlink_to("deep", target_is_directory=True)
+    for named in (["one"], ["one/b*.json", "one/d*", "one/b.json"], ["one/b.json", "one/deep"]):
+        assert main(["verify-compiled", *named, "--json"]) == 0
+        files = json.loads(capsys.readouterr().out)["files"]
+        assert [one["file"] for one in files] == ["one/b.json", "one/deep/c.json"]
+    Path("none").mkdir()
+    for named in ("none", "one/*.rules"):
+        assert main(["verify-compiled", named]) == 2
+        assert "error[R0733]" in capsys.readouterr().err
 
 
 def test_files_that_are_none(file, tmp_path, capsys):

@@ -71,6 +71,12 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["maneuvers", "s2", "-r", "de", "--list", "many"], "--list: `many` is no whole number"),
         (["compile", "de", "-o", "x", "--step", "0,5"], "decimals have a point: 0.5"),
         (["verify", "https://x.org/a.xml", "-r", "nl"], "download it first"),
+        (["monitor", "de", "fr"], "`fr` is an argument too many\n  = help: it takes one at a time"),
+        (["traces", "s1", "s2", "-o", "t.csv"], "for several `for s in s2 s3; do rulec traces"),
+        (["list", "codes", "a", "b"], "error: `a b` is 2 arguments too many\n  = usage"),
+        (["show", "de", "--at"], "error: --at is given without a value"),
+        (["check", "--fail-on", "error", "--fail-on", "error"], "--fail-on is given twice"),
+        (["show", "de", *(["--at", "2026-01-01"] * 3)], "--at is given 3 times, and takes one"),
         (["new", "Belgium 2"], "  = help: such as `belgium_2`"),
         (
             ["maneuvers", "s1", "-r", "esterle2019", "--step", "0.307692"],
@@ -83,6 +89,29 @@ def test_in_a_command(arguments, way_out, tmp_path, monkeypatch, capsys):
     status, text = said(capsys, *arguments)
     assert status == 2
     assert way_out in text
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["draw", "scene", "s1", "-o", "s.svg"],
+        ["draw", "graph", "s1", "-o", "s.svg"],
+        ["draw", "trace", "t.jsonl", "-o", "s.svg"],
+        ["draw", "drive", "drive.xml", "-o", "s.svg"],
+        ["traces", "s1", "-o", "t.csv"],
+        ["envelopes", "s1", "-o", "e.csv"],
+        ["find", "true", "t.jsonl"],
+    ],
+)
+def test_what_is_of_one_rulebook(arguments, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "laws").mkdir()
+    for rulebooks in (["-r", "de", "-r", "fr"], ["-r", "laws"], ["--rulebook=la*/*.rules"]):
+        status, text = said(capsys, *arguments, *rulebooks)
+        assert (status, "; give each rulebook a call of its own\n" in text) == (2, True)
+    assert [path.name for path in tmp_path.iterdir()] == ["laws"]
+    status, text = said(capsys, "monitor", "laws")
+    assert (status, "a monitor goes by one rulebook" in text) == (2, True)
 
 
 def test_a_trace_in_the_words_of_another_vocabulary(tmp_path, capsys):

@@ -16,6 +16,7 @@ from pyarrow import compute, parquet
 
 import rulec
 from rulec.batch.jobs import Jobs
+from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.extraction.selection import RequestedDrives
 from rulec.fleet import FleetJudge
@@ -50,8 +51,38 @@ def found_in(folder):
     return in_order(pyarrow.concat_tables([parquet.read_table(path) for path in paths]))
 
 
+def _rows(folder):
+    """The rows of findings about drives and rules in a folder."""
+    (path,) = folder.glob("book=*/*.parquet")
+    return parquet.read_table(path).to_pylist()
+
+
 def in_order(table):
     return sorted(map(repr, table.to_pylist()))
+
+
+def test_several_rulebooks_side_by_side(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    head, rule = "rulebook {}\nuse road\n", "hard rule slow {{ require always speed <= {} m/s }}\n"
+    for name, most in (("one", 5), ("two", 50)):
+        Path(f"{name}.rules").write_text((head + rule).format(name, most))
+    states = [{"speed": 20}, {"speed": 22}]  # in km/h
+    Path("t.jsonl").write_text(json.dumps({"id": "a", "step_s": 1, "states": states}) + "\n")
+    rulec.write_traces(rulec.read_traces("t.jsonl"), "t.parquet")
+    assert main(["fleet", "t.parquet", "-r", "./one.rules", "-r", "./two.rules", "-o", "f"]) == 1
+    (table,) = re.findall(r"by +one +two\n[\s\S]*", capsys.readouterr().out)
+    assert [line.split() for line in table.splitlines() if "─" not in line] == [
+        ["by", "one", "two"],
+        ["slow", "1", "kept"],
+        ["satisfied", "0", "1"],
+        ["violated", "1", "0"],
+        ["open", "0", "0"],
+        ["not", "judged", "0", "0"],
+    ]
+    outcomes = {
+        name: {row["outcome"] for row in _rows(tmp_path / "f" / name)} for name in ("one", "two")
+    }
+    assert outcomes == {"one": {"violated"}, "two": {"kept"}}
 
 
 @pytest.fixture(scope="module")

@@ -40,8 +40,21 @@ EXAMPLES = {
 }
 """By verb: a command as it may be given, and where what it reads comes from."""
 
+_EACH_SCENARIO = "`for s in s2 s3; do rulec {} $s -r de -o $s.{}; done`"
+_ONE_EACH = {
+    "draw drive": "`for f in *.xml; do rulec draw drive $f -r de -o $f.svg; done`",
+    "draw graph": _EACH_SCENARIO.format("draw graph", "svg"),
+    "draw scene": _EACH_SCENARIO.format("draw scene", "svg"),
+    "draw trace": "`for f in *.jsonl; do rulec draw trace $f -r de -o $f.svg; done`",
+    "envelopes": _EACH_SCENARIO.format("envelopes", "csv"),
+    "monitor": "give each the states: `tee >(rulec monitor fr) < states.jsonl | rulec monitor de`",
+    "traces": _EACH_SCENARIO.format("traces", "jsonl"),
+}
+"""By verb that answers one question with one file: how several are asked."""
+
 _NO_CHOICE = re.compile(r"'(?P<given>.*)' is not one of ")
 _NO_NUMBER = re.compile(r"'(?P<given>.*)' is not a valid integer")
+_TOO_MUCH = re.compile(r"Got unexpected extra arguments? \((?P<given>.*)\)")
 _NO_COMMAND = re.compile(r"No such command '(?P<given>.*?)'\.")
 
 
@@ -73,6 +86,12 @@ def reworded(problem: click.ClickException) -> str:
         every = f"it is one of {', '.join(choices)}"
         way_out = f"did you mean `{near}`? ({every})" if near else every
         return f"{whose}there is no `{given}`; {way_out}"
+    if isinstance(problem, click.BadOptionUsage) and message.endswith("requires an argument."):
+        return f"{problem.option_name} is given without a value"
+    if found := _TOO_MUCH.match(message):
+        words = found["given"].split()
+        many = "an argument" if len(words) == 1 else f"{len(words)} arguments"
+        return f"`{found['given']}` is {many} too many"
     context = getattr(problem, "ctx", None)
     if context is not None and (found := _NO_COMMAND.match(message)):
         names = context.command.list_commands(context)
@@ -87,13 +106,18 @@ def ways_out(problem: click.UsageError) -> Iterator[str]:
     context = problem.ctx
     if context is None:
         return
-    if isinstance(problem, click.MissingParameter) and problem.param is not None:
-        if problem.param.name in ("rulebook", "rulebooks"):
-            yield "`rulec list rulebooks` shows which there are, such as `de`"
-            return
-    elif not _NO_COMMAND.match(problem.format_message()):
+    missing = problem.param if isinstance(problem, click.MissingParameter) else None
+    if missing is not None and missing.name in ("rulebook", "rulebooks"):
+        yield "`rulec list rulebooks` shows which there are, such as `de`"
         return
     verb = context.command_path.removeprefix("rulec").strip()
+    message = problem.format_message()
+    if _TOO_MUCH.match(message):
+        if verb in _ONE_EACH:
+            yield f"it takes one at a time; for several {_ONE_EACH[verb]}"
+        return
+    if not isinstance(problem, click.MissingParameter) and not _NO_COMMAND.match(message):
+        return
     example, *sources = EXAMPLES.get(verb, ("",))
     if example:
         yield f"such as `{example}`"

@@ -2,10 +2,66 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator, Sequence
+from glob import glob, has_magic
 from pathlib import Path
 
 from rulec.automata.bundle.bundle_file import read_signed, refusal
+from rulec.automata.bundle.bundle_schema import FORMAT
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.file_messages import NOTHING_LEFT
+from rulec.files import opened
 from rulec.validation.file_proof import RuleProof, UnreadableError, proofs_of
+from rulec.work_trees import is_ordinary, leads_out, tree_of
+
+_HEAD_BYTES = 1024
+
+
+def compiled_files(references: Sequence[str]) -> list[str]:
+    """The compiled rulebooks that are meant by paths, folders and patterns, each once.
+
+    A folder stands for those in and below it, by name; hidden folders, links and other files are
+    passed over. Where no file is called so, ``*``, ``?`` and ``[…]`` are wild, and ``**`` is any
+    number of folders. Raises RulecError R0733 for a folder or a pattern without one.
+    """
+    paths: dict[str, None] = {}
+    for reference in references:
+        is_pattern = has_magic(reference) and not os.path.lexists(reference)
+        places = sorted(glob(reference, recursive=True)) if is_pattern else [reference]  # noqa: PTH207
+        for place in places:
+            if os.path.isdir(place):  # noqa: PTH112 - Path raises on a null character
+                found = [str(path) for path in _below(place)]
+                if not found and not is_pattern:
+                    raise _nothing(reference, "there is no compiled rulebook in this folder")
+                paths |= dict.fromkeys(found)
+            elif not is_pattern or _is_compiled(Path(place)):
+                paths[place] = None
+        if is_pattern and not places:
+            raise _nothing(reference, "no file is called like that")
+    return list(paths)
+
+
+def _nothing(reference: str, why: str) -> RulecError:
+    way_out = "`rulec compile R -o DIR` writes them, as DIR/R.json"
+    return NOTHING_LEFT.error(SourceLocation(reference), why, help=way_out)
+
+
+def _below(folder: str) -> Iterator[Path]:
+    tree = tree_of(Path(folder))
+    for here, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        for path in (Path(here, name) for name in sorted(names) if name.endswith(".json")):
+            if is_ordinary(path) and not leads_out(path, tree) and _is_compiled(path):
+                yield path
+
+
+def _is_compiled(path: Path) -> bool:
+    try:
+        with opened(path) as stream:
+            return f'"{FORMAT}"'.encode() in stream.read(_HEAD_BYTES)
+    except RulecError:
+        return False
 
 
 def proofs_of_file(path: Path) -> list[RuleProof]:

@@ -15,6 +15,7 @@ from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import (
     counted,
     errors_told,
@@ -31,7 +32,7 @@ _LONG_S = 20
 """After so many seconds without a terminal it is said that the analysis goes on."""
 
 
-@click.command()
+@click.command(cls=Verb)
 @shared.rulebooks_argument()
 @shared.findings_options
 @shared.jobs_option("Answer questions about rules side by side")

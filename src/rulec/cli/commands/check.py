@@ -14,6 +14,7 @@ from rulec.cli.options.shared_options import (
     verbose_option,
 )
 from rulec.cli.options.shell_completion import complete_sources
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import counted, print_findings, print_left_alone
 from rulec.cli.standard_input import standard_input
 from rulec.cli.watching import watch as watch_sources
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from rulec.rulebook.batch.batch_check import Checked
 
 
-@click.command()
+@click.command(cls=Verb)
 @click.argument("sources", nargs=-1, metavar="[FILE|NAME]...", shell_complete=complete_sources)
 @findings_options
 @no_cache_option

@@ -12,6 +12,7 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_standard_output
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, rulebooks_named, told_apart
 from rulec.report.text.console import print_line
 
@@ -28,7 +29,7 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
     return found
 
 
-@click.command()
+@click.command(cls=Verb)
 @shared.rulebooks_argument()
 @shared.steps_option(
     "The step of the traces to be judged, in s: a decimal, or a fraction such as 1/3; several "

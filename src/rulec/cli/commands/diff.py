@@ -14,6 +14,7 @@ import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import (
     counted,
     errors_told,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from rulec.rulebook.rulebook_model import Rulebook
 
 
-@click.command()
+@click.command(cls=Verb)
 @shared.rulebooks_argument(required=False)
 @click.option(
     "--all",

@@ -10,6 +10,7 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, put_answer, sources_of_rulebooks, told_apart
 from rulec.files import make_folder
 from rulec.logic.sentences.language import LANGUAGES, LanguageCode
@@ -20,7 +21,7 @@ Format: TypeAlias = Literal["html", "markdown"]
 _ENDINGS = endings_of("html", "markdown")
 
 
-@click.command()
+@click.command(cls=Verb)
 @shared.rulebooks_argument()
 @output_options(
     _ENDINGS,

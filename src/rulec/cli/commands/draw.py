@@ -29,6 +29,7 @@ from rulec.cli.options.scenario_options import (
     requested_drives,
     scene_reading,
 )
+from rulec.cli.options.verb_class import VerbGroup
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.cli.standard_input import file_named
 from rulec.diagnostics import RulecError, named
@@ -46,6 +47,8 @@ if TYPE_CHECKING:
 
     Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
 
+_WHY_ONE = "a picture shows what one rulebook says"
+
 _picture_options = output_options(
     endings_of("svg", "png", "pdf", "html"), "the picture", required=True, former="--format"
 )
@@ -53,7 +56,7 @@ _picture_options = output_options(
 _judging_options = shared.combined(
     [
         shared.rulebook_option(
-            shared.RULEBOOK_HELP + " Left out, nothing is judged.", required=False
+            _WHY_ONE, shared.RULEBOOK_HELP + " Left out, nothing is judged.", required=False
         ),
         shared.number_option(
             "--maneuver",
@@ -67,7 +70,7 @@ _judging_options = shared.combined(
 )
 
 
-@click.group(invoke_without_command=True)
+@click.group(cls=VerbGroup, invoke_without_command=True)
 @click.pass_context
 def command(context: click.Context) -> None:
     """Draw a recorded drive, the scene over time, the navigation graph, or a trace.
@@ -81,7 +84,7 @@ def command(context: click.Context) -> None:
 
 @command.command()
 @click.argument("file")
-@shared.rulebook_option()
+@shared.rulebook_option(_WHY_ONE)
 @click.option(
     "--trace", "trace_id", metavar="ID", help="Draw the trace with this id.  [default: the first]"
 )
@@ -137,7 +140,7 @@ def trace(
 
 @command.command()
 @click.argument("file")
-@shared.rulebook_option()
+@shared.rulebook_option(_WHY_ONE)
 @click.option(
     "--ego",
     default="",

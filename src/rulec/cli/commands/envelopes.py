@@ -16,6 +16,7 @@ from rulec.cli.options.scenario_options import (
     reading_options,
     scene_reading,
 )
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.report.text.terminal_text import shown_count
 
@@ -23,9 +24,12 @@ if TYPE_CHECKING:
     from rulec.trace.formats.trace_files import Format
 
 
-@click.command()
+_WHY_ONE = "a planner's table has the maneuvers of one rulebook"
+
+
+@click.command(cls=Verb)
 @graph_options
-@shared.rulebook_option()
+@shared.rulebook_option(_WHY_ONE)
 @output_options(TABLES, "the table", required=True, former="--format")
 @shared.number_option(
     "--list", "number", "Write the N cheapest satisfying maneuvers.", least=1, default=1

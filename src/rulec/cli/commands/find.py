@@ -21,6 +21,7 @@ from rulec.cli.options.output_options import (
     output_options,
     refuse_overwriting,
 )
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import answer_lines, output_stream, print_written
 from rulec.cli.standard_input import not_standard_input, standard_input
 from rulec.diagnostics import RulecError
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 FORMATS = {**endings_of("text", "json"), **TABLES}
 
 
-@click.command()
+@click.command(cls=Verb)
 @click.argument("formula")
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option(
@@ -49,6 +50,7 @@ FORMATS = {**endings_of("text", "json"), **TABLES}
     help="The vocabulary whose words the formula is in.  [default: road, or the rulebook's]",
 )
 @shared.rulebook_option(
+    "a formula is in the words of one rulebook",
     "A rulebook, name or source, whose words, definitions and parameters the formula is in, "
     "beside those of --use.",
     required=False,

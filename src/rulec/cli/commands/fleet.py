@@ -11,16 +11,19 @@ from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
-from rulec.cli.output import read_machines
+from rulec.cli.options.verb_class import Verb
+from rulec.cli.output import read_machines, rulebooks_named, told_apart
 from rulec.cli.standard_input import not_standard_input
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_result, progress
 
 if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.fleet.runs.fleet_run import FleetRun
     from rulec.trace.trace_model import Ending
 
 
-@click.command()
+@click.command(cls=Verb)
 @click.argument(
     "inputs",
     nargs=-1,
@@ -28,7 +31,9 @@ if TYPE_CHECKING:
     metavar="INPUT...",
     callback=not_standard_input("each process reads its part of a file by itself"),
 )
-@shared.rulebook_option()
+@shared.rulebooks_option(
+    shared.RULEBOOK_HELP + " May be given several times, for findings side by side."
+)
 @click.option(
     "-o",
     "--output",
@@ -36,7 +41,8 @@ if TYPE_CHECKING:
     required=True,
     metavar="DIR",
     type=click.Path(file_okay=False, path_type=Path),
-    help="The folder of the findings. A run that was stopped goes on there.",
+    help="The folder of the findings; by several rulebooks, of a folder for each. A run that was "
+    "stopped goes on there.",
 )
 @shared.choice_option("--engine", ["local", "ray", "spark"], "Who gives the work to processes.")
 @shared.jobs_option("Judge so many recordings, or pieces of tables, at a time")
@@ -52,7 +58,7 @@ if TYPE_CHECKING:
 @shared.at_option
 def command(
     inputs: tuple[str, ...],
-    rulebook: str,
+    rulebooks: tuple[str, ...],
     folder: Path,
     engine: Any,
     jobs: Jobs,
@@ -68,32 +74,41 @@ def command(
 
     DIR gets a manifest and the folder `book=HASH` with a file for each recording and piece
     of a table: a row for each drive, for each rule of it, and for each finding (docs/fleet.md).
-    Started again, the same command judges only what is missing.
+    Started again, the same command judges only what is missing. By several rulebooks, as in
+    -r de -r fr or -r laws/, each has a folder DIR/RULEBOOK, and a table compares them.
 
     Exit status: 0 no hard rule is violated, 1 one is, 2 a file, a recording or a trace could not be
     judged, or no drive.
     """
     # numpy, shapely and formats of recordings, 250 ms: not for --help.
     from rulec.fleet.runs.fleet_run import FleetSettings, run_fleet
-    from rulec.fleet.runs.fleet_summary import as_text
+    from rulec.fleet.runs.fleet_summary import as_text, compared
 
-    rules = read_machines(rulebook, at)
-    settings = FleetSettings(
-        scenario_options.requested_drives((), options, rules.vocabulary),
-        scenario_options.recording_source("-", options),
-        ends,
-        engine,
-        jobs,
-    )
-    with progress("judging drives", 1) as tell:
-        run = run_fleet(
-            inputs, rules, folder, settings, lambda done, total: tell(done / max(total, 1))
-        )
+    named = told_apart(rulebooks_named(rulebooks))
+    books = {name: read_machines(reference, at) for name, reference in named.items()}
+    runs: list[tuple[CompiledRulebook, FleetRun]] = []
     complaints = Complaints()
-    for problem in run.problems:
-        complaints.add(problem)
+    for name, rules in books.items():
+        settings = FleetSettings(
+            scenario_options.requested_drives((), dict(options), rules.vocabulary),
+            scenario_options.recording_source("-", dict(options)),
+            ends,
+            engine,
+            jobs,
+        )
+        own = folder if len(books) == 1 else folder / name
+        with progress("judging drives", 1) as tell:
+            run = run_fleet(
+                inputs, rules, own, settings, lambda done, total: tell(done / max(total, 1))
+            )
+        for problem in run.problems:
+            complaints.add(problem)
+        runs.append((rules, run))
     complaints.close()
-    print_result(as_text(run))
-    tally = run.tally
-    answered = bool(tally.judged) and not (tally.unread or tally.lost or run.problems)
-    return ExitStatus.after(answered=answered, failed=bool(tally.drives["violated"]))
+    print_result("\n\n".join(as_text(run) for _, run in runs))
+    if len(runs) > 1:
+        print_result(f"\n{compared(runs)}")
+    return ExitStatus.after(
+        answered=all(run.is_complete for _, run in runs),
+        failed=any(run.tally.drives["violated"] for _, run in runs),
+    )

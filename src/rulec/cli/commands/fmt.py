@@ -10,6 +10,7 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.shared_options import verbose_option
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import counted, print_left_alone
 from rulec.cli.standard_input import standard_input
 from rulec.files import MAX_SOURCE_BYTES
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from rulec.rulebook.batch.batch_format import Formatted
 
 
-@click.command()
+@click.command(cls=Verb)
 @click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path(allow_dash=True))
 @click.option("--check", is_flag=True, help="Write nothing; name the files that would change.")
 @click.option("--diff", is_flag=True, help="Write nothing; print what would change.")

@@ -6,11 +6,12 @@ import click
 
 import rulec
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import put_answer
 from rulec.diagnostics import did_you_mean
 
 
-@click.command()
+@click.command(cls=Verb)
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option(
     "--words",

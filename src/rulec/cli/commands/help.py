@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 from click.shell_completion import CompletionItem
 
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.verb_table import VERBS
 from rulec.diagnostics import nearest_name
 
@@ -17,7 +18,7 @@ def _verbs(_: click.Context, __: click.Parameter, incomplete: str) -> list[Compl
     ]
 
 
-@click.command()
+@click.command(cls=Verb)
 @click.argument("words", nargs=-1, metavar="[COMMAND]", shell_complete=_verbs)
 @click.pass_context
 def command(context: click.Context, words: tuple[str, ...]) -> None:

@@ -10,6 +10,7 @@ import click
 import rulec
 from rulec.api.rulebook_verbs import Kind
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import open_session, put_answer
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
-@click.command()
+@click.command(cls=Verb)
 @click.argument("kind", type=click.Choice(KINDS), required=False)
 @output_options(endings_of("text", "json"), "the list")
 def command(kind: Kind | None, to: Output) -> None:

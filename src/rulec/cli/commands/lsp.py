@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import click
 
+from rulec.cli.options.verb_class import Verb
 
-@click.command()
+
+@click.command(cls=Verb)
 @click.option("--stdio", is_flag=True, help="What some editors add, and what it does anyway.")
 def command(*, stdio: bool) -> None:  # noqa: ARG001 - what editors say, and what it does anyway
     """Answer an editor: diagnostics, completion, renaming and the like.

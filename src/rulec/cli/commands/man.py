@@ -5,10 +5,11 @@ from __future__ import annotations
 import click
 
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import put_answer
 
 
-@click.command()
+@click.command(cls=Verb)
 @output_options(endings_of("roff"), "the page")
 @click.pass_context
 def command(context: click.Context, to: Output) -> None:

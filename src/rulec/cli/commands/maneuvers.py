@@ -17,6 +17,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import (
     answer_lines,
     errors_told,
@@ -33,11 +34,11 @@ if TYPE_CHECKING:
     from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
 
 
-@click.command()
+@click.command(cls=Verb)
 @scenario_options.scenarios_argument
 @scenario_options.cell_options
-@shared.rulebook_option(
-    shared.RULEBOOK_HELP + " May be given several times, for counts side by side.", multiple=True
+@shared.rulebooks_option(
+    shared.RULEBOOK_HELP + " May be given several times, for counts side by side."
 )
 @shared.number_option("--list", "n_listed", "List the N cheapest satisfying maneuvers.")
 @shared.number_option(

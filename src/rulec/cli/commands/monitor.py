@@ -18,6 +18,7 @@ from rulec.cli.options.output_options import (
     output_options,
 )
 from rulec.cli.options.shell_completion import complete_rulebooks
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import answer_lines, open_session, print_written
 from rulec.cli.standard_input import STANDARD_INPUT, standard_input
 from rulec.diagnostics import RulecError, SourceLocation
@@ -28,10 +29,12 @@ from rulec.report.text.console import print_result
 def _no_states(_: click.Context, __: click.Parameter, value: str) -> str:
     if value == STANDARD_INPUT:
         raise click.BadParameter("the states come on standard input; give the rulebook as a file")
+    if shared.stands_for_several(value):
+        raise click.UsageError("a monitor goes by one rulebook, and this may be several")
     return value
 
 
-@click.command()
+@click.command(cls=Verb)
 @click.argument("rulebook", callback=_no_states, shell_complete=complete_rulebooks)
 @shared.step_option(
     "Seconds from one state to the next: a decimal, or a fraction such as 1/3. It matters to "

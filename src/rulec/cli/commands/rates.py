@@ -8,6 +8,7 @@ import click
 
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_written, put_answer
 from rulec.cli.standard_input import not_standard_input
 
@@ -25,7 +26,7 @@ def _confidence(_: click.Context, __: click.Parameter, value: float) -> float:
     return value
 
 
-@click.command()
+@click.command(cls=Verb)
 @click.argument(
     "files",
     nargs=-1,

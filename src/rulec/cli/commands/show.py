@@ -16,6 +16,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rules
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, put_answer, rulebooks_named, width_of
 from rulec.diagnostics import nearest_name
 from rulec.report.text.console import print_remark
@@ -33,7 +34,7 @@ _MOST_NAMED = 6
 """So many rules are named where one is asked for."""
 
 
-@click.command()
+@click.command(cls=Verb)
 @shared.rulebook_argument
 @click.argument("others", nargs=-1, metavar="[RULEBOOK...] [RULE]", shell_complete=complete_rules)
 @click.option(

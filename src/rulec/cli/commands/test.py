@@ -14,6 +14,7 @@ from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import print_lost, put_answer, sources_of_rulebooks
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
@@ -36,7 +37,7 @@ def _number(
     return value
 
 
-@click.command()
+@click.command(cls=Verb)
 @shared.rulebooks_argument("[RULEBOOK]...", required=False)
 @click.option(
     "--run",

@@ -17,6 +17,7 @@ from rulec.batch.jobs import Jobs
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import TABLES, Output, output_options
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_lost, print_written, read_machines
 from rulec.cli.standard_input import file_named
 from rulec.report.text.console import progress
@@ -32,10 +33,12 @@ _ALOUD = 100
 Piece = TypeVar("Piece")
 
 
-@click.command()
+@click.command(cls=Verb)
 @scenario_options.graph_options
 @shared.rulebook_option(
-    "Write the traces in this rulebook's words, with the partition that it reads.", required=False
+    "a file of traces is in the words of one rulebook",
+    "Write the traces in this rulebook's words, with the partition that it reads.",
+    required=False,
 )
 @output_options(TABLES, "the traces", required=True, former="--format")
 @shared.number_option(

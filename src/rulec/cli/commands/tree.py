@@ -8,12 +8,13 @@ import click
 
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import open_session, put_answer, sources_of_rulebooks, width_of
 from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
 
-@click.command()
+@click.command(cls=Verb)
 @shared.rulebooks_argument("[RULEBOOK...]", required=False)
 @click.option(
     "--rule",

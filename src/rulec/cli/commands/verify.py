@@ -20,6 +20,7 @@ from rulec.cli.options.output_options import (
     output_options,
     refuse_overwriting,
 )
+from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import read_machines, rulebooks_named
 from rulec.cli.verdict_outputs import FORMATS, verdict_outputs
 from rulec.report.findings.diagnostics_text import Complaints
@@ -38,10 +39,10 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 """The formats in which every line says by which rulebook."""
 
 
-@click.command()
+@click.command(cls=Verb)
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@shared.rulebook_option(
-    shared.RULEBOOK_HELP + " May be given several times, for verdicts side by side.", multiple=True
+@shared.rulebooks_option(
+    shared.RULEBOOK_HELP + " May be given several times, for verdicts side by side."
 )
 @shared.number_option(
     "--explain",

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
+from glob import has_magic
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -129,20 +131,42 @@ def rulebooks_argument(
     )
 
 
+def rulebooks_option(help_text: str) -> Callable[[Decorated], Decorated]:
+    """``--rulebook R``, any number of them: ``rulebooks``."""
+    return _rulebook_option("rulebooks", help_text, required=True, callback=read_as_file)
+
+
 def rulebook_option(
-    help_text: str = RULEBOOK_HELP, *, required: bool = True, multiple: bool = False
+    why_one: str, help_text: str = RULEBOOK_HELP, *, required: bool = True
 ) -> Callable[[Decorated], Decorated]:
-    """``--rulebook R``; ``multiple`` times it is given as ``rulebooks``."""
+    """``--rulebook R``; of several, and of a folder, it is said ``why_one`` only is taken."""
+
+    def only(context: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> Any:
+        several = len(values) > 1 or any(stands_for_several(value) for value in values)
+        if several and not context.resilient_parsing:
+            raise click.UsageError(f"{why_one}; give each rulebook a call of its own", context)
+        return read_as_file(context, parameter, values[0]) if values else None
+
+    return _rulebook_option("rulebook", help_text, required=required, callback=only)
+
+
+def stands_for_several(reference: str) -> bool:
+    """True for a folder, and for a pattern as which no file is called."""
+    return os.path.isdir(reference) or (has_magic(reference) and not os.path.lexists(reference))  # noqa: PTH112 - Path raises on a null character
+
+
+def _rulebook_option(
+    field: str, help_text: str, **settings: Any
+) -> Callable[[Decorated], Decorated]:
     return click.option(
         "-r",
         "--rulebook",
-        "rulebooks" if multiple else "rulebook",
-        multiple=multiple,
-        required=required,
+        field,
+        multiple=True,
         metavar="R",
         help=help_text,
-        callback=read_as_file,
         shell_complete=complete_rulebooks,
+        **settings,
     )
 
 

@@ -71,6 +71,12 @@ class FleetRun:
     problems: tuple[RulecError, ...] = ()
     leftovers: tuple[Path, ...] = ()
 
+    @property
+    def is_complete(self) -> bool:
+        """True if a drive was judged, and everything that was given."""
+        unread = self.tally.unread or self.tally.lost or self.problems
+        return bool(self.tally.judged) and not unread
+
 
 def run_fleet(
     arguments: Sequence[str],

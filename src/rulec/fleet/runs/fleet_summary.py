@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.fleet.runs.fleet_run import FleetRun
+from rulec.fleet.runs.fleet_tally import FleetTally
 from rulec.report.text.terminal_text import visible
+from rulec.report.verdicts import side_by_side
+from rulec.report.verdicts.batch_table import BatchTally
 
 _MOST_REASONS = 5
 
@@ -13,6 +17,29 @@ _MOST_REASONS = 5
 def as_text(run: FleetRun) -> str:
     """Drives, hours and kilometres; each rule that is not simply kept; where the findings are."""
     return visible_lines([*_drives(run), *_rules(run), *_files(run)])
+
+
+def compared(runs: Sequence[tuple[CompiledRulebook, FleetRun]]) -> str:
+    """A table of how many drives violate each rule, with a column for each rulebook."""
+    return side_by_side.as_text([(rules, _verdicts(run.tally)) for rules, run in runs])
+
+
+def _verdicts(tally: FleetTally) -> BatchTally:
+    """The tally as one of verdicts, without recordings."""
+    verdicts = BatchTally(
+        satisfied=tally.drives["kept"],
+        violated=tally.drives["violated"],
+        doubtful=tally.drives["open"],
+        not_judged=tally.drives["not_judged"],
+    )
+    for (rule, outcome), number in tally.rules.items():
+        if outcome != "not_judged":
+            verdicts.judged_in[rule] += number
+        if outcome == "violated":
+            verdicts.drives[rule] += number
+        elif outcome == "open":
+            verdicts.open_in[rule] += number
+    return verdicts
 
 
 def visible_lines(lines: list[str]) -> str:

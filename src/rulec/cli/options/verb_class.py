@@ -1,0 +1,36 @@
+"""The class of all verbs: what is given twice, or too much, is refused and not passed over."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import click
+
+
+class Verb(click.Command):
+    """A command of which an option is given once, unless it may be given several times."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read the arguments. Raises click.UsageError."""
+        if not ctx.resilient_parsing:
+            _refuse_repeated(self, ctx, args)
+        return super().parse_args(ctx, args)
+
+
+class VerbGroup(click.Group):
+    """Verbs of one name, such as ``draw``."""
+
+    command_class = Verb
+
+
+def _refuse_repeated(verb: Verb, context: click.Context, arguments: list[str]) -> None:
+    *_, order = verb.make_parser(context).parse_args(args=[*arguments])
+    for parameter, times in Counter(order).items():
+        # A flag that is given twice says the same twice.
+        once = isinstance(parameter, click.Option) and not (
+            parameter.multiple or parameter.is_flag or parameter.count
+        )
+        if once and times > 1:
+            number = "twice" if times == 2 else f"{times} times"
+            name = parameter.opts[-1]
+            raise click.UsageError(f"{name} is given {number}, and takes one value", context)
