@@ -10,6 +10,7 @@ from importlib import import_module
 
 import click
 
+from rulec.cache.keeping import keeping
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.interruption import is_interrupted
 from rulec.cli.verb_table import VERB_GROUPS, VERBS, WITH_COMPILED
@@ -113,6 +114,7 @@ class _Verbs(click.Group):
 @click.pass_context
 def rulec(context: click.Context, limits: Sequence[str]) -> None:
     """Compile traffic law, and judge traces and maneuvers by it."""
+    context.with_resource(keeping())
     if limits:
         # 2 ms: only where limits are set.
         from rulec.resource_limits import in_force

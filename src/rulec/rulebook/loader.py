@@ -17,6 +17,7 @@ from rulec.rulebook.rulebook_model import Rulebook, SourceFile, Traffic
 from rulec.rulebook.rules.cited_rules import with_provisions
 from rulec.rulebook.words_elsewhere import with_words_elsewhere
 from rulec.syntax import decode, parse, tree
+from rulec.syntax.caching.tree_cache import parsed
 from rulec.vocabulary import Vocabulary
 
 
@@ -115,11 +116,12 @@ def parse_all(file: RulebookFile) -> Trees:
 
     Mistakes of spelling are in the result. Raises RulecError R0206 for a vocabulary.
     """
-    parsed, mistakes = parse(file.source)
-    if parsed.kind == "vocabulary" and parsed.name is not None:
+    # What somebody is typing has no path: it is another text each time.
+    own, mistakes = parse(file.source) if file.path is None else parsed(file.source)
+    if own.kind == "vocabulary" and own.name is not None:
         expected = "expected `rulebook NAME`"
-        raise RulecError(vocabulary_for_rulebook(parsed.name, expected=expected))
-    return trees_of(file, parsed, mistakes)
+        raise RulecError(vocabulary_for_rulebook(own.name, expected=expected))
+    return trees_of(file, own, mistakes)
 
 
 def with_book(trees: Trees, source: Source, search_path: Sequence[Path] = ()) -> Trees:
@@ -182,7 +184,7 @@ def diagnose(
     """
     try:
         source = decode(name, data)
-        file, mistakes = parse(source)
+        file, mistakes = parse(source) if path is None else parsed(source)
         if file.kind == "rulebook":
             text = RulebookFile(source, data, path, tuple(search_path))
             return _resolved(trees_of(text, file, mistakes), at)[1]
@@ -192,10 +194,10 @@ def diagnose(
     return Diagnosis(in_order(name, judged_allowances([*mistakes, *meanings], source)))
 
 
-def trees_of(file: RulebookFile, parsed: tree.File, mistakes: Sequence[Diagnostic]) -> Trees:
+def trees_of(file: RulebookFile, own: tree.File, mistakes: Sequence[Diagnostic]) -> Trees:
     """The trees of a rulebook that has been parsed, and of its bases and vocabularies."""
     files = ReferencedFiles(file.search_path)
-    itself = Book(parsed, file.path)
+    itself = Book(own, file.path)
     books = (*files.bases(itself), itself)
     read = [files.vocabulary(use, book.path) for book in books for use in _once(book.file.uses)]
     return Trees(

@@ -14,10 +14,10 @@ from rulec.syntax.assembly import Part, assemble_file, assemble_rule
 from rulec.syntax.building import formulas, items
 from rulec.syntax.building.formulas import NodeValues
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
-from rulec.syntax.grammar import Mismatch, ParseNode, Start, TooDeep, parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, HEADER_WORDS, RESERVED
 from rulec.syntax.messages import structure
 from rulec.syntax.messages.lookalikes import hidden_meaning
+from rulec.syntax.parse_nodes import Mismatch, ParseNode, Start, TooDeep
 from rulec.syntax.scanner import Token, checked, scan
 from rulec.syntax.split_file import FileSplitter
 
@@ -123,6 +123,9 @@ class PieceReader:
         if piece.last - piece.first > MAX_PIECE:
             self.mistakes.append(_messages().too_long(self._first_token(piece), MAX_PIECE))
             return None
+        # Lark and its tables, 50 ms: only where there is something to be read.
+        from rulec.syntax.grammar import parse_piece
+
         match parse_piece(start, self.source.text, span.start, span.end):
             case Mismatch() as mismatch:
                 why = _messages().explain(self.source, self.tokens, piece, mismatch)

@@ -14,6 +14,7 @@ import click
 from click.core import ParameterSource
 
 from rulec.batch.jobs import Jobs, chosen_jobs
+from rulec.cache.keeping import keeping
 from rulec.cli.options.output_options import endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.standard_input import read_as_file
@@ -93,7 +94,7 @@ def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
     if not value:
         return ""
     # The parser of rulebooks, 60 ms: only if a day is given.
-    from rulec.syntax.literals import why_not_a_day
+    from rulec.syntax.messages.literals import why_not_a_day
 
     wrong = why_not_a_day(value)
     if wrong:
@@ -226,9 +227,17 @@ at_option = click.option(
     "out.  [default: that of the rulebook's `law` line, else today]",
 )
 
+
+def _without_cache(context: click.Context, _: click.Parameter, value: bool) -> bool:
+    if value:
+        context.with_resource(keeping(on=False))
+    return value
+
+
 no_cache_option = click.option(
     "--no-cache",
     is_flag=True,
+    callback=_without_cache,
     help="Answer anew also what has not changed since the last time.",
 )
 

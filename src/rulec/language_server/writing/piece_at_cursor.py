@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from rulec.diagnostics import RulecError, Source
 from rulec.language_server.names.document_names import DocumentNames
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces
-from rulec.syntax.grammar import Start, accepted_after
+from rulec.syntax.grammar import accepted_after
+from rulec.syntax.parse_nodes import Start
 from rulec.syntax.scanner import Token, scan
 from rulec.syntax.split_file import FileSplitter
 

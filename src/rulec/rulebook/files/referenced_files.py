@@ -14,7 +14,8 @@ from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.files import reference_messages as say
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.rulebook_model import SourceFile
-from rulec.syntax import decode, parse, tree
+from rulec.syntax import decode, tree
+from rulec.syntax.caching.tree_cache import parsed
 
 MOST_BASES = 50
 """Far more than any family of laws has."""
@@ -31,7 +32,7 @@ class Book:
 @lru_cache(maxsize=16)
 def _parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     """What ``parse`` says: whoever reads many rulebooks meets the same bases again and again."""
-    return parse(source)
+    return parsed(source)
 
 
 def source_file(name: str, data: bytes) -> SourceFile:

@@ -8,10 +8,10 @@ from typing import Any, cast
 
 from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
-from rulec.syntax.grammar import ParseLeaf, ParseNode
 from rulec.syntax.keywords import SYMBOLS, token_kind
-from rulec.syntax.literals import misleads, why_not_a_day
 from rulec.syntax.messages import literal_values
+from rulec.syntax.messages.literals import misleads, why_not_a_day
+from rulec.syntax.parse_nodes import ParseLeaf, ParseNode
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ from typing import Literal, cast, get_args
 
 from rulec.syntax import tree
 from rulec.syntax.building.formulas import NodeValues, amount, atom, formula, parameters
-from rulec.syntax.grammar import ParseLeaf, ParseNode
 from rulec.syntax.keywords import token_kind
+from rulec.syntax.parse_nodes import ParseLeaf, ParseNode
 
 
 def item(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from rulec.syntax.grammar import MAX_DEPTH, ParseLeaf, ParseNode
 from rulec.syntax.keywords import (
     ARITHMETIC_PRECEDENCE,
     BINDS_NARROWLY,
@@ -16,6 +15,7 @@ from rulec.syntax.keywords import (
     UNARY_OPERATORS,
     token_kind,
 )
+from rulec.syntax.parse_nodes import MAX_DEPTH, ParseLeaf, ParseNode
 
 OPERATIONS: Final = frozenset(
     ("infix", "prefix", "compare", "arithmetic", "minus", "conditional", "group", "aggregate")

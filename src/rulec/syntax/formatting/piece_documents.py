@@ -23,8 +23,8 @@ from rulec.syntax.formatting.document import (
     run,
 )
 from rulec.syntax.formatting.parentheses import OPERATIONS, level
-from rulec.syntax.grammar import ParseLeaf, ParseNode
 from rulec.syntax.keywords import OPERATOR_LETTERS
+from rulec.syntax.parse_nodes import ParseLeaf, ParseNode
 
 Node = ParseNode | ParseLeaf
 Gap = Break | Fill | Literal["", " "]

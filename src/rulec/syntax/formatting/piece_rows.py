@@ -22,8 +22,9 @@ from rulec.syntax.formatting.document import (
 )
 from rulec.syntax.formatting.parentheses import with_fitting_parentheses
 from rulec.syntax.formatting.piece_documents import DocumentBuilder, first_leaf
-from rulec.syntax.grammar import ParseNode, Start, parse_piece
+from rulec.syntax.grammar import parse_piece
 from rulec.syntax.keywords import CLAUSE_WORDS, HEADER_WORDS, PROVISION_WORDS
+from rulec.syntax.parse_nodes import ParseNode, Start
 from rulec.syntax.scanner import Token
 
 Part = Piece | ExamplePieces | RulePieces

@@ -17,7 +17,7 @@ from rulec.diagnostics import Diagnostic, Label, Source, Span
 from rulec.diagnostics.code import Code
 from rulec.resources import grammar_file
 from rulec.syntax.keywords import RESERVED
-from rulec.syntax.literals import misleads
+from rulec.syntax.messages.literals import misleads
 from rulec.syntax.scanner import Token
 
 HIDDEN_IN_COMMENT = Code(

@@ -8,10 +8,10 @@ from rulec.diagnostics import Diagnostic, Label, Source, Span, did_you_mean
 from rulec.diagnostics.code import Code
 from rulec.syntax import keywords
 from rulec.syntax.file_pieces import Piece, span_of
-from rulec.syntax.grammar import MAX_DEPTH, Mismatch
 from rulec.syntax.messages.advice import advise
 from rulec.syntax.messages.in_items import other_clause, other_word
 from rulec.syntax.messages.parse_context import ParseContext, in_words
+from rulec.syntax.parse_nodes import MAX_DEPTH, Mismatch
 from rulec.syntax.scanner import Token
 
 UNEXPECTED_WORD = Code(
