@@ -28,6 +28,7 @@ from rulec.automata.bundle.compiled_rulebook import (
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.compiler_messages import no_machine, no_spot, not_confined
 from rulec.automata.worker import compiler_choice
+from rulec.automata.worker.machine_cache import MachineCache
 from rulec.automata.worker.worker_answers import HAS_PROCESSES, WorkerGreeting, answered_here
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
@@ -180,17 +181,21 @@ def answers_to(
         return [*answered_here(jobs)], ""
     if choice is None:
         choice = compiler_choice.choice()
+    cache = MachineCache(choice)
+    known, spot = cache.recalled(jobs)
+    missing = [job for job, answer in zip(jobs, known, strict=True) if answer is None]
     answers: list[Done | Failed | None] = []
-    spot: str | None = None
-    while len(answers) < len(jobs) or spot is None:
+    while len(answers) < len(missing) or spot is None:
         # A worker lives until it is done or a job has killed it; the next one takes the rest.
         with _worker(choice, more_will_come=more_will_come) as (process, spot):
-            for job in jobs[len(answers) :]:
+            for job in missing[len(answers) :]:
                 answers.append(_ask(process, job))
                 if answers[-1] is None:
                     _end(process)
                     break
-    return answers, spot
+    cache.keep(missing, answers, spot)
+    new = iter(answers)
+    return [next(new) if answer is None else answer for answer in known], spot
 
 
 _Started: TypeAlias = "tuple[subprocess.Popen[bytes], str]"
