@@ -89,13 +89,13 @@ def test_the_way_to_the_crossing():
         (middle(state["distance_to_crossing"]), state["crossing_zone"], state["surface"])
         for state in states(found, "7")
     ]
-    # The front is at 82 + 5 k, the rear 4 m behind it
+    # The front is at 82 + 5 k, the rear 4 m behind it: at 102 the rear is on the crossing alone
     assert told == [
         (16.0, False, "carriageway"),
         (11.0, False, "carriageway"),
         (6.0, False, "carriageway"),
         (1.0, True, "carriageway"),
-        (0.0, True, "crossing"),
+        (0.0, UNKNOWN, "crossing"),
         (1000.0, False, "carriageway"),
         (1000.0, False, "carriageway"),
         (1000.0, False, "carriageway"),

@@ -43,7 +43,7 @@ def test_marks_that_nobody_knows():
         (1.4, "broken", "solid", True, True),  # ego comes from the right
         (2.6, "broken", "solid", True, False),  # and here from the left
         (2.6, "solid", "broken", True, True),
-        (-1.4, "broken", "broken", True, False),  # the edge of the road
+        (-1.4, "broken", "broken", UNKNOWN, UNKNOWN),  # the edge of the road
     ],
 )
 def test_on_a_line(y, right, left, solid, broken_here):
@@ -69,12 +69,15 @@ def test_a_box_alone_that_points_across_a_line_decides_nothing(drifts, told):
     assert drive.trace.states[0]["on_solid_line"] is told
 
 
-@pytest.mark.parametrize(("heading", "told"), [(0.0, True), (0.5, UNKNOWN)])
-def test_who_comes_from_beside_the_road_crosses_its_edge(heading, told):
-    """As one does at premises: at 0.5 rad ego does not drive along."""
-    lanes = [straight(1, 0, 100, left_mark="solid", right_mark="solid")]
-    places = {k: (40 + 5 * k * np.cos(heading), -2 + 5 * k * np.sin(heading)) for k in range(2)}
-    (drive,) = Drives(recording(lanes, [vehicle(7, places, heading=heading)]), "right").of("7")
+@pytest.mark.parametrize(("left", "told"), [("broken", UNKNOWN), ("solid", True)])
+def test_what_is_beyond_the_edge_of_the_road_no_map_tells(left, told):
+    """Premises, a place to park or a lane that nobody drew; an inner line is one between lanes."""
+    lanes = [
+        straight(1, 0, 100, width=1.5, left_of=2, left_mark=left, right_mark="solid"),
+        straight(2, 0, 100, y=2.75, right_of=1, right_mark=left, left_mark="solid"),
+    ]
+    found = recording(lanes, [vehicle(7, {0: (40, 0), 1: (50, 0)}, width=3.0)])
+    (drive,) = Drives(found, "right").of("7")
     assert drive.trace.states[0]["on_solid_line"] is told
 
 
@@ -97,9 +100,12 @@ def test_a_badly_known_track_does_not_tell_how_its_body_stands(name, told):
     assert drive.trace.states[0]["on_solid_line"] is told
 
 
-@pytest.mark.parametrize(("y", "told"), [(1.1, False), (1.6, True)])
+@pytest.mark.parametrize(("y", "told"), [(1.1, False), (1.6, UNKNOWN)])
 def test_where_a_lane_opens_a_body_reaches_no_farther(y, told):
-    """From x = 50 on a lane opens at the left; 4 m later it is 0.2 m wide, and drawn as 4 m."""
+    """From x = 50 on a lane opens at the left; 4 m later it is 0.2 m wide, and drawn as 4 m.
+
+    Over the line by 0.6 m, of which nobody knows whether it is the road's edge or one of lanes.
+    """
     opening = lanelet(2, [(50, 2), (100, 4)], left_mark="solid", right_mark="solid", right_of=1)
     opening = replace(
         opening,

@@ -263,6 +263,20 @@ def test_nobody_goes_to_a_lane_for_buses(kind, free):
     assert signals(lanes, ego(100, y=4), behind)["near_lane_is_free"][0] == free
 
 
+@pytest.mark.parametrize(("x", "free"), [(547, "True"), (549, "?")])
+def test_before_the_map_s_end_nobody_knows_whether_drivers_sort_themselves(x, free):
+    """It ends at 600 m, and ego's front is 2 m ahead of its middle: 51 and 49 m."""
+    behind = steady(9, 400, 4, 10.0, steps=1)
+    assert signals(two_lanes(), ego(x, y=4, steps=1), behind)["near_lane_is_free"] == [free]
+
+
+def test_who_goes_back_already_is_not_told_to():
+    """Its middle gets to the right lane in state 12, of 0.5 s each: from 2 s on it goes back."""
+    places = {k: (100 + 5 * k, 4 if k < 12 else 1) for k in range(16)}
+    told = signals(two_lanes(), vehicle(7, places, speed=10.0), steady(9, 0, 4, 10.0, steps=16))
+    assert told["near_lane_is_free"] == ["True"] * 4 + ["?"] * 8 + ["True"] * 4
+
+
 def two_lanes():
     return [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
 

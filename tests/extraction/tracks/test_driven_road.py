@@ -57,6 +57,14 @@ def test_crossings_and_junctions_lie_along_the_road():
     assert road(junctions=frozenset({"1", "3"})).junctions == ((0.0, 200.0),)
 
 
+def test_a_crossing_beside_ego_s_lane_is_another_road_s():
+    """As where the lane beside it turns off, and people cross the road that it turns onto."""
+    zebra = lanelet(9, [(120, 6), (160, 6)], width=4, types=frozenset({"crosswalk"}))
+    assert road([*TWO_LANES, zebra]).crossings == ()
+    ((start, end),) = road([*TWO_LANES, zebra], ("2", "4")).crossings
+    assert (start, end) == (pytest.approx(120, abs=0.1), pytest.approx(160, abs=0.1))
+
+
 def test_a_road_without_lanes_is_refused():
     with pytest.raises(ValueError, match="no lane of the road is as wide as 1 m"):
         road([straight(1, 0, 100, width=0.5)], ("1",))

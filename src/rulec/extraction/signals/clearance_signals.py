@@ -11,7 +11,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, next_state
 from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark, Side
@@ -27,6 +27,9 @@ _UNSEEN_S = 5.0
 """For so long one whose track has ended is thought to drive on as before."""
 
 _FASTER_MPS = 10.0
+
+_CHANGE_S = 4.0
+"""So long before its middle crosses the mark who changes lanes has begun to, at the earliest."""
 
 _STANDING_CAMERAS = frozenset(
     {
@@ -65,11 +68,9 @@ def _on_far_lane(context: DriveContext) -> SignalColumns:
 
 def _on_near_lane(context: DriveContext) -> SignalColumns:
     free = _near_lane_is_free(context)
+    doubtful = _perhaps_on_near_lane(context) | _of_no_use(context) | _goes_back(context)
     return SignalColumns(
-        {"near_lane_is_free": free},
-        unknown={
-            "near_lane_is_free": free & (_perhaps_on_near_lane(context) | _of_no_use(context))
-        },
+        {"near_lane_is_free": free}, unknown={"near_lane_is_free": free & doubtful}
     )
 
 
@@ -224,12 +225,26 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     return free
 
 
+def _goes_back(context: DriveContext) -> Flags:
+    """Flags of states from which on ego's change to a lane nearer to the kerb takes no longer.
+
+    Whether that lane was free before, for who had to look for room there, nobody can tell.
+    """
+    kerbward = np.diff(context.steady_lane, append=context.steady_lane[-1:])
+    changes = kerbward < 0 if context.side == "right" else kerbward > 0
+    steps = round(_CHANGE_S / context.recording.step_s)
+    goes: Flags = (
+        next_state(changes, 2 * context.states + steps) - np.arange(context.states) < steps
+    )
+    return goes
+
+
 def _of_no_use(context: DriveContext) -> Flags:
     """Flags of states in which nobody can tell whether ego has to go to the next lane to the kerb.
 
     It begins or ends near ego while others go on, as beside a ramp; it is full, but for a hole; ego
     is in a slow queue itself, with others on the next lane, too; or drivers sort themselves by
-    lanes before a junction.
+    lanes before a junction, of which nobody knows beyond the map's end.
     """
     lane, there = _next_lane(context, context.side)
     states = np.arange(context.states)
@@ -239,7 +254,10 @@ def _of_no_use(context: DriveContext) -> Flags:
     slow = speed_kmh[states, context.ego_lane] < context.thresholds.slow_queue_kmh
     used = (close_by(context) & (context.extents.lane == lane)).any(axis=0)
     _, sorting = _sorted_ahead(context)
-    no_use: Flags = there & (side_lane | full | (own & slow & used) | sorting)
+    map_ends = (
+        context.road.borders[-1] - context.ego_extents.s_max[0] < context.thresholds.approach_m
+    )
+    no_use: Flags = there & (side_lane | full | (own & slow & used) | sorting | map_ends)
     return no_use
 
 

@@ -39,8 +39,6 @@ _EXACT_M = 0.1
 _MOVED_OFF_M, _STOOD_S = 1.0, 1.0
 """A box of who is parked wanders by less; who stays there for so long stands."""
 
-_GOES_OFF_RAD = np.radians(20.0)
-
 _Marks = tuple[LaneMark | None, LaneMark | None]
 
 
@@ -178,7 +176,8 @@ def _marked_lanes(context: DriveContext) -> SignalColumns:
 def _lines_under_ego(context: DriveContext) -> SignalColumns:
     """Whether ego is on a solid line, breaks one on its own side, and is that a single one.
 
-    Unknown where places, or the map, decide it, or marks are not told. Who stands all through its
+    Unknown where places, or the map, decide it, or marks are not told, and of the line at the
+    road's edge: what is beyond it no map tells, and laws on it differ. Who stands all through its
     drive crosses none: it is parked on the one at the edge. Nor has anybody seen who stands from
     the drive's beginning on cross the line that it stands on, until it moves off.
     """
@@ -192,8 +191,10 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
         context.ego_extents.left_of_max[0],
     )
     measured = _across(context, low, high, (0.0, unmoved))
-    found = _under(context, measured, slice(None))
-    not_told = ~found[:, 0] & found[:, -1]
+    outer, every = _outer_lines(context), slice(None)
+    found = _under(context, measured & ~outer, every)
+    # Beyond the road's edge there may be premises, a place to park or a lane that nobody drew
+    not_told = ~found[:, 0] & _under(context, measured, every)[:, [0, -1]].any(axis=1)
     near = _near_a_line(context, place + np.abs(offsets))
     shifts = [unmoved, offsets] if offsets.any() else [unmoved]
     others = list(product((place, -place), shifts))
@@ -204,11 +205,11 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
         (near | found[:, 0], _across(context, middle - half, middle + half, other))
         for other in [(0.0, unmoved), *others]
     ]
-    # Who comes from beside the road, or goes there, crosses its edge as one does at premises
-    tried.append((_goes_off(context), measured & ~_outer_lines(context)))
     states = np.concatenate([np.flatnonzero(where) for where, _ in tried])
-    others_found = _under(context, np.concatenate([lines[where] for where, lines in tried]), states)
+    lines = np.concatenate([lines[where] for where, lines in tried])
+    others_found = _under(context, lines & ~outer[states], states)
     differs = (others_found[:, :-1] != found[states, :-1]).any(axis=1)
+    differs |= ~found[states, 0] & _under(context, lines, states)[:, 0]
     not_told[states[differs]] = True
     not_told |= found[:, 0] & _not_moved_yet(context)
     return SignalColumns(
@@ -224,12 +225,6 @@ def _not_moved_yet(context: DriveContext) -> Flags:
     if (stood.sum() - 1) * context.recording.step_s < _STOOD_S:
         stood[:] = False
     return stood
-
-
-def _goes_off(context: DriveContext) -> Flags:
-    """Flags of states in which ego is turned to the road by more than who drives along it."""
-    turned: Flags = np.abs(np.sin(context.ego_extents.turned[0])) > np.sin(_GOES_OFF_RAD)
-    return turned
 
 
 def _outer_lines(context: DriveContext) -> Flags:

@@ -35,6 +35,7 @@ TOUCHING_M = 0.3
 """Who reaches into a lane by less is not in it: positions are no better than that."""
 
 _NARROWEST_M = 0.1
+_BESIDE_LINE_M = 0.5
 _EDGE_EVERY_M = 0.5
 _EVERY_M = 1.0
 _MARGIN_M = 5.0
@@ -308,7 +309,10 @@ def kept_off_touched(low: _Values, high: _Values, straight: _Values) -> tuple[_V
 def crossings_along(
     recording: Recording, line: ReferenceLine, lanes: Lanes, start: float, end: float
 ) -> Iterator[tuple[float, float]]:
-    """The stretches (``s``) that crosswalks take up on the lanes, within ``start`` and ``end``."""
+    """The stretches (``s``) that crosswalks take up on the lanes, within ``start`` and ``end``.
+
+    They lie across the line; one beside it is another road's, onto which a lane turns off.
+    """
     for lanelet in recording.lanelets.values():
         if "crosswalk" not in lanelet.types:
             continue
@@ -316,7 +320,8 @@ def crossings_along(
         places = line.coordinates(densified(outline, _EDGE_EVERY_M))
         left_of = lanes.from_bounds(places)
         on_road = places[(left_of[:, 0] > 0) & (left_of[:, -1] < 0), 0]
-        if len(on_road):
+        across = places[:, 1].min() < _BESIDE_LINE_M and places[:, 1].max() > -_BESIDE_LINE_M
+        if across and len(on_road):
             low, high = max(float(on_road.min()), start), min(float(on_road.max()), end)
             if high - low >= _NARROWEST_M:
                 yield low, high

@@ -63,9 +63,12 @@ def _distance_to_crossing(context: DriveContext) -> SignalColumns:
 def _crossing_zone(context: DriveContext) -> SignalColumns:
     distance, zone = distance_to_crossing(context), context.thresholds.zone_m
     near, unknown = distance <= zone, abs(distance - zone) < context.tolerances.place_m
-    return SignalColumns(
-        {"crossing_zone": near}, unknown={"crossing_zone": _in_doubt(context, near, unknown)}
-    )
+    unknown = _in_doubt(context, near, unknown)
+    # Of who has only its rear left on a crossing laws do not say whether it is still there
+    _, end = next_crossing(context)
+    half_step_m = np.maximum(context.ego_extents.along[0], 0.0) * context.recording.step_s / 2
+    unknown |= context.ego_extents.s_max[0] + half_step_m > end - context.tolerances.place_m
+    return SignalColumns({"crossing_zone": near}, unknown={"crossing_zone": unknown})
 
 
 def _limit(context: DriveContext) -> SignalColumns:
