@@ -12,31 +12,13 @@ from hypothesis import strategies as st
 import rulec
 from rulec.ltl_export.ltl_terms import NUXMV, PRISM, SPOT, TRUE, Term, size_of, text_of
 from rulec.ltl_export.rule_terms import fresh_identifier
+from support.cases.kinds_of_rules import ALL_KINDS
 from support.oracles.installed_spot import spot
 
 SMALL = 1
 """The step in s."""
 MOST_PROPOSITIONS = 13
 """Beyond that Spot takes long."""
-
-ALL_KINDS = """
-rulebook kinds
-{semantics}
-place is one of on, off, beyond default off
-signal horn, wet default false
-quantity speed in km/h default 0
-fact wet implies speed <= 90 km/h
-
-hard rule future {{
-  require always[<= 3 s] (on implies next (horn weak until[2 s .. 4 s] wet)) xor eventually wet
-}}
-hard rule past {{
-  require always (speed > 100 km/h implies once[1 s .. 3 s] horn or not (on since wet))
-}}
-hard rule both {{
-  require always (on implies once (horn and eventually[<= 2 s] (beyond release wet)))
-}}
-"""
 
 
 def rows(folder, name):
@@ -126,10 +108,10 @@ def test_every_syntax_says_the_same(term):
 @given(st.lists(st.text(), max_size=6))
 def test_names_are_identifiers_of_all_tools_and_their_own(texts):
     taken = set()
-    for text in [*texts, "G", "true", "a-b", "a b", "alive", ""]:
+    for text in [*texts, "G", "true", "time", "a-b", "a b", "alive", ""]:
         name = fresh_identifier(text, taken)
         assert re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name, re.ASCII)
-        assert name not in taken | {"G", "true", "alive"}
+        assert name not in taken | {"G", "true", "time", "alive"}
         taken.add(name)
 
 

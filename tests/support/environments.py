@@ -8,13 +8,13 @@ from pathlib import Path
 _ROOT = Path(__file__).resolve().parents[2]
 
 
-def environment(name, *requirements):
+def environment(name, *requirements, python=sys.executable):
     """The folder of an environment with some packages; the first call installs them."""
     here = _ROOT / f".venv.{name}"
     if not here.exists():
         # Under another name until it is whole: several processes may ask at once
         folder = Path(tempfile.mkdtemp(prefix=f".venv.{name}-", dir=_ROOT))
-        subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+        subprocess.run([python, "-m", "venv", folder], check=True)
         install = [folder / "bin/python", "-m", "pip", "install", "--quiet", *requirements]
         subprocess.run(install, check=True)
         if not here.exists():

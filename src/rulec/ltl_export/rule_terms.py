@@ -31,7 +31,12 @@ _SIGNS = {"<=": "le", ">=": "ge", "!=": "ne", "<": "lt", ">": "gt", "=": "eq", "
 _KEYWORDS = """
     true false TRUE FALSE xor xnor G F X U V W R M Y Z H O S T A E AG AF AX EG EF EX alive
     in mod next init self union word abs max min count bool signed unsigned real integer boolean
-    array of case esac MODULE VAR DEFINE LTLSPEC NAME P filter func label const
+    array of case esac MODULE VAR DEFINE LTLSPEC NAME P filter func label const process word1
+    extend resize sizeof uwconst swconst toint floor sin cos tan exp ln pi time clock
+    MDEFINE CONSTANTS IVAR FROZENVAR INIT TRANS INVAR SPEC CTLSPEC PSLSPEC COMPUTE INVARSPEC
+    FAIRNESS JUSTICE COMPASSION ISA ASSIGN CONSTRAINT IN MIN MAX MIRROR PRED PREDICATES BU EBF ABF
+    EBG ABG
+    READ WRITE CONSTARRAY URGENT
     """
 _RESERVED = frozenset(_KEYWORDS.split())
 """Keywords of the tools, and their operators."""
