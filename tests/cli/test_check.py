@@ -206,6 +206,26 @@ def test_fixes_are_written_and_leave_nothing_to_say(capsys, tmp_path):
     assert check(capsys, "-", "--fix")[0] == 2
 
 
+def test_what_means_nothing_is_left_out(capsys, tmp_path):
+    path = tmp_path / "b.rules"
+    before = (
+        "rulebook b  # a\u202eb\nsignal p, q default false  # rulec: allow R0202 because of it\n"
+        "define d = q  # later # rulec: allow R0208, R0207 because it comes\n"
+        "hard rule r { require always p }\n"
+    )
+    path.write_text(before, "utf-8")
+    status, out, err = check(capsys, str(path), "--fix")
+    # While there are errors, it is not known which warnings there are
+    assert (status, err) == (0, f"1 fix written to {path}\n")
+    assert out.count("warning[R0219]") == 2
+    status, out, err = check(capsys, str(path), "--fix")
+    assert err == f"1 fix written to {path}\n"
+    assert "there is no warning R0207 on this line" in out
+    assert out.count("warning[") == 1
+    without = before.replace("\u202e", "").replace("  # rulec: allow R0202 because of it", "")
+    assert path.read_text("utf-8") == without
+
+
 LOCKED = (
     "rulebook mine\nextends esterle2019\nuse paper\nhard rule r { require always not CONGESTED }\n"
 )

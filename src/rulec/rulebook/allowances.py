@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
-from rulec.diagnostics import Diagnostic, Source, Span
+from rulec.diagnostics import Diagnostic, Fix, Source, Span
 from rulec.rulebook.allowance_messages import UNFIT_ALLOWANCE
 
 _ALLOWANCE = re.compile(
@@ -45,14 +45,24 @@ def _unfit(findings: Sequence[Diagnostic], source: Source) -> Iterator[Diagnosti
                 severity="warning",
                 help="write `because` and the reason behind it",
             )
-        for code in re.findall(r"R\d{4}", match["codes"]):
+        codes = re.findall(r"R\d{4}", match["codes"])
+        for code in codes:
             if (line, code) not in found and code.startswith(_OF_A_CHECK):
                 yield UNFIT_ALLOWANCE.at(
                     span,
                     f"there is no warning {code} on this line",
                     severity="warning",
                     help="leave the comment out, or move it to the line that the warning is about",
+                    fix=_without(source, match) if len(codes) == 1 else None,
                 )
+
+
+def _without(source: Source, comment: re.Match[str]) -> Fix:
+    """The line of a comment without it."""
+    before = source.text[: comment.start()]
+    end = source.text.find("\n", comment.end())
+    start = len(before.rstrip(" \t"))
+    return Fix(Span(source, start, len(source.text) if end < 0 else end).place, "")
 
 
 def _is_allowed(finding: Diagnostic) -> bool:

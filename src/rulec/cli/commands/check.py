@@ -34,7 +34,8 @@ if TYPE_CHECKING:
 @click.option(
     "--fix",
     is_flag=True,
-    help="Write into the files what warnings offer. It may change what rules mean: read it.",
+    help="Write into the files the edits that messages offer. They may change what rules mean: "
+    "read them.",
 )
 @click.option(
     "--lock",

@@ -17,15 +17,26 @@ from rulec.language_server.workspace.editor_workspace import (
 )
 from rulec.language_server.workspace.published_diagnostics import diagnostics_of
 from rulec.language_server.workspace.text_positions import TextPositions
+from rulec.language_server.writing.described_edits import Edit, another_name, described_edits
 from rulec.syntax.keywords import DECLARATION_WORDS
 
 _WORD = re.compile(r"[^\W\d]\w*")
 _QUOTED = re.compile(r"`([^`…]+)`")
-_MOST_TRIED = 8
+_MOST_TRIED = 12
 """So many edits are tried for one message: each is checked as if it had been typed."""
 
 _EITHER = "Say `traffic "
 """What begins so is offered beside another one that would do, for only the author knows."""
+
+_ONLY_THE_AUTHOR_KNOWS = re.compile(
+    r"the one you mean|the nearest multiples|say it in this state|`override rule \w+` to change it"
+    r"|(?:give it|choose) another name"
+)
+
+_HIDING = frozenset({"R0117", "R0206", "R0213", "R0703"})
+"""Behind these mistakes there may be others, which nobody has looked for."""
+
+_UNREADABLE = frozenset({"R0104", "R0105", "R0108", "R0109", "R0117"})
 
 _RULE_HEAD = re.compile(r"(?:hard|soft)\s+rule\s+$")
 _DELETING = ("delete", "leave", "keep one", "exchange")
@@ -66,14 +77,17 @@ def _for(
 ) -> Iterator[QuickFix]:
     if finding.fix is not None and finding.fix.place.file == place.file:
         change = TextChange(*_bounds(finding.fix.place, positions), finding.fix.text)
-        yield QuickFix(f"Write `{_short(finding.fix.text)}`", finding, (change,))
+        was = positions.text[change.start : change.end]
+        title = f"Write `{_short(change.text)}`" if change.text else f"Leave out {_named(was)}"
+        yield QuickFix(title, finding, (change,))
         return
     is_mended = False
-    for title, change in list(_candidates(finding, place, positions))[:_MOST_TRIED]:
-        if is_mended and not title.startswith(_EITHER):
+    either = _ONLY_THE_AUTHOR_KNOWS.search(f"{finding.help} {finding.message}")
+    for title, changes in list(_candidates(finding, place, positions, trial))[:_MOST_TRIED]:
+        if is_mended and not (either or title.startswith(_EITHER)):
             continue
-        if trial.mends(change):
-            yield QuickFix(title, finding, (change,))
+        if trial.mends(changes, finding):
+            yield QuickFix(title, finding, changes)
             is_mended = True
 
 
@@ -83,16 +97,34 @@ def _bounds(place: SourceLocation, positions: TextPositions) -> tuple[int, int]:
     return start, max(start, end)
 
 
+def _named(text: str) -> str:
+    if text.isprintable():
+        return "the comment" if text.lstrip().startswith("#") else f"`{_short(text)}`"
+    return ", ".join(f"U+{ord(sign):04X}" for sign in text)
+
+
 def _short(text: str) -> str:
     line = " ".join(text.split())
     return line if len(line) <= 50 else f"{line[:49]}…"
 
 
 def _candidates(
-    finding: Diagnostic, place: SourceLocation, positions: TextPositions
-) -> Iterator[tuple[str, TextChange]]:
+    finding: Diagnostic, place: SourceLocation, positions: TextPositions, trial: _Trial
+) -> Iterator[Edit]:
     """Edits that the help may mean, the most likely first."""
     text, (start, end) = positions.text, _bounds(place, positions)
+    path = trial.document.path
+    stem = "" if path is None else path.stem
+    yield from described_edits(finding, text, start, end, stem)
+    for title, change in _quoted_edits(finding, text, start, end):
+        yield title, (change,)
+    yield from another_name(finding, text, start, end)
+
+
+def _quoted_edits(
+    finding: Diagnostic, text: str, start: int, end: int
+) -> Iterator[tuple[str, TextChange]]:
+    """Edits with what the help quotes."""
     asked = [*_QUOTED.findall(finding.help), *_QUOTED.findall(finding.expected)]
     if finding.help.startswith(_DELETING):
         yield from _deletions(text, start, end)
@@ -177,14 +209,21 @@ class _Trial:
     errors: int
     findings: int
 
-    def mends(self, change: TextChange) -> bool:
-        """Tell whether there is less wrong after a change, and nothing worse."""
-        text = changed_text(self.document.text, [change])
+    def mends(self, changes: Sequence[TextChange], finding: Diagnostic) -> bool:
+        """Tell whether there is less wrong after some changes, and nothing worse.
+
+        What keeps the rest from being looked at is mended if it is gone, and what is found then can
+        be read.
+        """
+        text = changed_text(self.document.text, changes)
         tried = Document(self.document.uri, text, parsed=self.document.parsed)
         try:
             found = self.editor.check(tried).findings
         except RulecError:
             return False
+        if finding.code in _HIDING:
+            is_gone = all(one.code != finding.code for one in found)
+            return is_gone and not any(one.code in _UNREADABLE for one in found)
         errors = len(_errors(found))
         return errors < self.errors or (errors == self.errors and len(found) < self.findings)
 

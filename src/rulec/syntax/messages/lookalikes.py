@@ -13,7 +13,7 @@ from functools import cache
 from unicodedata import name as name_of
 from unicodedata import normalize
 
-from rulec.diagnostics import Diagnostic, Label, Source, Span
+from rulec.diagnostics import Diagnostic, Fix, Label, Source, Span
 from rulec.diagnostics.code import Code
 from rulec.resources import grammar_file
 from rulec.syntax.keywords import RESERVED
@@ -46,7 +46,10 @@ CONFUSABLE_NAME = Code(
 
 def hidden_in_comment(place: Span) -> Diagnostic:
     return HIDDEN_IN_COMMENT.at(
-        place, "a comment may not hold this invisible character", help="delete it"
+        place,
+        "a comment may not hold this invisible character",
+        help="delete it",
+        fix=Fix(place.place, ""),
     )
 
 

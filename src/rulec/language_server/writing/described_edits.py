@@ -1,0 +1,168 @@
+"""Edits that a help describes in words: what is renamed, moved, left out, or said in another place.
+
+None of them is certain to be what is meant: each is tried before it is offered.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from itertools import count
+
+from rulec.diagnostics import Diagnostic
+from rulec.language_server.names.renaming import TextChange
+
+Edit = tuple[str, tuple[TextChange, ...]]
+"""What an editor shows of it, and what it changes."""
+
+_CLAUSES = (
+    "accept|also|cite|level|note|otherwise|reject|require|says|title|topic|unless|weight|when"
+)
+_NEXT_CLAUSE = re.compile(rf"[ \t]*(?:\b(?:{_CLAUSES})\b|\bin\s+force\b|\}})|\n")
+_NUMBER_WITH_UNIT = re.compile(r"\d[\d.,/]*(?: \w[\w/]*)?")
+_CHANGED_BY = re.compile(r"`(?P<head>(?:set|redefine) \w+) = …`")
+_SCOPE = re.compile(r"\b(?:throughout|at\s+start|at\s+end|at\s+some\s+point|initially)\b")
+_QUANTIFIED = re.compile(r"\b(?:every|some|no)\s+\w+\s*:\s*\w+[^()]*\(\s*$")
+_OPERATOR = re.compile(r"\w+(?:\s*\[[^]]*\])?\s+")
+
+
+def described_edits(
+    finding: Diagnostic, text: str, start: int, end: int, stem: str
+) -> Iterator[Edit]:
+    """The edits for a finding about ``text[start:end]``, the most likely first.
+
+    ``stem`` is what the file is called without its ending.
+    """
+    help_text, message, own = finding.help, finding.message, text[start:end]
+    if "`rulebook NAME`" in help_text and stem.isidentifier():
+        yield _one(f"Begin with `rulebook {stem}`", 0, 0, f"rulebook {stem}\n")
+    if "between the `{` and the `}` of their rule" in help_text:
+        yield from _into_the_braces(text, start, _end_of_clause(text, start))
+    if help_text.startswith("move it before the `}`"):
+        yield from _into_the_braces(text, start, len(text.rstrip()))
+    if found := re.search(r"looks like `(\w+)`", message):
+        yield from _in_other_letters(own, found[1], text)
+    if found := re.search(r"`(override rule) \w+`", help_text):
+        begin = text.rfind("confirm rule", 0, start)
+        if begin >= 0:
+            yield _one("Override the rule", begin, begin + len("confirm rule"), found[1])
+    if "leave this out" in help_text or help_text == "keep one of them":
+        behind = _NEXT_CLAUSE.search(text, end)
+        last = behind.start() if behind else len(text)
+        yield _one(f"Leave out this `{own}`", len(text[:start].rstrip()), last, "")
+    if found := re.search(r"takes its words from it by `(use \w+)`", help_text):
+        first = text.rfind("\n", 0, start) + 1
+        yield _one(f"Write `{found[1]}`", first, _line_end(text, start), found[1])
+    if found := _CHANGED_BY.search(help_text):
+        yield from _changing(found["head"], text, start)
+    if found := re.match(r"this state leaves open `([^`(]+)`,", message):
+        for said in (f"not {found[1]}", found[1]):
+            yield _one(f"Say `{said}` in this state", end, end, f" and {said}")
+    if " can mean " in message:
+        for reading in re.findall(r"`([^`]+)`", message)[1:]:
+            yield _one(f"Write `{reading}`", start, end, reading)
+    if help_text.startswith("the nearest multiple"):
+        was = message.split("`")[1]
+        begin = text.find(was, start, end)
+        for number in _NUMBER_WITH_UNIT.findall(help_text) if begin >= 0 else ():
+            yield _one(f"Write `{number}`", begin, begin + len(was), number)
+    if found := re.match(r"that month has (\d+) days", help_text):
+        last_day = re.sub(r"\d+$", found[1], own)
+        yield _one(f"Write `{last_day}`", start, end, last_day)
+    if "`initially`" in help_text or "`at some point`" in help_text:
+        yield from _another_scope(help_text, text, start, end)
+    if help_text.startswith("put the operator around it"):
+        yield from _operator_outside(text, start, end)
+    if help_text.startswith("leave out `is …`"):
+        begin = len(text[:start].rstrip()) - len("is")
+        yield _one(f"Leave out `is {own}`", len(text[:begin].rstrip()), end, "")
+    if "give it a weight" in help_text and (found := re.search(r"\b0+(?:\.0*)?\b", own)):
+        yield _one("Write `1`", start + found.start(), start + found.end(), "1")
+    for said in re.findall(r"`([^`…]+)`", help_text):
+        yield from _beginning_before(said, text, start, end)
+
+
+def another_name(finding: Diagnostic, text: str, start: int, end: int) -> Iterator[Edit]:
+    """A name that nothing else has, where the help asks for one."""
+    if "another name" in finding.help or "a name of its own" in finding.help:
+        name = _free(text[start:end], text)
+        yield _one(f"Call it `{name}`", start, end, name)
+
+
+def _one(title: str, start: int, end: int, text: str) -> Edit:
+    return title, (TextChange(start, end, text),)
+
+
+def _line_end(text: str, offset: int) -> int:
+    end = text.find("\n", offset)
+    return len(text) if end < 0 else end
+
+
+def _free(name: str, text: str) -> str:
+    """A name like this one that stands nowhere in a text."""
+    return next(
+        f"{name}_{number}" for number in count(2) if not re.search(rf"\b{name}_{number}\b", text)
+    )
+
+
+def _end_of_clause(text: str, start: int) -> int:
+    """The end of a clause's braces, or of its line."""
+    line = _line_end(text, start)
+    if "{" not in text[start:line]:
+        return line
+    depth = 0
+    for offset in range(text.index("{", start), len(text)):
+        depth += {"{": 1, "}": -1}.get(text[offset], 0)
+        if depth == 0:
+            return offset + 1
+    return line
+
+
+def _into_the_braces(text: str, start: int, end: int) -> Iterator[Edit]:
+    brace = text.rfind("}", 0, start)
+    if brace >= 0:
+        inside = f"{text[brace + 1 : end].rstrip()}\n}}"
+        yield _one("Put it inside the braces", brace, end, inside)
+        yield _one("Leave out the `}` before it", brace, brace + 1, "")
+
+
+def _in_other_letters(own: str, like: str, text: str) -> Iterator[Edit]:
+    """The name in the letters of the other one; where both are meant, a name of its own."""
+    where = [found.span() for found in re.finditer(rf"\b{re.escape(own)}\b", text)]
+    for name in (like, _free(like, text)):
+        yield f"Write `{name}`", tuple(TextChange(*span, name) for span in where)
+
+
+def _changing(head: str, text: str, start: int) -> Iterator[Edit]:
+    """An inherited thing given another value in place of being declared again."""
+    first = text.rfind("\n", 0, start) + 1
+    equals = text.find("=", start, _line_end(text, start))
+    if equals >= 0:
+        yield _one(f"Write `{head} = …`", first, equals, f"{head} ")
+
+
+def _another_scope(help_text: str, text: str, start: int, end: int) -> Iterator[Edit]:
+    for scope in re.findall(r"`([a-z ]+)`", help_text):
+        if _SCOPE.fullmatch(scope) and (found := _SCOPE.search(text, start, end)):
+            yield _one(f"Write `{scope}`", *found.span(), scope)
+
+
+def _operator_outside(text: str, start: int, end: int) -> Iterator[Edit]:
+    quantified = _QUANTIFIED.search(text[:start])
+    operator = _OPERATOR.match(text, start, end)
+    if quantified and operator:
+        said = operator[0].strip()
+        moved = f"{said} {quantified[0]}{text[operator.end() : end]}"
+        yield _one(f"Put `{said}` around it", quantified.start(), end, moved)
+
+
+def _beginning_before(said: str, text: str, start: int, end: int) -> Iterator[Edit]:
+    """What is written instead begins with a word that stands before the place already."""
+    first, space, _ = said.partition(" ")
+    if ": " in said:
+        # As it is declared in the head of its rule
+        declared = [*re.finditer(rf"\b{re.escape(first)}\s*\w+", text[:start])]
+        if declared:
+            yield _one(f"Write `{said}`", *declared[-1].span(), said)
+    elif space and (found := re.search(rf"\b{re.escape(first)}\s+$", text[:start])):
+        yield _one(f"Write `{said}`", found.start(), end, said)

@@ -1,0 +1,162 @@
+"""Each code has a quick fix, or there is a reason why no edit can be made of its help."""
+
+from collections import Counter
+
+import pytest
+from lsprotocol import types as lsp
+
+from rulec.language_server.names.renaming import changed_text
+from rulec.language_server.workspace.editor_workspace import EditorWorkspace
+from rulec.language_server.writing.quick_fixes import quick_fixes
+from rulec.report.findings.code_registry import all_codes
+
+HEAD = "rulebook sample\nsignal p, q\n"
+RULE = "hard rule r { require always p }\n"
+
+TEXTS = {
+    "R0114": "signal p\n" + RULE,
+    "R0118": HEAD + "# a\u202eb\n" + RULE,
+    "R0120": 'rulebook sample\nextends base\nconfirm rule r {\n  cite "s. 1"\n  unless q\n}\n',
+    "R0206": "rulebook sample\nextends words\n" + RULE,
+    "R0213": "rulebook sample\nextends sample\nsignal p\n" + RULE,
+    "R0407": HEAD
+    + "step 0.5 s\nhard rule r { require always (q implies eventually[<= 0.7 s] p) "
+    + "accept { p and q } reject { q and not p } }\n",
+}
+"""Texts with a mistake that has a fix, where what `explain` shows is no text, or has none."""
+
+FOR_AUTHORS = {
+    "R0103": "what an empty file is to say; `rulec new` writes one to start from",
+    "R0111": "how a rule is split",
+    "R0112": "which number is meant",
+    "R0115": "which file the line belongs in",
+    "R0117": "which file was meant; nothing is written into what may be no text of ours",
+    "R0314": "which fixed number is meant",
+    "R0316": "what the name means",
+    "R0320": "which day the law holds from, and what it says then",
+    "R0323": "how the rule is said more simply",
+    "R0326": "which objects are counted in place of named",
+}
+"""What only the author of a text can say."""
+
+NO_TEXT = {
+    "command": "it is about what a command is given, reads or writes",
+    "circumstance": "it is about the machine, or about files of other tools",
+    "scenario": "it is about a scenario",
+    "trace": "it is about recorded data, in which nothing is to be changed",
+    "python": "it is about a call from Python",
+    "maneuvers": "two rulebooks' words do not go together",
+    "compiled": "the compiler says it, when the editor's check is over",
+    "examples": "a lens above the rule writes the missing example",
+    "analyzed": "which of the rules that do not go together is wrong, their author knows",
+}
+"""By what shows a code's mistake, why it is not mended where rulebooks are edited."""
+
+
+def is_fixed(code):
+    return code.code in TEXTS or (code.kind == "rules" and code.code not in FOR_AUTHORS)
+
+
+CODES = list(all_codes().values())
+FIXED = [code.code for code in CODES if is_fixed(code)]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """An editor of a folder with a vocabulary, and the path of what is edited there."""
+    folder = tmp_path_factory.mktemp("edited")
+    (folder / "words.rules").write_text("vocabulary words { signal p }\n")
+    (folder / "base.rules").write_text(HEAD.replace("sample", "base") + RULE)
+    return EditorWorkspace((folder,)), folder / "sample.rules"
+
+
+def found(text, folder):
+    """How often each code is found in a text, and the quick fixes."""
+    editor, path = folder
+    path.write_text(text)
+    document = editor.open(path.as_uri(), text)
+    checked = editor.check(document)
+    whole = lsp.Range(lsp.Position(0, 0), lsp.Position(text.count("\n") + 1, 0))
+    codes = Counter(one.code for one in checked.findings)
+    return codes, quick_fixes(checked, document, whole, editor)
+
+
+def test_each_code_has_a_fix_or_a_reason():
+    reasons = {code.code: FOR_AUTHORS.get(code.code) or NO_TEXT.get(code.kind) for code in CODES}
+    assert [code for code, why in reasons.items() if why is None and code not in FIXED] == []
+    assert not FOR_AUTHORS.keys() & {*FIXED}
+    assert {code.kind for code in CODES} == {"rules", *NO_TEXT}
+    assert len(FIXED) == 55
+
+
+@pytest.mark.parametrize("code", FIXED)
+def test_its_fix_mends_it(code, folder):
+    text = TEXTS.get(code) or all_codes()[code].bad
+    codes, fixes = found(text, folder)
+    own = [fix for fix in fixes if fix.finding.code == code]
+    assert own, text
+    for fix in own:
+        after, _ = found(changed_text(text, fix.changes), folder)
+        assert after[code] < codes[code], fix.title
+
+
+@pytest.mark.parametrize("code", FOR_AUTHORS)
+def test_what_only_an_author_can_mend_has_none(code, folder):
+    codes, fixes = found(all_codes()[code].bad, folder)
+    assert codes[code] == 1
+    assert not [fix for fix in fixes if fix.finding.code == code]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "titles", "mended"),
+    [
+        (
+            HEAD + "hard rule r { require always p }\naccept { p }\n",
+            ["Put it inside the braces"],
+            HEAD + "hard rule r { require always p \naccept { p }\n}\n",
+        ),
+        (
+            HEAD + "hard rule r {\n  require always p }\n  accept { p }\n}\n",
+            ["Leave out the `}` before it"],
+            HEAD + "hard rule r {\n  require always p \n  accept { p }\n}\n",
+        ),
+        (
+            HEAD + RULE + RULE,
+            ["Call it `r_2`"],
+            HEAD + RULE + RULE.replace("rule r", "rule r_2"),
+        ),
+        (
+            HEAD + "hard rule r { require always p require always q }\n",
+            ["Leave out this `require`"],
+            HEAD + "hard rule r { require always p }\n",
+        ),
+        (
+            "rulebook sample\nsignal stop, wet\nhard rule r { require never (ѕtop and wet) }\n",
+            ["Write `stop`"],
+            "rulebook sample\nsignal stop, wet\nhard rule r { require never (stop and wet) }\n",
+        ),
+        (
+            HEAD + "hard rule r { require always (p or q) accept { p } }\n",
+            ["Say `not q` in this state", "Say `q` in this state"],
+            HEAD + "hard rule r { require always (p or q) accept { p and not q } }\n",
+        ),
+        (
+            TEXTS["R0407"],
+            ["Write `0.5 s`", "Write `1 s`"],
+            TEXTS["R0407"].replace("0.7 s", "0.5 s"),
+        ),
+        (
+            HEAD + "type car\nsignal near(c: car) default false\n"
+            "hard rule r { require every c: car (always not near(c)) }\n",
+            ["Put `always` around it"],
+            HEAD + "type car\nsignal near(c: car) default false\n"
+            "hard rule r { require always every c: car (not near(c)) }\n",
+        ),
+    ],
+)
+def test_what_a_help_describes(wrong, titles, mended, folder):
+    _, fixes = found(wrong, folder)
+    shown = dict.fromkeys(fix.title for fix in fixes)
+    assert [title for title in shown if title in titles] == titles, shown
+    first = next(fix for fix in fixes if fix.title == titles[0])
+    assert changed_text(wrong, first.changes) == mended
