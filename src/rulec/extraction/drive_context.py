@@ -1,9 +1,9 @@
-"""One drive, state by state: ego, its road and the other participants."""
+"""A drive, or several along one road, state by state: ego, its road and the other participants."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, wraps
 from typing import TypeVar, cast
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.extraction.end_to_end import EndToEnd
 from rulec.extraction.source_tolerances import Tolerances
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, part_of
@@ -20,7 +21,7 @@ from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Recording, Side
-from rulec.trace.plain_arrays import distinct, median
+from rulec.trace.plain_arrays import distinct, medians
 
 _ENOUGH_TRACKS = 10
 _ENOUGH_IN_LANE = 3
@@ -29,20 +30,26 @@ _LEAST_OFFSET_M = 0.15
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DriveContext:
-    """Arrays of one drive: a row per participant, a column per state.
+    """Arrays of one drive, or of several end to end: a row per participant, a column per state.
 
-    The rows are the participants that are ever relevant or in sight; ``ego`` and ``ego_extents``
-    have one. ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's
+    ``spans`` are the columns of each drive, ``steps`` the recording's time steps by column. The
+    rows are the participants that are ever relevant or in sight, NaN in drives in which they never
+    are; ``ego`` and ``ego_extents`` have one, and ``ego`` a participant for each drive, whose rows
+    are those of its ``own`` surroundings, in which its whole track is. ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's
     lanes, so near that ego could reach it within ``catching_up_s``? ``there``: the lanes that exist
     where it is, a third axis, ``touched``: those of them that it reaches into; ``elsewhere``: does
-    it drive on lanelets of another road? ``surroundings`` are the recording's. ``computed`` holds
-    what functions have found ``once``.
+    it drive on lanelets of another road? ``surroundings`` are the recording's; ``alone`` gives those
+    of one of several drives by its number, if each has others, and ego's row in them. ``computed``
+    holds what functions have found ``once``.
     """
 
     recording: Recording
     thresholds: Thresholds
     side: Side
     road: DrivenRoad
+    spans: EndToEnd
+    steps: NDArray[intp]
+    own: Surroundings
     ego: Tracks
     ego_extents: RoadExtents
     tracks: Tracks
@@ -53,6 +60,7 @@ class DriveContext:
     touched: Flags
     elsewhere: Flags
     surroundings: Surroundings
+    alone: Callable[[int], tuple[Surroundings, int]] | None = None
     computed: dict[Callable[..., object], object] = field(default_factory=dict)
 
     @cached_property
@@ -62,13 +70,57 @@ class DriveContext:
 
     @cached_property
     def states(self) -> int:
-        """The number of states of the drive."""
-        return int(self.ego_extents.s.shape[1])
+        """The number of states."""
+        return self.spans.n_states
 
     @cached_property
-    def first_step(self) -> int:
-        """The recording's time step of the first state."""
-        return self.ego.first
+    def columns(self) -> NDArray[intp]:
+        """The columns of the states in arrays of the whole recording."""
+        return self.steps - self.surroundings.tracks.first
+
+    def one(self, number: int) -> DriveContext:
+        """One of the drives by itself, with the same rows."""
+        if self.spans.n_drives == 1:
+            return self
+        if number not in self._ones:
+            columns, rows = self.spans.slices[number], np.arange(len(self.relevant))
+            surroundings, row = self.surroundings, int(self.ego.rows[number])
+            if self.alone is not None:
+                surroundings, row = self.alone(number)
+            own = self.ego.part(np.zeros(1, dtype=intp), columns)
+            self._ones[number] = replace(
+                self,
+                spans=EndToEnd.of_one(columns.stop - columns.start),
+                steps=self.steps[columns],
+                own=surroundings,
+                ego=replace(
+                    own,
+                    participants=self.ego.participants[number : number + 1],
+                    types=surroundings.tracks.types,
+                    rows=np.array([row]),
+                ),
+                ego_extents=self.ego_extents.part(np.zeros(1, dtype=intp), columns),
+                tracks=self.tracks.part(rows, columns),
+                extents=self.extents.part(rows, columns),
+                relevant=self.relevant[:, columns],
+                in_sight=self.in_sight[:, columns],
+                there=self.there[:, columns],
+                touched=self.touched[:, columns],
+                elsewhere=self.elsewhere[:, columns],
+                surroundings=surroundings,
+                alone=None,
+                computed={},
+            )
+        return self._ones[number]
+
+    @cached_property
+    def _ones(self) -> dict[int, DriveContext]:
+        return {}
+
+    def ego_is(self, kind: str) -> Flags:
+        """Flags of states in which ego is of an object type or its subtypes."""
+        flags: Flags = self.spans.spread(self.ego.of_type(kind))
+        return flags
 
     @cached_property
     def ego_lane(self) -> NDArray[intp]:
@@ -96,15 +148,20 @@ class DriveContext:
     @cached_property
     def steady_lane(self) -> NDArray[intp]:
         """Ego's lane with hysteresis: it is left only ``changed_m`` beyond its mark."""
-        if not np.diff(self.ego_lane).any():
+        changes = self.spans.changes(self.ego_lane)
+        if not changes.any():
             return self.ego_lane
-        lane, left_of = self.ego_lane.tolist(), self.ego_extents.left_of[0].tolist()
-        for state in range(1, len(lane)):
-            before = lane[state - 1]
-            beyond = max(-left_of[state][before], left_of[state][before + 1])
-            if beyond < self.thresholds.changed_m and self.existing_lanes[state, before]:
-                lane[state] = before
-        return np.array(lane)
+        steady = self.ego_lane.copy()
+        for _, columns in self.spans.those(self.spans.any(changes)):
+            lane, left_of = steady[columns].tolist(), self.ego_extents.left_of[0, columns].tolist()
+            existing = self.existing_lanes[columns]
+            for state in range(1, len(lane)):
+                before = lane[state - 1]
+                beyond = max(-left_of[state][before], left_of[state][before + 1])
+                if beyond < self.thresholds.changed_m and existing[state, before]:
+                    lane[state] = before
+            steady[columns] = lane
+        return steady
 
     @cached_property
     def going_along(self) -> Flags:
@@ -131,20 +188,37 @@ class DriveContext:
         ``_ENOUGH_TRACKS`` in all lanes, 0 up to ``_LEAST_OFFSET_M``. Drivers keep to the middle on
         the whole: by so much the map may be off the tracks.
         """
-        rows = self.driving_along.any(axis=1).nonzero()[0]
-        extents = self.extents.part(rows, slice(None))
-        lane = extents.lane
-        away = np.add(*extents.from_middle(lane)) / 2
-        away = np.where(self.driving_along[rows], away, np.nan)
+        rows, columns = self.driving_along.nonzero()
+        lane = self.extents.lane[rows, columns]
+        left_of = self.extents.left_of_min, self.extents.left_of_max
+        low, high = (
+            (bounds[rows, columns, lane] + bounds[rows, columns, lane + 1]) / 2
+            for bounds in left_of
+        )
+        away, drive = (low + high) / 2, self.spans.number[columns]
         by_state = np.zeros(self.states)
+        of_all: Floats | None = None
         for number in distinct(self.ego_lane).tolist():
-            inside = np.where(lane == number, away, np.nan)
-            inside = inside[~np.isnan(inside).all(axis=1)]
-            enough = len(inside) >= _ENOUGH_IN_LANE
-            by_state[self.ego_lane == number] = (
-                _telling(inside, _ENOUGH_IN_LANE) if enough else _telling(away, _ENOUGH_TRACKS)
-            )
-        return by_state
+            inside = np.flatnonzero(lane == number)
+            offset, count = self._offsets(rows[inside], drive[inside], away[inside])
+            if (count < _ENOUGH_IN_LANE).any() and of_all is None:
+                offset_of_all, tracks = self._offsets(rows, drive, away)
+                of_all = np.where(tracks >= _ENOUGH_TRACKS, offset_of_all, 0.0)
+            if of_all is not None:
+                offset = np.where(count >= _ENOUGH_IN_LANE, offset, of_all)
+            here = self.ego_lane == number
+            by_state[here] = offset[self.spans.number[here]]
+        return np.where(np.abs(by_state) > _LEAST_OFFSET_M, by_state, 0.0)
+
+    def _offsets(
+        self, rows: NDArray[intp], drive: NDArray[intp], away: Floats
+    ) -> tuple[Floats, NDArray[intp]]:
+        """For each drive the median of participants' medians, and of how many."""
+        n_drives = self.spans.n_drives
+        own, count = medians(rows * n_drives + drive, away, len(self.relevant) * n_drives)
+        of_drive = np.arange(len(own)) % n_drives
+        there = count > 0
+        return medians(of_drive[there], own[there], n_drives)
 
     def zero_if_standing(self, speed_kmh: Floats) -> Floats:
         """Speeds (km/h), exactly 0 below the threshold of standing."""
@@ -169,36 +243,26 @@ def once(compute: Callable[[DriveContext], Found]) -> Callable[[DriveContext], F
     return found
 
 
-def _telling(away: Floats, enough: int) -> float:
-    """The median of rows' medians, 0 if there are too few or it is next to nothing."""
-    if len(away) < enough:
-        return 0.0
-    offset = median(_medians(away))
-    return offset if abs(offset) > _LEAST_OFFSET_M else 0.0
-
-
-def _medians(rows: Floats) -> Floats:
-    """The median of the numbers in each row, of which there is one at least, beside NaN."""
-    ascending = np.sort(rows, axis=1)
-    count, number = np.sum(~np.isnan(rows), axis=1), np.arange(len(rows))
-    medians: Floats = (ascending[number, (count - 1) // 2] + ascending[number, count // 2]) / 2
-    return medians
-
-
 def drive_context(
     surroundings: Surroundings, places: RoadPlaces, side: Side, ego: int, columns: slice
 ) -> DriveContext:
     """The part of a recording that one drive is about: ``ego``'s row, in a range of columns."""
-    relevant, in_sight = _near(ego, places, columns)
-    rows = (relevant | in_sight).any(axis=1).nonzero()[0]
     own = np.array([ego])
+    tracks, extents = places.tracks.part(own, columns), places.extents.part(own, columns)
+    relevant, in_sight = _near(places, columns, extents)
+    relevant[ego] = in_sight[ego] = False
+    rows = (relevant | in_sight).any(axis=1).nonzero()[0]
+    n_states = columns.stop - columns.start
     return DriveContext(
         recording=surroundings.recording,
         thresholds=places.thresholds,
         side=side,
         road=places.road,
-        ego=places.tracks.part(own, columns),
-        ego_extents=places.extents.part(own, columns),
+        spans=EndToEnd.of_one(n_states),
+        steps=tracks.first + np.arange(n_states),
+        own=surroundings,
+        ego=tracks,
+        ego_extents=extents,
         tracks=places.tracks.part(rows, columns),
         extents=places.extents.part(rows, columns),
         relevant=relevant[rows],
@@ -210,14 +274,13 @@ def drive_context(
     )
 
 
-def _near(ego: int, places: RoadPlaces, columns: slice) -> tuple[Flags, Flags]:
+def _near(places: RoadPlaces, columns: slice | NDArray[intp], ego: RoadExtents) -> tuple[Flags, Flags]:
     """Flags of participants (rows) that count for ego, and that are in its sight, by step."""
     limits, extents = places.thresholds, places.extents
     s_min, s_max, along = (x[:, columns] for x in (extents.s_min, extents.s_max, extents.along))
-    gap = np.maximum(s_min - s_max[ego], s_min[ego] - s_max)
+    gap = np.maximum(s_min - ego.s_max, ego.s_min - s_max)
     # A little farther, since speeds are known to some tolerance
-    reach = np.maximum(along[ego] - along + 1.0, 0.0) * limits.catching_up_s
-    relevant = places.counts[:, columns] & (gap <= limits.near_m) & ~np.isnan(s_min[ego])
+    reach = np.maximum(ego.along - along + 1.0, 0.0) * limits.catching_up_s
+    relevant = places.counts[:, columns] & (gap <= limits.near_m) & ~np.isnan(ego.s_min)
     in_sight = places.seen[:, columns] & (gap <= np.maximum(limits.near_m, reach))
-    relevant[ego] = in_sight[ego] = False
     return relevant, in_sight

@@ -220,7 +220,7 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
     """The drive of ``ego`` as a trace called ``name``."""
     names = _names_written(writer)
     signals = together([signals_of(context, names) for signals_of in _SIGNALS])
-    signals = agreeing(settled(signals, LEAST_S, context.recording.step_s))
+    signals = agreeing(settled(signals, LEAST_S, context.recording.step_s, context.spans))
     types = [body.object_types for body in context.tracks.participants]
     chosen = written(signals, types, writer.vocabulary, writer.names)
     chosen = with_assumed(chosen, writer.assumed, context.states)
@@ -243,7 +243,7 @@ def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) ->
         told=None if writer.defaults else frozenset(kinds),
     )
     arrays = with_signals(empty, chosen, present, defaults=writer.defaults)
-    start_s = round(context.first_step * context.recording.step_s, 9)
+    start_s = round(int(context.steps[0]) * context.recording.step_s, 9)
     decided_by = {}
     if "safe_gap" in chosen.columns.about:
         rows = {presence.name: presence.row for presence in present}

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 _Number = TypeVar("_Number", bound=np.generic)
 
+_INT16_MAX = np.iinfo(np.int16).max
+
 
 def distinct(values: NDArray[_Number]) -> NDArray[_Number]:
     """The different numbers in an array, ascending; without NaN."""
@@ -25,3 +27,20 @@ def median(values: NDArray[Any]) -> float:
     if np.isnan(ascending[-1]):
         return float(ascending[-1])
     return float(ascending[(len(ascending) - 1) // 2] + ascending[middle]) / 2
+
+
+def sorted_in(groups: NDArray[np.intp], values: NDArray[np.float64]) -> NDArray[np.intp]:
+    """The order by groups, and by values in each of them."""
+    order = np.argsort(values)
+    # Small whole numbers are sorted in linear time
+    numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
+    return order[np.argsort(numbers[order], kind="stable")]
+
+
+def medians(groups: NDArray[np.intp], values: NDArray[np.float64], count: int) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """The median and the size of each of so many groups, NaN of an empty one."""
+    sizes = np.bincount(groups, minlength=count)
+    ordered = np.append(values[sorted_in(groups, values)], np.nan)
+    begins = np.cumsum(sizes) - sizes
+    low, high = begins + np.maximum(sizes - 1, 0) // 2, begins + sizes // 2
+    return np.where(sizes > 0, (ordered[low] + ordered[high]) / 2, np.nan), sizes

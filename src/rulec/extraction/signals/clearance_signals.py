@@ -13,7 +13,7 @@ from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, next_state
 from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
-from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import Lanelet, LaneMark, Side
 
 _BESIDE_M = 0.5
@@ -118,18 +118,10 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     )
     steps = round(limits.overtaking_s / context.recording.step_s)
     met = (against & (station == relations.BESIDE)).any(axis=0)
-    meets = (against & would_meet).any(axis=0) | _soon(met, steps)
-    ends = np.arange(context.states) + steps >= context.states
+    meets = (against & would_meet).any(axis=0) | context.spans.within(met, steps)
+    ends = context.spans.columns + steps >= context.spans.end
     far_enough = 2 * own * limits.overtaking_s <= limits.near_m
     return alone | ~meets, ~alone & ~meets & ends & ~far_enough
-
-
-def _soon(flags: Flags, steps: int) -> Flags:
-    """Flags that hold now or at most so many states later."""
-    after = np.concatenate(([0], np.cumsum(flags)))
-    states = np.arange(len(flags))
-    soon: Flags = after[np.minimum(states + steps + 1, len(flags))] > after[states]
-    return soon
 
 
 def _beyond_own_lanes(context: DriveContext) -> Flags:
@@ -182,14 +174,13 @@ def _needs_access(context: DriveContext) -> tuple[Flags, Flags]:
     steps = round(context.thresholds.access_s / context.recording.step_s)
     turns = np.zeros(context.states, dtype=bool)
     least = np.radians(context.thresholds.turned_deg)
-    own = context.surroundings.passages
-    (ego,) = context.ego.participants
-    row = next(k for k, body in enumerate(own.tracks.participants) if body.id == ego.id)
-    shift = context.first_step - own.tracks.first
-    for passage in own.of_row.get(row, ()):
-        if abs(own.way(passage).turned) > least:
-            turns[max(passage.first - shift - steps, 0) : max(passage.last - shift + 1, 0)] = True
-    ends = np.arange(context.states) + steps >= context.states
+    own, spans = context.own, context.spans
+    for row, columns in zip(context.ego.rows.tolist(), spans.slices, strict=True):
+        numbers = context.steps[columns] - own.tracks.first
+        for passage in own.passages.of_row.get(row, ()):
+            if abs(own.passages.way(passage).turned) > least:
+                turns[columns] |= (numbers >= passage.first - steps) & (numbers <= passage.last)
+    ends = spans.columns + steps >= spans.end
     return turns, ends & ~turns
 
 
@@ -282,14 +273,12 @@ def _sorted_ahead(context: DriveContext) -> tuple[Flags, Flags]:
 def _bus_lane_beside(context: DriveContext) -> Flags:
     """Flags of states in which the next lane to the kerb is for buses, and ego is none."""
     own, way = own_lanelets(context), -1 if context.side == "right" else 1
-    if context.ego.of_type("bus")[0]:
-        return np.zeros(context.states, dtype=bool)
     of_each = np.zeros(len(own.places), dtype=bool)
     for number, (piece, lane) in enumerate(own.places):
         row = context.road.rows[piece]
         beside = row[lane + way] if 0 <= lane + way < len(row) else None
         of_each[number] = beside is not None and "busLane" in beside.types
-    return of_each[own.number]
+    return of_each[own.number] & ~context.ego_is("bus")
 
 
 def _near_mark(lanelet: Lanelet, context: DriveContext) -> LaneMark | None:
@@ -307,15 +296,19 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
         return np.zeros(context.states, dtype=bool)
     lane, there = _next_lane(context, context.side)
     perhaps: Flags = there & ~_known_behind(context)
-    others, states, step_s = context.extents, np.arange(context.states), context.recording.step_s
-    rows = np.flatnonzero(context.driving_along.any(axis=1))
-    seen = context.driving_along[rows]
-    first, last = seen.argmax(axis=1), context.states - 1 - seen[:, ::-1].argmax(axis=1)
-    for edge, unseen in ((last, states > last[:, None]), (first, states < first[:, None])):
-        away_s = (states - edge[:, None]) * step_s
-        place = others.s[rows, edge][:, None] + others.along[rows, edge][:, None] * away_s
+    others, spans, step_s = context.extents, context.spans, context.recording.step_s
+    some = np.flatnonzero(context.driving_along.any(axis=1))
+    seen, rows = context.driving_along[some], some[:, None]
+    is_there = spans.any(seen)
+    first = spans.next_state(seen)[:, spans.first]
+    last = spans.latest(seen)[:, spans.end - 1]
+    edges = (last, is_there & (spans.columns > last)), (first, is_there & (spans.columns < first))
+    for edge, unseen in edges:
+        edge = np.where(is_there, edge, spans.first)
+        away_s = (spans.columns - edge) * step_s
+        place = others.s[rows, edge] + others.along[rows, edge] * away_s
         near = np.abs(place - context.ego_extents.s[0]) < context.thresholds.approach_m
-        near &= others.lane[rows, edge][:, None] == lane
+        near &= others.lane[rows, edge] == lane
         perhaps |= (unseen & there & near & (np.abs(away_s) < _UNSEEN_S)).any(axis=0)
     return perhaps
 
@@ -332,10 +325,14 @@ def _known_behind(context: DriveContext) -> Flags:
     safe = limits.reaction_s * faster + (faster**2 - own**2) / (2 * limits.braking_mps2)
     rear, others = context.ego_extents.s_min[0], context.extents
     farthest = np.where(context.going_along, others.s_min, np.inf).min(axis=0, initial=np.inf)
-    if context.recording.form in _STANDING_CAMERAS and _records_arrivals(context):
+    arrivals = _records_arrivals(context)
+    if context.own is not context.surroundings and context.recording.whole is None:
+        arrivals |= _some_arrive(context.own.tracks)
+    if context.recording.form in _STANDING_CAMERAS and arrivals:
         seen = np.where(context.driving_along, others.s_min, np.inf)
-        first = min(float(rear.min()), float(seen.min(initial=np.inf)))
-        farthest = np.minimum(farthest, first)
+        nearest = np.minimum(rear, seen.min(axis=0, initial=np.inf))
+        first = np.minimum.reduceat(nearest, context.spans.begins)
+        farthest = np.minimum(farthest, context.spans.spread(first))
     known: Flags = rear - farthest >= safe
     return known
 
@@ -348,7 +345,11 @@ def _records_arrivals(context: DriveContext) -> bool:
     """
     if context.recording.whole is not None:
         return context.recording.whole.arrivals
-    tracks = context.surroundings.tracks
+    return _some_arrive(context.surroundings.tracks)
+
+
+def _some_arrive(tracks: Tracks) -> bool:
+    """True if some vehicle is there from later on than the first step."""
     vehicles = tracks.present[tracks.of_type("vehicle")]
     return bool((~vehicles[:, :1] & vehicles.any(axis=1, keepdims=True)).any())
 

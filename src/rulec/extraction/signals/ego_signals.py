@@ -20,7 +20,7 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.trace.plain_arrays import median
+from rulec.trace.plain_arrays import medians
 
 _EGO_TYPES = {
     "truck": "ego_truck",
@@ -43,18 +43,19 @@ def ego_signals(context: DriveContext, names: SignalNames = None) -> SignalColum
 
 
 def _ego_type(context: DriveContext) -> SignalColumns:
-    (participant,) = context.ego.participants
+    types, spread = [body.type for body in context.ego.participants], context.spans.spread
     return SignalColumns(
-        {"ego_type": np.full(context.states, _EGO_TYPES.get(participant.type, "ego_car"))},
+        {"ego_type": spread([_EGO_TYPES.get(kind, "ego_car") for kind in types])},
         # A file may know of vehicles no more than that they are some
-        unknown={"ego_type": np.full(context.states, participant.type == "vehicle")},
+        unknown={"ego_type": spread([kind == "vehicle" for kind in types])},
     )
 
 
 def _ego_length(context: DriveContext) -> SignalColumns:
-    lengths = context.ego_extents.s_max - context.ego_extents.s_min
-    length = median(lengths[~np.isnan(lengths)])
-    return SignalColumns({"ego_length": rounded(np.full(context.states, length))})
+    lengths = (context.ego_extents.s_max - context.ego_extents.s_min)[0]
+    (told,) = np.nonzero(~np.isnan(lengths))
+    length, _ = medians(context.spans.number[told], lengths[told], context.spans.n_drives)
+    return SignalColumns({"ego_length": rounded(context.spans.spread(length))})
 
 
 def _speed(context: DriveContext) -> SignalColumns:

@@ -19,14 +19,13 @@ from rulec.extraction.signals.queues import (
     close_by,
     lanes_that_decide,
     longest_gaps,
-    medians,
     queues_by_lane,
     vehicles_around,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, next_state
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.trace.plain_arrays import distinct
+from rulec.trace.plain_arrays import distinct, medians
 
 _DRIFT_MPS = 0.2
 """Who moves sideways by less keeps its lane."""
@@ -90,13 +89,10 @@ def _begins_to_overtake(context: DriveContext) -> SignalColumns:
     """
     overtakes, unsure = _overtakes(context)
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
-    states = np.arange(context.states)
-    begins, perhaps = (
-        next_state(flags, context.states + horizon) <= states + horizon
-        for flags in (overtakes, overtakes | unsure)
-    )
+    spans = context.spans
+    begins, perhaps = (spans.within(flags, horizon) for flags in (overtakes, overtakes | unsure))
     moves_out = np.abs(context.ego_extents.across[0]) > _DRIFT_MPS
-    ends = moves_out & (states + horizon >= context.states)
+    ends = moves_out & (spans.columns + horizon >= spans.end)
     return SignalColumns(
         {"begins_to_overtake": begins}, unknown={"begins_to_overtake": (perhaps | ends) & ~begins}
     )
@@ -159,10 +155,13 @@ def _sets_off(context: DriveContext) -> Flags:
     """
     limits, speed, step_s = context.thresholds, context.ego.speed[0], context.recording.step_s
     stands = speed * KMH < limits.standing_kmh
-    whole = "light" in context.recording.complete
-    before = -np.inf if whole else -np.ceil(speed[0] / _SETS_OFF_MPS2 / step_s)
-    stood = np.maximum.accumulate(np.where(stands, np.arange(context.states), before))
-    sets_off: Flags = (np.arange(context.states) - stood) * step_s < limits.setting_off_s
+    spans, stood = context.spans, context.spans.latest(stands).astype(float)
+    at_first = speed[spans.first]
+    before = spans.first - np.ceil(at_first / _SETS_OFF_MPS2 / step_s)
+    if "light" in context.recording.complete:
+        before = np.full(context.states, -np.inf)
+    stood = np.where(stood < spans.first, before, stood)
+    sets_off: Flags = (spans.columns - stood) * step_s < limits.setting_off_s
     return sets_off
 
 
@@ -269,12 +268,12 @@ def _gets_past(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     Of these rows, False in all others.
     """
     horizon = round(context.thresholds.catching_up_s / context.recording.step_s)
-    states, never = np.arange(context.states), context.states + horizon
+    spans, states = context.spans, context.spans.columns
     seen = context.relevant[rows]
     past = seen & (relations.station(context)[rows] == relations.BEHIND)
     gets_past, lost = np.zeros((2, *context.relevant.shape), dtype=bool)
-    gets_past[rows] = next_state(past, never) <= states + horizon
-    lost[rows] = ~gets_past[rows] & (next_state(~seen, context.states) <= states + horizon)
+    gets_past[rows] = spans.within(past, horizon)
+    lost[rows] = ~gets_past[rows] & (spans.next_state(~seen) <= states + horizon)
     return gets_past, lost
 
 

@@ -18,8 +18,6 @@ from rulec.extraction.signals.measured_numbers import LONGEST_S
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
-    latest,
-    next_state,
     rounded,
     rounded_outward,
 )
@@ -42,7 +40,7 @@ def _ahead_for(context: DriveContext) -> SignalColumns:
     rows, step_s = np.flatnonzero(perhaps.any(axis=1)), context.recording.step_s
     surely, perhaps = surely[rows], perhaps[rows]
     since, seen = _since(context, rows, perhaps)
-    states = np.arange(context.states)
+    states = context.spans.columns
     most = np.where(seen, (states - since + 1) * step_s, LONGEST_S) * perhaps
     since, seen = _since(context, rows, surely)
     least = (states - since) * step_s
@@ -59,8 +57,9 @@ def _since(
     context: DriveContext, rows: NDArray[intp], follows: Flags
 ) -> tuple[NDArray[intp], Flags]:
     """The states in which these rows' flags last began, and was one seen the state before?"""
-    since = np.minimum(latest(~follows) + 1, context.states - 1)
-    return since, (since > 0) & context.relevant[rows[:, None], since - 1]
+    spans = context.spans
+    since = np.minimum(spans.latest(~follows) + 1, spans.end - 1)
+    return since, (since > spans.first) & context.relevant[rows[:, None], since - 1]
 
 
 def _before(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -> Floats:
@@ -97,16 +96,16 @@ def parts_soon(context: DriveContext, rows: NDArray[intp]) -> Flags:
     apart = context.extents.lane[rows] != context.ego_extents.lane
     apart |= way_across > context.thresholds.touching_m
     apart &= context.relevant[rows]
-    states = np.arange(context.states)
+    spans, states = context.spans, context.spans.columns
     seen, own = context.relevant[rows], context.ego_extents
     others = context.extents.part(rows, slice(None))
     inside, stopped = _in_junctions(context, others), _would_stand(context, rows)
-    none = context.states + horizon
-    parts[rows] = next_state(apart & ~inside, none) <= states + horizon
-    parts[rows] |= next_state(apart & inside, none) <= np.minimum(stopped, states + horizon)
+    parts[rows] = spans.next_state(apart & ~inside, horizon) <= states + horizon
+    in_time = np.minimum(stopped, states + horizon)
+    parts[rows] |= spans.next_state(apart & inside, horizon) <= in_time
     side = np.sign(others.d_min + others.d_max - (own.d_min + own.d_max))
-    gone = next_state(~seen, none)
-    last = np.clip(gone - 1, 0, context.states - 1)
+    gone = spans.next_state(~seen, horizon)
+    last = np.clip(gone - 1, spans.first, spans.end - 1)
     away, still = (
         np.take_along_axis(values, last, axis=1) for values in (-own.across * side, way_across)
     )
@@ -131,13 +130,19 @@ def _would_stand(context: DriveContext, rows: NDArray[intp]) -> NDArray[intp]:
 
     One past the last where they do not get there while they are seen.
     """
-    tracks, states = context.tracks.part(rows, slice(0, None)), np.arange(context.states)
-    steps = np.nan_to_num(np.hypot(np.diff(tracks.x), np.diff(tracks.y)))
-    ways = np.append(np.zeros((len(rows), 1)), steps.cumsum(axis=1), axis=1)
+    tracks, spans = context.tracks.part(rows, slice(0, None)), context.spans
     fastest = np.nan_to_num(tracks.speed + tracks.speed_error)
-    stops = ways + fastest**2 / (2 * context.thresholds.braking_mps2)
-    found = [np.searchsorted(*one) for one in zip(ways, stops, strict=True)]
-    return np.maximum(np.array(found, dtype=intp).reshape(stops.shape), states)
+    braking = fastest**2 / (2 * context.thresholds.braking_mps2)
+
+    def of_drive(columns: slice) -> NDArray[intp]:
+        x, y = tracks.x[:, columns], tracks.y[:, columns]
+        steps = np.nan_to_num(np.hypot(np.diff(x), np.diff(y)))
+        ways = np.append(np.zeros((len(rows), 1)), steps.cumsum(axis=1), axis=1)
+        stops = ways + braking[:, columns]
+        found = [np.searchsorted(*one) for one in zip(ways, stops, strict=True)]
+        return np.array(found, dtype=intp).reshape(stops.shape) + columns.start
+
+    return np.maximum(spans.each(of_drive), spans.columns)
 
 
 _PASSES: Passes = {("ahead_for",): _ahead_for}

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, latest, next_state
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import (
     Passes,
     once_a_recording,
@@ -116,8 +116,7 @@ def _lamps(context: DriveContext) -> Mapping[Lamp, tuple[Flags, Flags]]:
 @once
 def _own_part(context: DriveContext) -> tuple[NDArray[intp], ...]:
     """The drive's rows and columns in arrays of the whole recording."""
-    begins = context.first_step - context.surroundings.tracks.first
-    return np.ix_(context.tracks.rows, np.arange(begins, begins + context.states))
+    return np.ix_(context.tracks.rows, context.columns)
 
 
 def _lit(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
@@ -129,16 +128,7 @@ def _lit(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
 
 
 def _flashing(lit: Flags, context: DriveContext) -> Flags:
-    return _within(lit, round(_FLASH_S / context.recording.step_s), around=True)
-
-
-def _within(flags: Flags, steps: int, *, around: bool = False) -> Flags:
-    """Flags that hold at a state or at most ``steps`` states later, or also earlier."""
-    if not flags.any():
-        return flags
-    states = np.arange(flags.shape[-1])
-    within: Flags = next_state(flags, len(states) + steps) <= states + steps
-    return within | (latest(flags) >= np.maximum(states - steps, 0)) if around else within
+    return context.spans.within(lit, round(_FLASH_S / context.recording.step_s), around=True)
 
 
 def _comes_near(context: DriveContext) -> Flags:
@@ -161,7 +151,7 @@ def _drives(context: DriveContext, rows: NDArray[intp]) -> Flags:
     Of these rows. One that stands for longer, lights on, may be where it was called to.
     """
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
-    return _within(_moves(context)[rows], steps, around=True)
+    return context.spans.within(_moves(context)[rows], steps, around=True)
 
 
 def _moves(context: DriveContext) -> Flags:
@@ -240,10 +230,10 @@ def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Fl
     """Flags of buses, a row each, that leave a stop, and of those of which nobody knows it."""
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
     stands = _stands(context)[buses]
-    leaves = stands & _within(_moves(context)[buses], steps)
+    leaves = stands & context.spans.within(_moves(context)[buses], steps)
     lit, told = (flags[buses] for flags in _far_indicator(context))
     doors, doors_told = (flags[buses] for flags in _lit(context, "doors"))
-    at_stop = _within(doors[:, ::-1], steps)[:, ::-1]
+    at_stop = context.spans.within_last(doors, steps)
     known = told & doors_told
     # What it does after it is lost from sight nobody knows
     lost = stands & lit & at_stop & _ends_within(context, steps)[buses]
@@ -252,9 +242,9 @@ def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Fl
 
 def _ends_within(context: DriveContext, steps: int) -> Flags:
     """Flags of states in which a participant's track goes on for fewer states than so many."""
-    present = ~np.isnan(context.tracks.speed)
-    last = np.where(present.any(axis=1), context.states - 1 - present[:, ::-1].argmax(axis=1), -1)
-    ends: Flags = np.arange(context.states) + steps > last[:, None]
+    spans, present = context.spans, ~np.isnan(context.tracks.speed)
+    last = spans.latest(present)[:, spans.end - 1]
+    ends: Flags = spans.columns + steps > last
     return ends
 
 
@@ -262,13 +252,13 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     """The signal of those who have signalled to pull out to the far side, and do so soon."""
     far, lane = (1 if context.side == "right" else -1), context.extents.lane
     steps = round(context.thresholds.signalling_s / context.recording.step_s)
-    pulls_out = np.zeros_like(context.relevant)
-    pulls_out[:, :-1] = (lane[:, 1:] > lane[:, :-1]) if far > 0 else (lane[:, 1:] < lane[:, :-1])
+    onward = context.spans.after(lane)
+    pulls_out = onward > lane if far > 0 else onward < lane
     rows = np.flatnonzero(pulls_out.any(axis=1))
     inside = context.on_lanes[rows]
-    pulls_out[rows] &= inside & np.roll(inside, -1, axis=1)
+    pulls_out[rows] &= inside & context.spans.after(inside)
     soon = np.zeros_like(pulls_out)
-    soon[rows] = context.going_along[rows] & _within(pulls_out[rows], steps)
+    soon[rows] = context.going_along[rows] & context.spans.within(pulls_out[rows], steps)
     lit, told = _far_indicator(context)
     ends = _ends_within(context, steps)
     return SignalColumns(
@@ -303,12 +293,12 @@ def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Fla
     station, there = relations.station(context)[rows], ~np.isnan(context.extents.s_min[rows])
     beside = there & (station == relations.BESIDE)
     behind_ego = there & (station == relations.IN_FRONT_OF)
-    arrives, appears = np.zeros((2, *beside.shape), dtype=bool)
-    arrives[:, 1:] = beside[:, 1:] & behind_ego[:, :-1] & (waits & at_junction)[1:]
-    appears[:, 0] = beside[:, 0] & at_junction[0]
-    appears[:, 1:] = beside[:, 1:] & ~there[:, :-1] & at_junction[1:]
-    left = latest(~beside)
-    return latest(arrives) > left, latest(appears) > left
+    spans = context.spans
+    # In a drive's first state who is beside ego is not behind it
+    arrives = beside & spans.before(behind_ego) & (waits & at_junction)
+    appears = beside & (spans.begins_here | ~spans.before(there)) & at_junction
+    left = spans.latest(~beside)
+    return spans.latest(arrives) > left, spans.latest(appears) > left
 
 
 _PASSES: Passes = {

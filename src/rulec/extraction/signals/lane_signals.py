@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
@@ -63,8 +64,7 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
 
 def _changes(context: DriveContext) -> Flags:
     """Flags of states in which ego has changed lanes since the one before."""
-    lane = context.steady_lane
-    return np.append(False, lane[1:] != lane[:-1])
+    return context.spans.changes(context.steady_lane)
 
 
 def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
@@ -75,13 +75,15 @@ def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
     lane, left_of = context.steady_lane, context.ego_extents.left_of[0]
     error = context.tolerances.place_m + np.abs(context.map_offset_m)
     least = np.maximum(context.thresholds.changed_m, error)
-    unsure = np.zeros_like(changes)
-    borders = [0, *np.flatnonzero(changes).tolist(), len(changes)]
-    for begin, at, end in zip(borders[:-2], borders[1:-1], borders[2:], strict=True):
-        mark = left_of[begin:end, max(lane[at - 1], lane[at])]
-        if lane[at] < lane[at - 1]:
-            mark = -mark
-        unsure[at] = min(-mark[: at - begin].min(), mark[at - begin :].max()) < least[at]
+    unsure, spans = np.zeros_like(changes), context.spans
+    for _, columns in spans.those(spans.any(changes)):
+        own = (np.flatnonzero(changes[columns]) + columns.start).tolist()
+        borders = [columns.start, *own, columns.stop]
+        for begin, at, end in zip(borders[:-2], borders[1:-1], borders[2:], strict=True):
+            mark = left_of[begin:end, max(lane[at - 1], lane[at])]
+            if lane[at] < lane[at - 1]:
+                mark = -mark
+            unsure[at] = min(-mark[: at - begin].min(), mark[at - begin :].max()) < least[at]
     return unsure
 
 
@@ -91,17 +93,17 @@ def _indicator(context: DriveContext) -> SignalColumns:
     Both at once are no indication, as hazard lights are none; a file that says that these are off
     contradicts itself.
     """
-    (ego,) = context.ego.participants
-    if not ego.lamps or not ego.shows >= _INDICATORS:
+    egos = context.ego.participants
+    if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
         return SignalColumns()
     far = "left_indicator" if context.side == "right" else "right_indicator"
-    steps = [ego.lamps.get(context.first_step + state) for state in range(context.states)]
+    steps = ego_lamps(context)
     lit = [(lamps or frozenset()) & _INDICATORS for lamps in steps]
     codes = np.array([0 if len(lamps) != 1 else 2 if far in lamps else 1 for lamps in lit])
-    tells_hazards = "hazard_lights" in ego.shows
+    tells_hazards = context.spans.spread(["hazard_lights" in ego.shows for ego in egos]).tolist()
     unknown = [
-        lamps is None or (tells_hazards and lamps >= _INDICATORS and "hazard_lights" not in lamps)
-        for lamps in steps
+        lamps is None or (tells and lamps >= _INDICATORS and "hazard_lights" not in lamps)
+        for lamps, tells in zip(steps, tells_hazards, strict=True)
     ]
     return SignalColumns(
         {"indicator": codes},
@@ -182,7 +184,8 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     the drive's beginning on cross the line that it stands on, until it moves off.
     """
     names = ("on_solid_line", "broken_on_own_side", "single_line")
-    if (context.ego.speed[0] * KMH < context.thresholds.standing_kmh).all():
+    stays = context.spans.all(context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
+    if stays.all():
         return SignalColumns(dict.fromkeys(names, np.zeros(context.states, dtype=bool)))
     place, offsets = context.tolerances.place_m, context.map_offset_m
     unmoved, low, high = (
@@ -212,6 +215,7 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     differs |= ~found[states, 0] & _under(context, lines, states)[:, 0]
     not_told[states[differs]] = True
     not_told |= found[:, 0] & _not_moved_yet(context)
+    found[stays], not_told[stays] = False, False
     return SignalColumns(
         dict(zip(names, found.T, strict=False)), unknown=dict.fromkeys(names, not_told)
     )
@@ -219,12 +223,12 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
 
 def _not_moved_yet(context: DriveContext) -> Flags:
     """Flags of states up to which ego stands where it was first seen, for a second or more."""
-    x, y = context.ego.x[0], context.ego.y[0]
-    away = np.hypot(x - x[0], y - y[0]) > _MOVED_OFF_M + 2 * context.tolerances.place_m
-    stood: Flags = ~np.maximum.accumulate(away)
-    if (stood.sum() - 1) * context.recording.step_s < _STOOD_S:
-        stood[:] = False
-    return stood
+    x, y, spans = context.ego.x[0], context.ego.y[0], context.spans
+    way = np.hypot(x - x[spans.first], y - y[spans.first])
+    away = way > _MOVED_OFF_M + 2 * context.tolerances.place_m
+    stood: Flags = spans.latest(away) < spans.first
+    counts = np.add.reduceat(stood.astype(intp), spans.begins)
+    return stood & spans.spread((counts - 1) * context.recording.step_s >= _STOOD_S)
 
 
 def _outer_lines(context: DriveContext) -> Flags:
@@ -245,8 +249,8 @@ def _half_across(context: DriveContext) -> Floats:
     if place >= context.thresholds.touching_m:
         return width / 2
     steps = max(round(context.thresholds.smoothing_s / 2 / context.recording.step_s), 1)
-    at = np.arange(context.states)
-    before, after = np.maximum(at - steps, 0), np.minimum(at + steps, context.states - 1)
+    at, spans = context.spans.columns, context.spans
+    before, after = np.maximum(at - steps, spans.first), np.minimum(at + steps, spans.end - 1)
     dx, dy = (places[0, after] - places[0, before] for places in (context.ego.x, context.ego.y))
     lasts = np.maximum(after - before, 1) * context.recording.step_s
     # From the road's direction, which is the heading less how far that is turned

@@ -11,7 +11,6 @@ import numpy as np
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
-from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 LONGEST_S = 1000.0
@@ -131,8 +130,8 @@ def _ahead(context: DriveContext) -> tuple[Floats, Floats]:
 
 def own_widths(context: DriveContext) -> Floats:
     """The width (m) of ego's body by state."""
-    begins = context.first_step - context.surroundings.tracks.first
-    own: Floats = _widths(context)[context.ego.rows[0], begins : begins + context.states]
+    rows, columns = context.spans.spread(context.ego.rows), context.steps - context.own.tracks.first
+    own: Floats = context.own.tracks.widths[rows, columns]
     return own
 
 
@@ -140,19 +139,3 @@ def corner_ahead(context: DriveContext) -> Floats:
     """How far (m) a corner of ego's body reaches along the road beyond the middle of its front."""
     corner: Floats = own_widths(context) / 2 * np.abs(np.sin(context.ego_extents.turned[0]))
     return corner
-
-
-@once_a_recording
-def _widths(context: DriveContext) -> Floats:
-    """The widths (m) of bodies across their headings, of the whole recording; 0 where unknown."""
-    tracks = context.surroundings.tracks
-    bodies, widths = tracks.bodies, np.zeros(tracks.present.shape)
-    outlines, way = bodies.outlines, tracks.heading[bodies.rows, bodies.columns]
-    x, y = outlines.corners.T
-    sin, cos = (np.repeat(values, outlines.counts) for values in (np.sin(way), np.cos(way)))
-    across = y * cos - x * sin
-    most, least = (
-        extreme.reduceat(across, outlines.starts) for extreme in (np.maximum, np.minimum)
-    )
-    widths[bodies.rows, bodies.columns] = most - least
-    return widths

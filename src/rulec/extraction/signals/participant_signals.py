@@ -26,7 +26,6 @@ from rulec.extraction.signals.signal_columns import (
     Bounds,
     SignalColumns,
     SignalNames,
-    latest,
     rounded,
     rounded_outward,
 )
@@ -61,7 +60,7 @@ def _station(context: DriveContext) -> SignalColumns:
     longest = round(context.thresholds.passed_s / context.recording.step_s)
     return SignalColumns(
         about={"station": station},
-        unknown={"station": doubtful & ~only_when(station, doubtful, there, longest)},
+        unknown={"station": doubtful & ~only_when(station, doubtful, there, longest, context.spans)},
         texts={"station": STATIONS},
     )
 
@@ -151,8 +150,9 @@ def _stood_before(context: DriveContext) -> Flags:
     """Flags of those who stand, and have for ``reaction_s`` or since they were seen first."""
     stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
     steps = round(context.thresholds.reaction_s / context.recording.step_s)
-    moved = latest(~stands & ~np.isnan(context.extents.s_min))
-    stood: Flags = stands & ((moved < 0) | (np.arange(context.states) - moved > steps))
+    spans = context.spans
+    moved = spans.latest(~stands & ~np.isnan(context.extents.s_min))
+    stood: Flags = stands & ((moved < spans.first) | (spans.columns - moved > steps))
     return stood
 
 
@@ -213,7 +213,7 @@ def _waits_elsewhere(context: DriveContext) -> Flags:
     """
     stands = np.abs(context.extents.along) * KMH < context.thresholds.standing_kmh
     vehicles = context.tracks.of_type("vehicle")[:, None]
-    moves_elsewhere = context.elsewhere & ~stands.all(axis=1, keepdims=True)
+    moves_elsewhere = context.elsewhere & ~context.spans.all(stands)
     waits: Flags = stands & vehicles & (moves_elsewhere | ~context.on_lanes)
     return waits
 
@@ -230,7 +230,7 @@ def _goes_across(context: DriveContext) -> SignalColumns:
     users = np.flatnonzero(context.tracks.of_type("vulnerable_user"))
     if len(users):
         off = _mostly_along(context, users) | ~context.tracks.on_lane[users]
-        goes[users] |= latest(goes[users]) > latest(off)
+        goes[users] |= context.spans.latest(goes[users]) > context.spans.latest(off)
     return SignalColumns(about={"goes_across": goes})
 
 
@@ -240,14 +240,12 @@ def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:
     Step by step: in means over a second a blow that moves a body at once lasts as long.
     """
     least, step_s = context.thresholds.standing_kmh / KMH, context.recording.step_s
-    others = context.extents
-    s = np.abs(np.diff(others.s[rows], axis=1, prepend=np.nan))
-    d = np.abs(np.diff(others.d_min[rows] + others.d_max[rows], axis=1, prepend=np.nan)) / 2
+    others, spans = context.extents, context.spans
+    along, across = others.s[rows], others.d_min[rows] + others.d_max[rows]
+    s, d = (np.abs(values - spans.before(values)) for values in (along, across / 2))
     turns = (s >= least * step_s) & (s > d)
     steps = max(round(context.thresholds.smoothing_s / step_s), 1)
-    sums = np.pad(np.cumsum(turns, axis=1), ((0, 0), (steps, 0)))
-    recent: NDArray[intp] = sums[:, steps:] - sums[:, :-steps]
-    return 2 * recent > steps
+    return 2 * spans.count_of_last(turns, steps) > steps
 
 
 def _stopped(context: DriveContext) -> SignalColumns:
@@ -272,7 +270,7 @@ def _stays_aside(context: DriveContext) -> Flags:
     if len(still):
         others = context.extents.part(still, slice(None))
         out = (others.middle_from(first) < 0) | (others.middle_from(end) > 0)
-        aside[still] = (out | ~context.relevant[still]).all(axis=1, keepdims=True)
+        aside[still] = context.spans.all(out | ~context.relevant[still])
     return aside
 
 

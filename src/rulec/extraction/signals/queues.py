@@ -16,6 +16,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.trace.plain_arrays import medians, sorted_in
 
 _BODY_M = 5.0
 """About how long a vehicle is."""
@@ -30,8 +31,6 @@ _UNEVEN_M = 20.0
 
 _MOST = 0.5
 """More than this part of a queue's gaps are short."""
-
-_INT16_MAX = np.iinfo(np.int16).max
 
 READINGS = range(3)
 MEASURED, STRICT, LOOSE = READINGS
@@ -153,23 +152,6 @@ def vehicles_around(context: DriveContext) -> VehiclesAround:
         speed=np.maximum(along, 0.0),
         speed_error=error,
     )
-
-
-def sorted_in(groups: NDArray[intp], values: Floats) -> NDArray[intp]:
-    """The order by groups, and by values in each of them."""
-    order = np.argsort(values)
-    # Small whole numbers are sorted in linear time
-    numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
-    return order[np.argsort(numbers[order], kind="stable")]
-
-
-def medians(groups: NDArray[intp], values: Floats, count: int) -> tuple[Floats, NDArray[intp]]:
-    """The median and the size of each of so many groups, NaN of an empty one."""
-    sizes = np.bincount(groups, minlength=count)
-    ordered = np.append(values[sorted_in(groups, values)], np.nan)
-    begins = np.cumsum(sizes) - sizes
-    low, high = begins + np.maximum(sizes - 1, 0) // 2, begins + sizes // 2
-    return np.where(sizes > 0, (ordered[low] + ordered[high]) / 2, np.nan), sizes
 
 
 @once

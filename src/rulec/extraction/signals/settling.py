@@ -8,12 +8,8 @@ from math import ceil
 
 import numpy as np
 
-from rulec.extraction.signals.signal_columns import (
-    SignalColumn,
-    SignalColumns,
-    latest,
-    next_state,
-)
+from rulec.extraction.end_to_end import EndToEnd
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags
 
 _HAIR = 1e-6
@@ -28,8 +24,10 @@ _IMPLIED: Mapping[str, Sequence[str]] = {
 """Signal -> those that it holds with, as the vocabulary's facts say."""
 
 
-def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float) -> SignalColumns:
-    """The signals without values that are shorter than their word's least duration (s).
+def settled(
+    signals: SignalColumns, least_s: Mapping[str, float], step_s: float, spans: EndToEnd
+) -> SignalColumns:
+    """The signals of drives without values that are shorter than their word's least duration (s).
 
     Such a value between two equal ones becomes theirs, and no better known than they. At the ends
     of a recording nobody knows it: it may be noise or last.
@@ -37,7 +35,7 @@ def settled(signals: SignalColumns, least_s: Mapping[str, float], step_s: float)
     least = {name: ceil(seconds / step_s - _HAIR) for name, seconds in least_s.items()}
     unknown = dict(signals.unknown)
     world, about = (
-        {**columns, **_changed(columns, least, unknown)}
+        {**columns, **_changed(columns, least, unknown, spans)}
         for columns in (signals.world, signals.about)
     )
     return replace(signals, world=world, about=about, unknown=unknown)
@@ -61,7 +59,10 @@ def agreeing(signals: SignalColumns) -> SignalColumns:
 
 
 def _changed(
-    columns: Mapping[str, SignalColumn], least: Mapping[str, int], unknown: dict[str, Flags]
+    columns: Mapping[str, SignalColumn],
+    least: Mapping[str, int],
+    unknown: dict[str, Flags],
+    spans: EndToEnd,
 ) -> dict[str, SignalColumn]:
     """The columns that change by being settled, each as it is then.
 
@@ -70,13 +71,13 @@ def _changed(
     changed: dict[str, SignalColumn] = {}
     for names in _alike(columns, least):
         before = np.stack([columns[name] for name in names])
-        after = without_blips(before, least[names[0]])
-        brief = _brief_at_ends(after, least[names[0]])
+        after = without_blips(before, least[names[0]], spans)
+        brief = _brief_at_ends(after, least[names[0]], spans)
         for number, name in enumerate(names):
             if after is not before and (blips := after[number] != before[number]).any():
                 changed[name] = after[number]
                 if (flags := unknown.get(name)) is not None:
-                    unknown[name] = flags | _next_to(blips & ~flags, flags)
+                    unknown[name] = flags | _next_to(blips & ~flags, flags, spans)
             if brief[number].any():
                 unknown[name] = brief[number] | unknown.get(name, False)
     return changed
@@ -93,33 +94,31 @@ def _alike(
     return groups.values()
 
 
-def _next_to(changed: Flags, flags: Flags) -> Flags:
+def _next_to(changed: Flags, flags: Flags, spans: EndToEnd) -> Flags:
     """Flags of changed states next to flagged ones, across others that have changed, too."""
     if not changed.any():
         return changed
-    places = np.broadcast_to(np.arange(changed.shape[-1]), changed.shape)
-    earlier = np.maximum.accumulate(np.where(changed, 0, places), axis=-1)
-    last = changed.shape[-1] - 1
-    turned = np.where(changed, last, places)[..., ::-1]
-    later = np.minimum.accumulate(turned, axis=-1)[..., ::-1]
+    earlier = np.maximum(spans.latest(~changed), spans.first)
+    later = np.minimum(spans.next_state(~changed), spans.end - 1)
     either = [np.take_along_axis(flags, where, axis=-1) for where in (earlier, later)]
     found: Flags = changed & (either[0] | either[1])
     return found
 
 
-def _brief_at_ends(column: SignalColumn, least: int) -> Flags:
+def _brief_at_ends(column: SignalColumn, least: int, spans: EndToEnd) -> Flags:
     """Flags of the values that a column, or rows, begins or ends with for fewer states."""
-    brief, most = np.zeros(column.shape, dtype=bool), min(least, column.shape[-1]) - 1
-    if most > 0:
-        begins = column[..., :most] != column[..., 1 : most + 1]
-        ends = column[..., -most:] != column[..., -most - 1 : -1]
-        either = np.logical_or.accumulate
-        brief[..., :most] |= either(begins[..., ::-1], axis=-1)[..., ::-1]
-        brief[..., -most:] |= either(ends, axis=-1)
+    brief, either = np.zeros(column.shape, dtype=bool), np.logical_or.accumulate
+    for own, flags in zip(spans.parted(column), spans.parted(brief), strict=True):
+        most = min(least, own.shape[-1]) - 1
+        if most > 0:
+            begins = own[..., :most] != own[..., 1 : most + 1]
+            ends = own[..., -most:] != own[..., -most - 1 : -1]
+            flags[..., :most] |= either(begins[..., ::-1], axis=-1)[..., ::-1]
+            flags[..., -most:] |= either(ends, axis=-1)
     return brief
 
 
-def without_blips(column: SignalColumn, least: int) -> SignalColumn:
+def without_blips(column: SignalColumn, least: int, spans: EndToEnd) -> SignalColumn:
     """A column, or rows of them, without values that last for fewer states than ``least``.
 
     Only between equal neighbours, from the first on: flicker becomes what it began with. Where
@@ -129,8 +128,10 @@ def without_blips(column: SignalColumn, least: int) -> SignalColumn:
     rows = column.reshape(-1, states)
     begins = np.ones(rows.shape, dtype=bool)
     begins[:, 1:] = rows[:, 1:] != rows[:, :-1]
+    begins[:, spans.begins] = True
     starts = np.append(np.flatnonzero(begins), rows.size)
-    between = (starts[:-1] % states > 0) & (starts[1:] % states > 0)
+    at_end = spans.begins_here[starts % states]
+    between = ~at_end[:-1] & ~at_end[1:]
     brief = np.flatnonzero(between & (np.diff(starts) < least))
     if not len(brief):
         return column
@@ -141,21 +142,21 @@ def without_blips(column: SignalColumn, least: int) -> SignalColumn:
     return found.reshape(column.shape)
 
 
-def only_when(codes: SignalColumn, doubtful: Flags, there: Flags, most: int) -> Flags:
+def only_when(
+    codes: SignalColumn, doubtful: Flags, there: Flags, most: int, spans: EndToEnd
+) -> Flags:
     """Flags of doubtful states between sure ones of different codes: only when is in doubt.
 
     Rows with a column per state. That is so of ``most`` states at a time, in all of which one is
     ``there``, and whose codes do not go to and fro.
     """
-    n_states = codes.shape[-1]
     sure = there & ~doubtful
-    before, behind = latest(sure), next_state(sure, n_states)
-    first, last = np.maximum(before, 0), np.minimum(behind, n_states - 1)
+    before, behind = spans.latest(sure), spans.next_state(sure)
+    first, last = np.maximum(before, spans.first), np.minimum(behind, spans.end - 1)
     rows = np.arange(len(codes))[:, None]
     away = np.cumsum(~there, axis=-1)
-    changes = np.cumsum(codes[:, 1:] != codes[:, :-1], axis=-1)
-    changes = np.concatenate([np.zeros((len(codes), 1), dtype=changes.dtype), changes], axis=1)
-    between = (before >= 0) & (behind < n_states) & (behind - before - 1 <= most)
+    changes = np.cumsum(spans.changes(codes), axis=-1)
+    between = (before >= spans.first) & (behind < spans.end) & (behind - before - 1 <= most)
     kept = away[rows, last] == away[rows, first]
     # Codes that differ at the ends are all different, or go to and fro
     one_way = changes[rows, last] - changes[rows, first] <= _MOST_CHANGES

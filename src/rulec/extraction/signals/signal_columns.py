@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.tracks import Flags
@@ -57,16 +56,23 @@ def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> Signa
     return SignalColumns(*map(columns, ("world", "about", "unknown", "only", "bounds", "texts")))
 
 
-def latest(flags: Flags) -> NDArray[intp]:
-    """The last state up to each in which a flag holds, -1 if there is none."""
-    states = np.where(flags, np.arange(flags.shape[-1]), -1)
-    return np.maximum.accumulate(states, axis=-1)
+def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
+    """The signals of drives with the same participants, end to end; all give the same ones."""
 
+    def joined(kind: str) -> dict[str, Any]:
+        columns = [getattr(part, kind) for part in parts]
+        names = dict.fromkeys(name for own in columns for name in own)
+        return {name: np.concatenate([own[name] for own in columns], axis=-1) for name in names}
 
-def next_state(flags: Flags, otherwise: int) -> NDArray[intp]:
-    """The first state from each on in which a flag holds, ``otherwise`` if there is none."""
-    states = np.where(flags, np.arange(flags.shape[-1]), otherwise)
-    return np.minimum.accumulate(states[..., ::-1], axis=-1)[..., ::-1]
+    bounds = {
+        name: (low, high)
+        for name in parts[0].bounds
+        for low, high in [
+            [np.concatenate(ends, axis=-1) for ends in zip(*[x.bounds[name] for x in parts], strict=True)]
+        ]
+    }
+    world, about, unknown = map(joined, ("world", "about", "unknown"))
+    return SignalColumns(world, about, unknown, parts[0].only, bounds, parts[0].texts)
 
 
 def rounded(values: SignalColumn) -> SignalColumn:

@@ -105,6 +105,23 @@ class Tracks:
         fastest: Floats = np.nan_to_num(self.speed).max(axis=1, initial=0.0)
         return fastest
 
+    @cached_property
+    def widths(self) -> Floats:
+        """The widths (m) of bodies across their headings, 0 where unknown.
+
+        Of those that stand for good in the first column only.
+        """
+        bodies, widths = self.bodies, np.zeros(self.present.shape)
+        outlines, way = bodies.outlines, self.heading[bodies.rows, bodies.columns]
+        x, y = outlines.corners.T
+        sin, cos = (np.repeat(values, outlines.counts) for values in (np.sin(way), np.cos(way)))
+        across = y * cos - x * sin
+        most, least = (
+            extreme.reduceat(across, outlines.starts) for extreme in (np.maximum, np.minimum)
+        )
+        widths[bodies.rows, bodies.columns] = most - least
+        return widths
+
     def part(self, rows: NDArray[intp], columns: slice) -> Tracks:
         """The tracks of some participants in a range of steps."""
         return Tracks(

@@ -27,8 +27,8 @@ def _headlamps(context: DriveContext) -> SignalColumns:
 
     At night those are not enough, whichever they are.
     """
-    (ego,) = context.ego.participants
-    if not ego.lamps or not ego.shows >= _BEAMS:
+    egos = context.ego.participants
+    if not context.spans.agreed([ego.lamps and ego.shows >= _BEAMS for ego in egos]):
         return SignalColumns()
     lit = ego_lamps(context)
     codes = [2 if "main_beam" in (x or ()) else "dipped_beam" in (x or ()) for x in lit]
@@ -41,8 +41,12 @@ def _headlamps(context: DriveContext) -> SignalColumns:
 
 
 def _fog_lamps(context: DriveContext) -> SignalColumns:
-    (ego,) = context.ego.participants
-    told = [(name, lamp) for name, lamp in _FOG_LAMPS if ego.lamps and lamp in ego.shows]
+    egos = context.ego.participants
+    told = [
+        (name, lamp)
+        for name, lamp in _FOG_LAMPS
+        if context.spans.agreed([ego.lamps and lamp in ego.shows for ego in egos])
+    ]
     lit = ego_lamps(context) if told else ()
     unknown = np.array([x is None for x in lit], dtype=bool)
     return SignalColumns(
@@ -54,9 +58,12 @@ def _fog_lamps(context: DriveContext) -> SignalColumns:
 @once
 def ego_lamps(context: DriveContext) -> list[frozenset[Lamp] | None]:
     """Ego's lamps that are lit, by state; None where the recording does not tell."""
-    (ego,) = context.ego.participants
-    first = context.first_step
-    return list(map(ego.lamps.get, range(first, first + context.states)))
+    drives = zip(context.ego.participants, context.spans.slices, strict=True)
+    return [
+        lamps
+        for ego, columns in drives
+        for lamps in map(ego.lamps.get, context.steps[columns].tolist())
+    ]
 
 
 _PASSES: Passes = {

@@ -7,9 +7,9 @@ import shapely
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, latest
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
-from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import HEADINGS
 
 _SIDES = ("own_side", "oncoming_side", "wrong_way")
@@ -43,8 +43,10 @@ def _reversing(context: DriveContext) -> SignalColumns:
     backs = forward < -least
     unknown = np.abs(forward + least) < error
     unknown |= backs & ~_for_long(context, backs)
-    if _jumps(heading) or (not backs.any() and not _tells_headings(context)):
-        unknown = np.ones_like(backs)
+    for columns in context.spans.slices:
+        backs_ever = bool(backs[columns].any())
+        if _jumps(heading[columns]) or not (backs_ever or _tells_headings(context, columns)):
+            unknown[columns] = True
     return SignalColumns({"reversing": backs}, unknown={"reversing": unknown})
 
 
@@ -53,12 +55,15 @@ def _for_long(context: DriveContext, flags: Flags) -> Flags:
 
     Where the file says that it stood meanwhile its box drifts however far.
     """
-    states = context.ego.participants[0].states
-    found, edges = np.zeros_like(flags), np.flatnonzero(np.diff(flags, prepend=False, append=False))
-    x, y = context.ego.x[0], context.ego.y[0]
-    for first, end in edges.reshape(-1, 2).tolist():
+    spans, found, x, y = context.spans, np.zeros_like(flags), context.ego.x[0], context.ego.y[0]
+    if not flags.any():
+        return found
+    firsts = np.flatnonzero(flags & (spans.begins_here | ~spans.before(flags)))
+    behind = np.minimum(spans.next_state(~flags), spans.end)
+    for first, end in zip(firsts.tolist(), behind[firsts].tolist(), strict=True):
+        states = context.ego.participants[int(spans.number[first])].states
         moved = np.hypot(x[end - 1] - x[first], y[end - 1] - y[first])
-        steps = range(context.first_step + first, context.first_step + end)
+        steps = context.steps[first:end].tolist()
         stated = np.array([abs(states[step].speed) for step in steps if step in states])
         drives = bool((stated * KMH >= context.thresholds.standing_kmh).any())
         found[first:end] = drives and moved >= _DRIFT_M
@@ -71,11 +76,12 @@ def _jumps(heading: Floats) -> bool:
     return bool((np.abs(steps) > np.pi / 2).any())
 
 
-def _tells_headings(context: DriveContext) -> bool:
-    """False if ego's headings are no more than the directions in which it moved."""
+def _tells_headings(context: DriveContext, columns: slice) -> bool:
+    """False if ego's headings in a drive are no more than the directions in which it moved."""
     if not context.recording.complete.isdisjoint({"arrivals", HEADINGS}):
         return True
-    x, y, heading = context.ego.x[0], context.ego.y[0], context.ego.heading[0]
+    own = context.ego
+    x, y, heading = own.x[0, columns], own.y[0, columns], own.heading[0, columns]
     steps = np.hypot(np.diff(x), np.diff(y))
     moved = steps > context.tolerances.place_m
     way = np.arctan2(np.diff(y), np.diff(x))[moved]
@@ -159,16 +165,23 @@ def _u_turn(context: DriveContext) -> SignalColumns:
     turns = _turning_round(context)
     if turns.any():
         leaves_road = np.abs(context.ego_extents.turned[0]) >= 2 * _ACROSS_RAD
-        turns &= bool((turns & leaves_road).any())
-        turns &= not _touches_junction(context, turns)
+        turns &= context.spans.any(turns & leaves_road)
+        turns &= ~context.spans.any(_touches_junction(context, turns))
         ring = context.surroundings.ring(context.side)
         turns &= ~own_lanelets(context).flags(lambda lanelet: lanelet.id in ring)
     return SignalColumns({"u_turn": turns})
 
 
 def _turning_round(context: DriveContext) -> Flags:
-    """Flags of states of the drive in which ego's heading is on its way round."""
-    tracks, row = context.surroundings.tracks, int(context.ego.rows[0])
+    """Flags of states in which ego's heading is on its way round."""
+    tracks = context.own.tracks
+    columns = context.steps - tracks.first
+    own = zip(context.ego.rows.tolist(), context.spans.slices, strict=True)
+    return np.concatenate([_goes_round(tracks, row)[columns[part]] for row, part in own])
+
+
+def _goes_round(tracks: Tracks, row: int) -> Flags:
+    """Flags of the columns in which a participant's heading is on its way round."""
     columns = np.flatnonzero(tracks.present[row])
     heading = np.unwrap(tracks.heading[row, columns])
     flags = np.zeros(tracks.present.shape[1], dtype=bool)
@@ -182,17 +195,16 @@ def _turning_round(context: DriveContext) -> Flags:
                 until = int((turned >= _ROUND_RAD).argmax())
                 across = turned[:until] >= _ACROSS_RAD
                 flags[columns[first : first + until][across]] = True
-    begins = context.first_step - tracks.first
-    return flags[begins : begins + context.states]
+    return flags
 
 
-def _touches_junction(context: DriveContext, states: Flags) -> bool:
+def _touches_junction(context: DriveContext, states: Flags) -> Flags:
+    """Flags of those of these states in which ego's middle is at a junction."""
     places = shapely.points(context.ego.x[0, states], context.ego.y[0, states])
-    reach = context.thresholds.zone_m
-    return any(
-        bool(shapely.dwithin(junction.area, places, reach).any())
-        for junction in context.surroundings.passages.junctions
-    )
+    touches, reach = np.zeros_like(states), context.thresholds.zone_m
+    for junction in context.surroundings.passages.junctions:
+        touches[states] |= shapely.dwithin(junction.area, places, reach)
+    return touches
 
 
 def _joins_road(context: DriveContext) -> SignalColumns:
@@ -205,12 +217,12 @@ def _joins_road(context: DriveContext) -> SignalColumns:
     inside, joins = _beyond_near_edge(context) <= 0, np.zeros(context.states, dtype=bool)
     perhaps = np.zeros(context.states, dtype=bool)
     stands = outside & (context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
-    reach = round(context.thresholds.setting_off_s / context.recording.step_s)
-    for state in np.flatnonzero(inside[1:] & ~inside[:-1]).tolist():
-        (left,) = latest(inside[: state + 1])[-1:]
-        stood = int(latest(stands[: state + 1])[-1])
-        span = slice(max(stood, int(left), state - reach, -1) + 1, state + 2)
-        if outside[span].any() or stood >= 0:
+    reach, spans = round(context.thresholds.setting_off_s / context.recording.step_s), context.spans
+    last_inside, last_stood = spans.latest(inside), spans.latest(stands)
+    for state in (np.flatnonzero(spans.enters(inside)) - 1).tolist():
+        left, stood, first = int(last_inside[state]), int(last_stood[state]), int(spans.first[state])
+        span = slice(max(stood, left, state - reach, first - 1) + 1, state + 2)
+        if outside[span].any() or stood >= first:
             (joins if stood > left and state - stood <= reach else perhaps)[span] = True
     return SignalColumns({"joins_road": joins}, unknown={"joins_road": perhaps & ~joins})
 

@@ -9,13 +9,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.measured_numbers import moves
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, next_state
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.reference_line import turn
@@ -53,11 +55,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     """
     caused = _by_map(context) | _by_others(context)
     soon = round(context.thresholds.preparing_s / context.recording.step_s)
-    states = np.arange(context.states)
-    stands = ~moves(context)
-    perhaps = next_state(stands, context.states + soon) <= states + soon
-    perhaps &= ~(stands & _shows_no_hazard(context))
-    perhaps |= states + soon // 2 >= context.states
+    spans, stands = context.spans, ~moves(context)
+    perhaps = spans.within(stands, soon) & ~(stands & _shows_no_hazard(context))
+    perhaps |= spans.columns + soon // 2 >= spans.end
     # Ego may want to get in behind one beside it, or let it in
     others = _others(context)
     away = np.abs(others.left)
@@ -70,11 +70,13 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _shows_no_hazard(context: DriveContext) -> Flags:
-    (ego,) = context.ego.participants
-    if not ego.lamps or "hazard_lights" not in ego.shows:
+    shows = [ego.lamps and "hazard_lights" in ego.shows for ego in context.ego.participants]
+    if not any(shows):
         return np.zeros(context.states, dtype=bool)
     lit = ego_lamps(context)
-    return np.array([x is not None and "hazard_lights" not in x for x in lit], dtype=bool)
+    shown = np.array([x is not None and "hazard_lights" not in x for x in lit], dtype=bool)
+    no_hazard: Flags = shown & context.spans.spread(np.array(shows, dtype=bool))
+    return no_hazard
 
 
 def _reach(context: DriveContext) -> Floats:
@@ -151,15 +153,21 @@ class _Others:
 @once
 def _others(context: DriveContext) -> _Others:
     """All others of the recording, also those that are not on ego's road."""
-    tracks, own = context.surroundings.tracks, context.ego
-    begins = context.first_step - tracks.first
-    columns = slice(begins, begins + context.states)
+    tracks, own, spans = context.surroundings.tracks, context.ego, context.spans
+    columns: NDArray[intp] | slice = context.columns
+    if spans.n_drives == 1:
+        columns = slice(int(context.columns[0]), int(context.columns[-1]) + 1)
     rows: Flags = np.any(tracks.present[:, columns], axis=1, keepdims=False)
-    rows[int(own.rows[0])] = False
+    is_among = context.own is context.surroundings
+    if is_among and spans.n_drives == 1:
+        rows[int(own.rows[0])] = False
     x, y, heading, vx, vy = (
-        values[rows, columns]
+        values[:, columns][rows]
         for values in (tracks.x, tracks.y, tracks.heading, tracks.vx, tracks.vy)
     )
+    if is_among and spans.n_drives > 1:
+        places = np.cumsum(rows)[own.rows] - 1
+        x[spans.spread(places), spans.columns] = np.nan
     cos, sin = np.cos(own.heading[0]), np.sin(own.heading[0])
     x, y = x - own.x[0], y - own.y[0]
     return _Others(
@@ -180,9 +188,7 @@ def _impedes(context: DriveContext) -> SignalColumns:
     caused, perhaps = _causes(context)
     far_slower = told & (speed < _FAR_SLOWER * limit) & moves(context) & ~caused & ~perhaps
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
-    runs = np.arange(context.states) - np.maximum.accumulate(
-        np.where(far_slower, -1, np.arange(context.states))
-    )
+    runs = context.spans.columns - context.spans.latest(~far_slower)
     impedes = followed & (runs > steps)
     slower = ~told | (speed < _SLOWER * limit)
     return SignalColumns(

@@ -12,7 +12,7 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.conflicts import first_column
-from rulec.extraction.signals.map.priority_signals import own_passages
+from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junction_passages import Passage
@@ -31,6 +31,7 @@ def turning_conflicts(context: DriveContext, names: SignalNames = None) -> Signa
     return signals_by(_PASSES, context, names)
 
 
+@drive_by_drive
 def _turns_in_way_of(context: DriveContext) -> SignalColumns:
     met, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
     least = np.radians(context.thresholds.turned_deg)

@@ -32,7 +32,7 @@ Passing: TypeAlias = tuple[Passage, float | None, float | None]
 
 def first_column(context: DriveContext) -> int:
     """The column of the drive's first state."""
-    return context.first_step - context.surroundings.passages.tracks.first
+    return int(context.columns[0])
 
 
 def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int, bool] | None:

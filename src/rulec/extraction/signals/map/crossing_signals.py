@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import next_crossing
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, latest
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import RoadExtents, any_lane
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -149,14 +149,15 @@ def _too_late(context: DriveContext, uses: NDArray[intp]) -> tuple[Flags, Flags]
     speed, front = np.maximum(context.ego_extents.along[0], 0.0), context.ego_extents.s_max[0]
     start, _ = next_crossing(context)
     longest = round(limits.away_s / context.recording.step_s)
-    off = np.arange(context.states) - latest(used) > longest
-    seen_before = latest(off & context.relevant[rows]) >= 0
+    spans = context.spans
+    off = spans.columns - spans.latest(used) > longest
+    seen_before = spans.latest(off & context.relevant[rows]) >= spans.first
     on_it = (uses == len(_USES) - 1) & ~seen_before
     earlier = np.where(on_it, limits.about_to_s, 0.0) + limits.smoothing_s / 2
     stop = speed**2 / (2 * limits.braking_mps2) - speed * earlier
     waits = front + stop <= np.maximum(start, _walking(context).s_min)
-    begins = latest(off | np.append(False, start[1:] != start[:-1]))
-    late = used & (latest(used & waits) < np.maximum(begins, 0))
+    begins = np.maximum(spans.latest(off | spans.changes(start)), spans.first)
+    late = used & (spans.latest(used & waits) < begins)
     return late & seen_before, late & ~seen_before
 
 
@@ -179,10 +180,11 @@ def _past_ego(context: DriveContext) -> Flags:
     on_right = others.from_bound(bound)[1] < np.minimum(low, 0.0)
     least = context.thresholds.standing_kmh / KMH
     beyond = np.where(on_left, 1.0, np.where(on_right, -1.0, 0.0))
-    away = latest(beyond * others.across > least)
-    back = latest((beyond == 0) | (beyond * others.across < -least))
+    spans = context.spans
+    away = spans.latest(beyond * others.across > least)
+    back = spans.latest((beyond == 0) | (beyond * others.across < -least))
     longest = round(context.thresholds.away_s / context.recording.step_s)
-    past: Flags = (away > back) & (np.arange(context.states) - away <= longest)
+    past: Flags = (away > back) & (spans.columns - away <= longest)
     return past
 
 

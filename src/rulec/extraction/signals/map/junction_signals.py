@@ -6,7 +6,12 @@ import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
-from rulec.extraction.signals.map.priority_signals import approach, own_passages
+from rulec.extraction.signals.map.priority_signals import (
+    approach,
+    drive_by_drive,
+    own_passages,
+    passages_of,
+)
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
@@ -50,7 +55,7 @@ def _at_junction(context: DriveContext, start: float, end: float) -> Flags:
 def _enters_junction(context: DriveContext) -> SignalColumns:
     enters = np.zeros(context.states, dtype=bool)
     for start, _ in context.road.junctions:
-        enters |= _passes(context.ego_extents.s_max[0], start)
+        enters |= _passes(context, start)
     return SignalColumns({"enters_junction": enters})
 
 
@@ -75,6 +80,7 @@ def _stop_signs(context: DriveContext) -> SignalColumns:
     return SignalColumns({"crosses_stop_line": crosses}, unknown={"crosses_stop_line": may_cross})
 
 
+@drive_by_drive
 def _all_way_stop(context: DriveContext) -> SignalColumns:
     """What the signs at the roads to the junction that ego nears or is in say."""
     if not _tells_stop_signs(context):
@@ -121,17 +127,19 @@ def _way_not_known(context: DriveContext) -> Flags:
     unknown = np.zeros(context.states, dtype=bool)
     for start, end in context.road.junctions:
         at_junction = _at_junction(context, start, end)
-        ends = at_junction.any() and not (rear >= end).any()
-        if ends and _ways_part(context, start) and not _on_known_way(context, start, end):
-            unknown |= at_junction
+        ends = context.spans.any(at_junction) & ~context.spans.any(rear >= end)
+        for number, columns in context.spans.those(ends):
+            parts = _ways_part(context, start, columns)
+            if parts and not _on_known_way(context, (start, end), number):
+                unknown[columns] |= at_junction[columns]
     return unknown
 
 
-def _ways_part(context: DriveContext, start: float) -> bool:
+def _ways_part(context: DriveContext, start: float, columns: slice) -> bool:
     """True if ways lead to different sides from the lane on which ego gets to a junction."""
     piece = max(int(context.road.piece(np.array(start - 1e-6))), 0)
-    near = int(np.abs(context.ego_extents.s_max[0] - start).argmin())
-    entry = context.road.lanelet(piece, int(context.ego_lane[near]))
+    near = int(np.abs(context.ego_extents.s_max[0, columns] - start).argmin())
+    entry = context.road.lanelet(piece, int(context.ego_lane[columns][near]))
     ways = [
         way
         for junction in context.surroundings.passages.junctions
@@ -142,9 +150,10 @@ def _ways_part(context: DriveContext, start: float) -> bool:
     return bool(ways) and max(turned) - min(turned) > np.radians(context.thresholds.turned_deg)
 
 
-def _on_known_way(context: DriveContext, start: float, end: float) -> bool:
-    """True if ego's passage of a junction on its road shows which way it takes."""
-    road, passages = context.road, context.surroundings.passages
+def _on_known_way(context: DriveContext, stretch: tuple[float, float], number: int) -> bool:
+    """True if ego's passage of a junction on its road, in a drive, shows which way it takes."""
+    road, (start, end) = context.road, stretch
+    passages = context.own.passages
     inside = {
         lanelet.id
         for row, low in zip(road.rows, road.borders.tolist(), strict=False)
@@ -153,7 +162,7 @@ def _on_known_way(context: DriveContext, start: float, end: float) -> bool:
         if lanelet is not None
     }
     return any(
-        passage.sure and inside & passages.way(passage).names for passage in own_passages(context)
+        passage.sure and inside & passages.way(passage).names for passage in passages_of(context, number)
     )
 
 
@@ -163,11 +172,14 @@ def _may_turn_later(context: DriveContext) -> Flags:
     It does not if no junction is so near that it would get there, as fast as it is at the end.
     """
     thresholds, step_s = context.thresholds, context.recording.step_s
-    front, speed = float(context.ego_extents.s_max[0, -1]), float(context.ego.speed[0, -1])
-    ahead = [start - thresholds.zone_m - front for start, _ in context.road.junctions]
-    nearest = min((way for way in ahead if way > 0), default=np.inf)
-    soonest = nearest / max(speed, _SLOWEST_MPS)
-    left = np.arange(context.states)[::-1] * step_s
+    last = context.spans.end - 1
+    front, speed = context.ego_extents.s_max[0, last], context.ego.speed[0, last]
+    nearest = np.full(context.states, np.inf)
+    for start, _ in context.road.junctions:
+        way = start - thresholds.zone_m - front
+        nearest = np.where(way > 0, np.minimum(nearest, way), nearest)
+    soonest = nearest / np.maximum(speed, _SLOWEST_MPS)
+    left = (last - context.spans.columns) * step_s
     flags: Flags = left + soonest <= thresholds.preparing_s
     return flags
 
@@ -175,14 +187,11 @@ def _may_turn_later(context: DriveContext) -> Flags:
 def _within_preparation(flags: Flags, context: DriveContext) -> Flags:
     """Flags that hold now or within ``preparing_s``: intentions are read off what ego did."""
     states = round(context.thresholds.preparing_s / context.recording.step_s)
-    ahead = np.append(np.cumsum(flags[::-1])[::-1], 0)
-    until = np.minimum(np.arange(context.states) + states + 1, context.states)
-    return ahead[:-1] > ahead[until]
+    return context.spans.within(flags, states)
 
 
-def _passes(front: Floats, line: float) -> Flags:
-    beyond = front > line
-    return np.append(False, beyond[1:] & ~beyond[:-1])
+def _passes(context: DriveContext, line: float) -> Flags:
+    return context.spans.enters(context.ego_extents.s_max[0] > line)
 
 
 def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
@@ -192,14 +201,15 @@ def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
     """
     crosses, may_cross = np.zeros((2, context.states), dtype=bool)
     front, moves = context.ego_extents.s_max[0], context.ego.speed[0] * KMH
+    ends, least = context.spans.columns == context.spans.end - 1, context.thresholds.standing_kmh
     for piece in range(len(context.road.rows)):
         if any(row and STOP_SIGNS & row.signs for row in context.road.rows[piece]):
             for lane in distinct(context.ego_lane).tolist():
                 if STOP_SIGNS & context.road.lanelet(piece, lane).signs:
                     first, last = stop_line(context, piece, lane)
-                    crosses |= _passes(front, last) & (context.ego_lane == lane)
-                    ends_on_it = first < front[-1] <= last and context.ego_lane[-1] == lane
-                    may_cross[-1] |= ends_on_it and moves[-1] >= context.thresholds.standing_kmh
+                    crosses |= _passes(context, last) & (context.ego_lane == lane)
+                    on_it = (first < front) & (front <= last) & (context.ego_lane == lane)
+                    may_cross |= ends & on_it & (moves >= least)
     return crosses, may_cross
 
 
@@ -238,7 +248,7 @@ def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags, 
             if not lights:
                 continue
             first, last = stop_line(context, piece, lane)
-            passes = _passes(front, last)
+            passes = _passes(context, last)
             ahead = (front <= last) & (front > first - context.thresholds.light_reach_m)
             since = _first_crossed(context, front, first)
             for state in np.flatnonzero((ahead | passes) & (context.ego_lane == lane)).tolist():
@@ -261,7 +271,7 @@ def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light | O
 
 
 def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], state: int) -> str:
-    step = context.first_step + state
+    step = int(context.steps[state])
     shown = {_COLOURS.get(light.colour_at(step), "") for light in lights}
     return shown.pop() if len(shown) == 1 else ""
 
@@ -269,9 +279,10 @@ def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], st
 def _first_crossed(context: DriveContext, front: Floats, line: float) -> list[int]:
     """For each state the last one in which ego passed a place, or stood beyond it."""
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
-    moved = _passes(front, line) | (stands & (front > line))
-    latest = np.maximum.accumulate(np.where(moved, np.arange(context.states), -1))
-    return [state if since < 0 else since for state, since in enumerate(latest.tolist())]
+    moved = _passes(context, line) | (stands & (front > line))
+    latest = context.spans.latest(moved)
+    since: list[int] = np.where(latest < context.spans.first, context.spans.columns, latest).tolist()
+    return since
 
 
 def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, float]:

@@ -104,7 +104,7 @@ def _holds_to_line(context: DriveContext, signs: Set[str]) -> Flags:
     By where ego's front was one state before, so that it still holds when ego crosses the line.
     """
     front = context.ego_extents.s_max[0]
-    before, holds = np.append(front[:1], front[:-1]), np.zeros(context.states, dtype=bool)
+    before, holds = context.spans.before(front), np.zeros(context.states, dtype=bool)
     for piece, row in enumerate(context.road.rows):
         if any(lanelet is not None and signs & lanelet.signs for lanelet in row):
             begins = float(context.road.borders[piece])
@@ -165,7 +165,9 @@ def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Fl
     """
     moves = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
     longest = round(context.thresholds.passed_s / context.recording.step_s)
-    (passing,) = only_when(values[None], unknown[None], moves[None], longest)
+    (passing,) = only_when(
+        values[None], unknown[None], moves[None], longest, context.spans
+    )
     doubt: Flags = unknown & ~passing
     return doubt
 

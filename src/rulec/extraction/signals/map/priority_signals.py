@@ -6,8 +6,9 @@ both are on their way to where these cross or join (``conflicts``).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import wraps
 from math import ceil
 
 import numpy as np
@@ -18,7 +19,12 @@ from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.conflicts import SLOWEST_MPS, first_column, in_conflict
 from rulec.extraction.signals.map.oncoming_priority import gives_way_to, turns_far
 from rulec.extraction.signals.map.roundabout_signals import without_junction
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
+from rulec.extraction.signals.signal_columns import (
+    SignalColumn,
+    SignalColumns,
+    SignalNames,
+    end_to_end,
+)
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import Junction, approaches, before_joining
@@ -52,11 +58,27 @@ class Encounter:
     comes_first: bool
 
 
+def drive_by_drive(
+    signals_of: Callable[[DriveContext], SignalColumns],
+) -> Callable[[DriveContext], SignalColumns]:
+    """Let a function of one drive, or of several that pass no junction, give signals of any."""
+
+    @wraps(signals_of)
+    def found(context: DriveContext) -> SignalColumns:
+        if context.spans.n_drives == 1 or not own_passages(context):
+            return signals_of(context)
+        drives = range(context.spans.n_drives)
+        return end_to_end([signals_of(context.one(number)) for number in drives])
+
+    return found
+
+
 def priority_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of right of way at junctions, those of the names."""
     return signals_by(_PASSES, context, names)
 
 
+@drive_by_drive
 def _conflicts(context: DriveContext) -> SignalColumns:
     passages = own_passages(context)
     conflicts = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
@@ -90,16 +112,18 @@ def _conflicts(context: DriveContext) -> SignalColumns:
 
 @once
 def own_passages(context: DriveContext) -> tuple[Passage, ...]:
-    """Ego's passages of junctions during the drive."""
-    (ego,) = context.ego.participants
-    row = next(
-        k
-        for k, body in enumerate(context.surroundings.passages.tracks.participants)
-        if body.id == ego.id
-    )
-    begins, ends = first_column(context), first_column(context) + context.states
-    passages = context.surroundings.passages.of_row.get(row, ())
-    return tuple(x for x in passages if x.last >= begins and x.first < ends)
+    """Ego's passages of junctions during the drive, of the first one that has any."""
+    for number in range(context.spans.n_drives):
+        if found := passages_of(context, number):
+            return found
+    return ()
+
+
+def passages_of(context: DriveContext, number: int) -> tuple[Passage, ...]:
+    """Ego's passages of junctions during a drive, whose columns are those of its ``own`` tracks."""
+    columns = context.steps[context.spans.slices[number]] - context.own.tracks.first
+    passages = context.own.passages.of_row.get(int(context.ego.rows[number]), ())
+    return tuple(x for x in passages if x.last >= columns[0] and x.first <= columns[-1])
 
 
 def approach(context: DriveContext, passage: Passage) -> slice:
@@ -115,6 +139,7 @@ def approach(context: DriveContext, passage: Passage) -> slice:
     return slice(max(first, 0, *entered), passage.last - shift + 1)
 
 
+@drive_by_drive
 def _roads(context: DriveContext) -> SignalColumns:
     """What the map says of the junction that ego nears or is in."""
     columns = {name: np.zeros(context.states, dtype=bool) for name in _ROADS}

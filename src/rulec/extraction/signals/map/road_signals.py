@@ -51,7 +51,8 @@ def _built_up(context: DriveContext) -> SignalColumns:
 def _road_class(context: DriveContext) -> SignalColumns:
     town = _town(context)
     classes = own_lanelets(context).values(lambda at: _class(at, town(at)))
-    return _where_told("road_class", classes) if any(classes) else SignalColumns()
+    told = context.spans.agreed([any(classes[columns]) for columns in context.spans.slices])
+    return _where_told("road_class", classes) if told else SignalColumns()
 
 
 def _where_told(name: str, values: list[str]) -> SignalColumns:
@@ -64,7 +65,9 @@ def _ways(context: DriveContext) -> SignalColumns:
     world: dict[str, SignalColumn] = {}
     unknown: dict[str, Flags] = {}
     for name, told in zip(("one_way", "divided"), zip(*both, strict=True), strict=True):
-        if any(value is not None for value in told):
+        slices = context.spans.slices
+        known = [any(value is not None for value in told[columns]) for columns in slices]
+        if context.spans.agreed(known):
             world[name], unknown[name] = _told(told)
     return SignalColumns(world, unknown=unknown)
 

@@ -29,7 +29,7 @@ def _rings(context: DriveContext) -> SignalColumns:
     told = "YIELD" in context.recording.complete or bool(_SIGNS & map_contents(context).signs)
     for begins, end, _ in roundabouts(context):
         inside |= (middle > begins) & (middle < end)
-        enters |= np.append(False, (front[1:] > begins) & (front[:-1] <= begins))
+        enters |= context.spans.enters(front > begins)
         nears = (front > begins - context.thresholds.approach_m) & (middle < end)
         before = [
             row

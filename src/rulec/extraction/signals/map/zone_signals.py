@@ -51,7 +51,7 @@ def _level_crossings(context: DriveContext) -> SignalColumns:
     zone, enters = np.zeros((2, context.states), dtype=bool)
     for start, end in _rail_stretches(context):
         zone |= (front >= start - context.thresholds.zone_m) & (rear < end)
-        enters |= np.append(False, (front[1:] > start) & (front[:-1] <= start))
+        enters |= context.spans.enters(front > start)
     # Those of a net have gates that close while a train comes
     return SignalColumns(
         {"level_crossing_zone": zone, "enters_level_crossing": enters, "guarded": zone}
@@ -247,26 +247,26 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
     still = _standing_rows(context, ahead)
     holds_up = context.tracks.speed * KMH < context.thresholds.walking_pace_kmh
     for number, (start, end) in enumerate(places):
-        nears, passed = entered == number, (rear >= end).any()
+        nears, passed = entered == number, context.spans.any(rear >= end)
         place = _shared(context, start, end)
         stuck = (front - beyond > place) & (rear + beyond < end) & stands
         perhaps = (front + error > place) & (rear - error < end) & stands
-        if not nears.any() or (passed and not perhaps.any()):
+        if not (nears & (~passed | context.spans.any(perhaps))).any():
             continue
         short, may_be_short, stops, may_stop = (
             _free_beyond(context, those, (start, end)) < front - rear + _ROOM_M
             for those in (ahead & ~still, ahead, ahead & ~still & holds_up, ahead & holds_up)
         )
-        blocked = nears & short & _until(stuck & stops)
+        blocked = nears & short & _until(context, stuck & stops)
         clear &= ~blocked
-        may_be = _until(perhaps & may_stop) | (not passed)
+        may_be = _until(context, perhaps & may_stop) | ~passed
         unknown |= nears & may_be_short & ~blocked & may_be
     return SignalColumns({"exit_clear": clear}, unknown={"exit_clear": unknown & clear})
 
 
-def _until(flags: Flags) -> Flags:
+def _until(context: DriveContext, flags: Flags) -> Flags:
     """Flags of states after which, or in which, others hold."""
-    held: Flags = np.maximum.accumulate(flags[::-1])[::-1]
+    held: Flags = context.spans.next_state(flags) < context.spans.end
     return held
 
 

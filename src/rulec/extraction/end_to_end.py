@@ -1,0 +1,196 @@
+"""Drives laid end to end in arrays with a column per state: what looks back or ahead stays in one.
+
+Everything that is said of a single state is said of all of them by the same calls. Only what looks
+at other states has to know where a drive begins and ends; for one drive that is the whole array.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy import bool_, intp
+from numpy.typing import NDArray
+
+_Flags = NDArray[bool_]
+_Columns = NDArray[intp]
+
+
+class UnlikeDrivesError(Exception):
+    """Drives that say different names are not laid end to end."""
+
+
+@dataclass(frozen=True, eq=False)
+class EndToEnd:
+    """Where drives are in ``n_states`` columns, the last axis of arrays; each begins at a bound.
+
+    ``bounds`` are where they begin, and where the last one ends.
+    """
+
+    bounds: Sequence[int]
+
+    @staticmethod
+    def of_one(n_states: int) -> EndToEnd:
+        """One drive."""
+        return EndToEnd((0, n_states))
+
+    @property
+    def n_drives(self) -> int:
+        """How many drives there are."""
+        return len(self.bounds) - 1
+
+    @property
+    def n_states(self) -> int:
+        """How many states they have together."""
+        return self.bounds[-1]
+
+    @cached_property
+    def slices(self) -> tuple[slice, ...]:
+        """The columns of each."""
+        return tuple(map(slice, self.bounds[:-1], self.bounds[1:]))
+
+    @cached_property
+    def columns(self) -> _Columns:
+        """All columns."""
+        return np.arange(self.n_states)
+
+    @cached_property
+    def begins(self) -> _Columns:
+        """The first column of each drive."""
+        return np.array(self.bounds[:-1], dtype=intp)
+
+    @cached_property
+    def number(self) -> _Columns:
+        """The number of the drive, by column."""
+        return np.repeat(np.arange(self.n_drives), np.diff(self.bounds))
+
+    @cached_property
+    def first(self) -> _Columns:
+        """The first column of the drive, by column."""
+        return self.begins[self.number]
+
+    @cached_property
+    def end(self) -> _Columns:
+        """The column behind the last one of the drive, by column."""
+        return np.array(self.bounds[1:], dtype=intp)[self.number]
+
+    @cached_property
+    def begins_here(self) -> _Flags:
+        """Flags of the columns in which drives begin."""
+        flags = np.zeros(self.n_states, dtype=bool)
+        flags[self.begins] = True
+        return flags
+
+    def latest(self, flags: _Flags) -> _Columns:
+        """The last state up to each in which a flag holds; the one before the drive for none."""
+        if self.n_drives == 1:
+            return np.maximum.accumulate(np.where(flags, self.columns, -1), axis=-1)
+        return np.maximum.accumulate(
+            np.where(flags, self.columns, np.where(self.begins_here, self.columns - 1, -1)), axis=-1
+        )
+
+    def next_state(self, flags: _Flags, beyond: int = 0) -> _Columns:
+        """The first state from each on in which a flag holds.
+
+        For none it is the one behind the drive, and so many ``beyond``.
+        """
+        never = self.n_states + beyond
+        if self.n_drives == 1:
+            states = np.where(flags, self.columns, never)
+            return np.minimum.accumulate(states[..., ::-1], axis=-1)[..., ::-1]
+        states = np.where(flags, self.columns, never)
+        found = np.minimum.accumulate(states[..., ::-1], axis=-1)[..., ::-1]
+        return np.where(found < self.end, found, self.end + beyond)
+
+    def within(self, flags: _Flags, steps: int, *, around: bool = False) -> _Flags:
+        """Flags that hold at a state or at most ``steps`` states later, or also earlier."""
+        if not flags.any():
+            return flags
+        soon: _Flags = self.next_state(flags, steps) <= self.columns + steps
+        return soon | self.within_last(flags, steps) if around else soon
+
+    def within_last(self, flags: _Flags, steps: int) -> _Flags:
+        """Flags that hold at a state or at most ``steps`` states before it."""
+        held: _Flags = self.latest(flags) >= np.maximum(self.columns - steps, self.first)
+        return held
+
+    def before(self, values: NDArray[Any]) -> NDArray[Any]:
+        """The values one state before, in a drive's first state its own."""
+        found = np.empty_like(values)
+        found[..., 1:] = values[..., :-1]
+        found[..., self.begins] = values[..., self.begins]
+        return found
+
+    def after(self, values: NDArray[Any]) -> NDArray[Any]:
+        """The values one state later, in a drive's last state its own."""
+        found = np.empty_like(values)
+        found[..., :-1] = values[..., 1:]
+        last = self.begins[1:] - 1
+        found[..., last] = values[..., last]
+        found[..., -1] = values[..., -1]
+        return found
+
+    def enters(self, flags: _Flags) -> _Flags:
+        """Flags of states in which a flag holds that did not one state before."""
+        return flags & ~self.before(flags)
+
+    def changes(self, values: NDArray[Any]) -> _Flags:
+        """Flags of states in which a value is another one than one state before."""
+        changed: _Flags = values != self.before(values)
+        return changed
+
+    def any(self, flags: _Flags) -> _Flags:
+        """Whether a flag holds in any state of a drive, in all its columns."""
+        if self.n_drives == 1:
+            found: _Flags = np.broadcast_to(flags.any(axis=-1, keepdims=True), flags.shape)
+            return found
+        return np.logical_or.reduceat(flags, self.begins, axis=-1)[..., self.number]
+
+    def all(self, flags: _Flags) -> _Flags:
+        """Whether a flag holds in all states of a drive, in all its columns."""
+        if self.n_drives == 1:
+            found: _Flags = np.broadcast_to(flags.all(axis=-1, keepdims=True), flags.shape)
+            return found
+        return np.logical_and.reduceat(flags, self.begins, axis=-1)[..., self.number]
+
+    def count_of_last(self, flags: _Flags, steps: int) -> _Columns:
+        """In how many of so many states up to each, it among them, a flag holds."""
+        sums = np.zeros((*flags.shape[:-1], self.n_states + 1), dtype=intp)
+        np.cumsum(flags, axis=-1, out=sums[..., 1:])
+        since = np.maximum(self.columns + 1 - steps, self.first)
+        found: _Columns = sums[..., 1:] - sums[..., since]
+        return found
+
+    def parted(self, values: NDArray[Any]) -> list[NDArray[Any]]:
+        """Views of an array in which the last axis is that of one drive's states.
+
+        If all drives have as many there is one, with an axis more, for drives.
+        """
+        lengths = set(np.diff(self.bounds).tolist())
+        if len(lengths) == 1:
+            return [values.reshape(*values.shape[:-1], self.n_drives, lengths.pop())]
+        return [values[..., columns] for columns in self.slices]
+
+    def each(self, function: Callable[[slice], NDArray[Any]], axis: int = -1) -> NDArray[Any]:
+        """What a function finds for the columns of each drive, laid end to end."""
+        found = [function(columns) for columns in self.slices]
+        return found[0] if len(found) == 1 else np.concatenate(found, axis=axis)
+
+    def agreed(self, flags: Sequence[Any]) -> bool:
+        """A flag that all drives share. Raises UnlikeDrivesError if they do not."""
+        found = {bool(flag) for flag in flags}
+        if len(found) > 1:
+            raise UnlikeDrivesError
+        return found.pop()
+
+    def spread(self, values: Sequence[Any] | NDArray[Any]) -> NDArray[Any]:
+        """A value for each drive, in all its columns."""
+        return np.asarray(values)[..., self.number]
+
+    def those(self, drives: _Flags) -> Iterator[tuple[int, slice]]:
+        """The numbers and the columns of some drives, flagged by column."""
+        for number in np.flatnonzero(drives[self.begins]).tolist():
+            yield number, self.slices[number]
