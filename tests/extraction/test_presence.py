@@ -27,7 +27,8 @@ def found(flags, away_s=1.0, nowhere=(), others=("8",)):
     rows[1:] = True
     extents = replace(context.extents, s_min=s_min)
     context = replace(context, relevant=rows, extents=extents)
-    return [(one.name, one.first, one.last) for one in presences(context)]
+    (own,) = presences(context)
+    return [(one.name, one.first, one.last) for one in own]
 
 
 def flags(text):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.extraction.to_trace import TraceWriter, to_trace
+from rulec.extraction.to_trace import TraceWriter, to_traces
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.drive_contexts import context_of, steady
@@ -21,7 +21,8 @@ def vocabulary(*declarations, types=None):
 
 def drive(*others, writer=None, ego=None):
     found = recording(lanes(2), [ego or steady(7, 0, 0, first=2), *others])
-    return to_trace(context_of(found), "7", "7#2", writer or TraceWriter())
+    (one,) = to_traces(context_of(found), ["7"], ["7#2"], writer or TraceWriter())
+    return one
 
 
 def test_a_drive_begins_when_ego_is_there():
@@ -121,5 +122,6 @@ def test_what_is_not_known_in_a_state_is_unknown_there():
     highway = straight(1, 0, 10, successors=(2,), types=frozenset({"highway"}))
     body = vehicle(7, {0: (5, 0), 1: (15, 0)})
     found = recording([highway, straight(2, 10, 90, predecessors=(1,))], [body])
-    states = to_trace(context_of(found, ("1", "2")), "7", "7", TraceWriter()).trace.states
+    (one,) = to_traces(context_of(found, ("1", "2")), ["7"], ["7"], TraceWriter())
+    states = one.trace.states
     assert [state["road_class"] for state in states] == ["motorway", UNKNOWN]

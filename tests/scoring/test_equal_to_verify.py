@@ -11,6 +11,7 @@ from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.monitoring.verdict import Verdict
 from rulec.recordings.recording_files import read_recording
+from rulec.recordings.recording_format import RecordingSource
 from rulec.scoring.score import score
 from rulec.scoring.traffic_world import TrafficWorld
 from support.builders.recordings import RECORDINGS
@@ -91,7 +92,7 @@ def test_recorded_worlds():
     rng = np.random.default_rng(3)
     seen = 0
     for path in sorted(RECORDINGS.glob("*.xml")):
-        recording = read_recording(path)
+        recording = read_recording(RecordingSource(path))
         moving = [
             body
             for body in recording.participants

@@ -10,8 +10,9 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.extraction.drive_context import EgosOnRoad, drives_context
 from rulec.extraction.drives import Drives, LaidOutMap, NoDrive
-from rulec.extraction.to_trace import Drive, TraceWriter
+from rulec.extraction.to_trace import Drive, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.driven_route import RouteStretch
 from rulec.extraction.tracks.junction_passages import junction_passages
@@ -21,6 +22,10 @@ from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import ObjectTypes, tracks_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Participant, Recording, Side
+from rulec.trace.end_to_end import UnlikeDrivesError
+
+MOST_CELLS = 1 << 16
+"""So many states of others, all egos' together, are looked at by the same calls."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,6 +71,16 @@ class _DrivesOfOne(Drives):
         return self._among.places(road).and_one(own, row, self._tracks)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Stretch:
+    """A stretch of a candidate's, which is that of a row, and of its drives the one of a number."""
+
+    row: int
+    number: int
+    name: str
+    columns: slice
+
+
 class _Batch:
     """Candidates that are looked at together."""
 
@@ -74,6 +89,7 @@ class _Batch:
     ) -> None:
         recording, surroundings = among.recording, among.surroundings
         tracks = tracks_of(recording, among.thresholds, candidates, among.span)
+        self._among = among
         self.writer = writer
         self.matching = MapMatching(recording, tracks, among.map.graph)
         self.surroundings = Surroundings(recording, tracks, of_map=surroundings.of_map)
@@ -89,14 +105,13 @@ class _Batch:
         self.stretches = [self._drives.stretches(row) for row in range(len(candidates))]
         self._rows: dict[DrivenRoad, list[int]] = defaultdict(list)
         for row, stretches in enumerate(self.stretches):
-            for road in {self._road(among, stretch) for stretch in stretches}:
+            for road in {self._road(stretch) for stretch in stretches}:
                 if road is not None:
                     self._rows[road].append(row)
         self._places: dict[DrivenRoad, RoadPlaces] = {}
 
-    @staticmethod
-    def _road(among: CandidateDrives, stretch: RouteStretch) -> DrivenRoad | None:
-        found = among.map.road(stretch.route)
+    def _road(self, stretch: RouteStretch) -> DrivenRoad | None:
+        found = self._among.map.road(stretch.route)
         return None if isinstance(found, str) else found[0]
 
     def places(self, road: DrivenRoad, row: int) -> tuple[RoadPlaces, int]:
@@ -105,6 +120,91 @@ class _Batch:
         if road not in self._places:
             self._places[road] = self._drives.places_of(road, np.array(rows, dtype=intp))
         return self._places[road], int(np.searchsorted(rows, row))
+
+    def drives(self) -> list[tuple[Drive | NoDrive, ...]]:
+        """The drives of each candidate."""
+        found: list[tuple[Drive | NoDrive, ...] | None] = [None] * len(self.stretches)
+        together: dict[DrivenRoad, list[_Stretch]] = defaultdict(list)
+        for row, stretches in enumerate(self.stretches):
+            own = [self._together(row, number, one) for number, one in enumerate(stretches)]
+            ready = [one for one in own if one is not None]
+            if not own or len(ready) < len(own):
+                found[row] = self._by_itself(row)
+                continue
+            for road, one in ready:
+                together[road].append(one)
+        drives: dict[tuple[int, int], Drive] = {}
+        for road, waiting in together.items():
+            for part in _parts(waiting, len(self._among.surroundings.tracks.participants)):
+                drives |= self._end_to_end(road, part)
+        for row, stretches in enumerate(self.stretches):
+            if found[row] is None:
+                own_drives = [drives.get((row, number)) for number in range(len(stretches))]
+                whole = tuple([drive for drive in own_drives if drive is not None])
+                found[row] = whole if len(whole) == len(stretches) else self._by_itself(row)
+        return [own for own in found if own is not None]
+
+    def _together(
+        self, row: int, number: int, stretch: RouteStretch
+    ) -> tuple[DrivenRoad, _Stretch] | None:
+        """The road of a stretch that can be looked at with others, and what it is called."""
+        road = self._road(stretch)
+        if road is None or road.meets_itself:
+            return None
+        places, own = self.places(road, row)
+        columns = slice(stretch.first, stretch.last + 1)
+        if np.isnan(places.extents.s[own, columns]).any():
+            return None
+        ego = self.surroundings.tracks.participants[row].id
+        name = ego if number == 0 else f"{ego}#{number + 1}"
+        return road, _Stretch(row, number, name, columns)
+
+    def _by_itself(self, row: int) -> tuple[Drive | NoDrive, ...]:
+        """The drives of a candidate that is looked at by itself."""
+        one = _DrivesOfOne(self._among, self, row)
+        return tuple(
+            one.along(len(self._among.surroundings.tracks.participants), self.stretches[row])
+        )
+
+    def _end_to_end(
+        self, road: DrivenRoad, stretches: Sequence[_Stretch]
+    ) -> dict[tuple[int, int], Drive]:
+        """Drives along one road, by candidate and number; none if not all say the same names."""
+        among = self._among
+        egos = EgosOnRoad(
+            self.places(road, stretches[0].row)[0],
+            [self.places(road, one.row)[1] for one in stretches],
+            [one.columns for one in stretches],
+            own=self.surroundings,
+            alone=lambda number: self._surroundings_of(stretches[number].row),
+        )
+        context = drives_context(among.surroundings, among.places(road), among.side, egos)
+        ids = [self.surroundings.tracks.participants[one.row].id for one in stretches]
+        try:
+            drives = to_traces(context, ids, [one.name for one in stretches], self.writer)
+        except UnlikeDrivesError:
+            return {}
+        return {(one.row, one.number): x for one, x in zip(stretches, drives, strict=True)}
+
+    def _surroundings_of(self, row: int) -> tuple[Surroundings, int]:
+        """A candidate's surroundings, in which it is the last participant, and its row."""
+        among = self._among
+        joined = among.surroundings.and_one(self.surroundings, row, among.types)
+        return joined, len(among.surroundings.tracks.participants)
+
+
+def _parts(stretches: Sequence[_Stretch], n_others: int) -> Iterator[Sequence[_Stretch]]:
+    """Stretches, about ``MOST_CELLS`` at a time."""
+    waiting: list[_Stretch] = []
+    states = 0
+    for one in stretches:
+        waiting.append(one)
+        states += one.columns.stop - one.columns.start
+        if states * n_others >= MOST_CELLS:
+            yield waiting
+            waiting, states = [], 0
+    if waiting:
+        yield waiting
 
 
 class CandidateDrives:
@@ -143,7 +243,4 @@ class CandidateDrives:
         self, candidates: Sequence[Participant], writer: TraceWriter
     ) -> Iterator[tuple[Drive | NoDrive, ...]]:
         """The drives of each candidate."""
-        batch = _Batch(self, candidates, writer)
-        last = len(self._everybody)
-        for row, stretches in enumerate(batch.stretches):
-            yield tuple(_DrivesOfOne(self, batch, row).along(last, stretches))
+        yield from _Batch(self, candidates, writer).drives()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, wraps
 from typing import TypeVar, cast
@@ -11,16 +11,16 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.end_to_end import EndToEnd
 from rulec.extraction.source_tolerances import Tolerances
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, part_of
+from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, at_columns, part_of
 from rulec.extraction.tracks.road_places import KMH as KMH
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Recording, Side
+from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.plain_arrays import distinct, medians
 
 _ENOUGH_TRACKS = 10
@@ -35,12 +35,14 @@ class DriveContext:
     ``spans`` are the columns of each drive, ``steps`` the recording's time steps by column. The
     rows are the participants that are ever relevant or in sight, NaN in drives in which they never
     are; ``ego`` and ``ego_extents`` have one, and ``ego`` a participant for each drive, whose rows
-    are those of its ``own`` surroundings, in which its whole track is. ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's
-    lanes, so near that ego could reach it within ``catching_up_s``? ``there``: the lanes that exist
-    where it is, a third axis, ``touched``: those of them that it reaches into; ``elsewhere``: does
-    it drive on lanelets of another road? ``surroundings`` are the recording's; ``alone`` gives those
-    of one of several drives by its number, if each has others, and ego's row in them. ``computed``
-    holds what functions have found ``once``.
+    are those of its ``own`` surroundings, in which its whole track is.
+
+    ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's lanes, so near
+    that ego could reach it within ``catching_up_s``? ``there``: the lanes that exist where it is, a
+    third axis, ``touched``: those of them that it reaches into; ``elsewhere``: does it drive on
+    lanelets of another road? ``surroundings`` are the recording's; ``alone`` gives those of one of
+    several drives by its number, if each has others, and ego's row in them. ``computed`` holds what
+    functions have found ``once``.
     """
 
     recording: Recording
@@ -78,9 +80,14 @@ class DriveContext:
         """The columns of the states in arrays of the whole recording."""
         return self.steps - self.surroundings.tracks.first
 
+    @property
+    def is_one(self) -> bool:
+        """Whether there is one drive, all that it is about being in its ``surroundings``."""
+        return self.spans.n_drives == 1 and self.alone is None
+
     def one(self, number: int) -> DriveContext:
         """One of the drives by itself, with the same rows."""
-        if self.spans.n_drives == 1:
+        if self.is_one:
             return self
         if number not in self._ones:
             columns, rows = self.spans.slices[number], np.arange(len(self.relevant))
@@ -151,7 +158,7 @@ class DriveContext:
         changes = self.spans.changes(self.ego_lane)
         if not changes.any():
             return self.ego_lane
-        steady = self.ego_lane.copy()
+        steady: NDArray[intp] = self.ego_lane.copy()
         for _, columns in self.spans.those(self.spans.any(changes)):
             lane, left_of = steady[columns].tolist(), self.ego_extents.left_of[0, columns].tolist()
             existing = self.existing_lanes[columns]
@@ -274,7 +281,9 @@ def drive_context(
     )
 
 
-def _near(places: RoadPlaces, columns: slice | NDArray[intp], ego: RoadExtents) -> tuple[Flags, Flags]:
+def _near(
+    places: RoadPlaces, columns: slice | NDArray[intp], ego: RoadExtents
+) -> tuple[Flags, Flags]:
     """Flags of participants (rows) that count for ego, and that are in its sight, by step."""
     limits, extents = places.thresholds, places.extents
     s_min, s_max, along = (x[:, columns] for x in (extents.s_min, extents.s_max, extents.along))
@@ -284,3 +293,61 @@ def _near(places: RoadPlaces, columns: slice | NDArray[intp], ego: RoadExtents) 
     relevant = places.counts[:, columns] & (gap <= limits.near_m) & ~np.isnan(ego.s_min)
     in_sight = places.seen[:, columns] & (gap <= np.maximum(limits.near_m, reach))
     return relevant, in_sight
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class EgosOnRoad:
+    """Drives along one road: rows of ``places``, and the columns in which each is.
+
+    ``own`` are the egos' surroundings, ``alone`` those of one of them by the number of its drive.
+    """
+
+    places: RoadPlaces
+    rows: Sequence[int]
+    columns: Sequence[slice]
+    own: Surroundings
+    alone: Callable[[int], tuple[Surroundings, int]] | None = None
+
+
+def drives_context(
+    surroundings: Surroundings, places: RoadPlaces, side: Side, egos: EgosOnRoad
+) -> DriveContext:
+    """The parts of a recording that drives of egos who are not among the others are about."""
+    lengths = [columns.stop - columns.start for columns in egos.columns]
+    spans = EndToEnd((0, *np.cumsum(lengths).tolist()))
+    columns = np.concatenate([np.arange(own.start, own.stop) for own in egos.columns])
+    members = np.array(egos.rows, dtype=intp)
+    own = spans.spread(members)[None], columns[None]
+    ego = egos.places.extents.at(*own)
+    relevant, in_sight = _near(places, columns, ego)
+    are_near = relevant | in_sight
+    rows = are_near.any(axis=1).nonzero()[0]
+    at, where = np.broadcast_arrays(rows[:, None], columns)
+    tracks, extents = places.tracks.at(at, where, rows), places.extents.at(at, where)
+    there, touched = (at_columns(x, at, where) for x in (places.there, places.touched))
+    elsewhere = places.elsewhere[at, where]
+    absent = ~spans.any(are_near[rows])
+    if absent.any():
+        tracks, extents = tracks.without(absent), extents.without(absent)
+        there, touched = (values & ~absent[..., None] for values in (there, touched))
+        elsewhere = elsewhere & ~absent
+    return DriveContext(
+        recording=surroundings.recording,
+        thresholds=places.thresholds,
+        side=side,
+        road=places.road,
+        spans=spans,
+        steps=places.tracks.first + columns,
+        own=egos.own,
+        ego=egos.places.tracks.at(*own, members),
+        ego_extents=ego,
+        tracks=tracks,
+        extents=extents,
+        relevant=relevant[rows],
+        in_sight=in_sight[rows],
+        there=there,
+        touched=touched,
+        elsewhere=elsewhere,
+        surroundings=surroundings,
+        alone=egos.alone,
+    )

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import drive_context
 from rulec.extraction.recording_parts import egos_of
-from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_trace
+from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads, junction_lanelets
 from rulec.extraction.tracks.driven_route import RouteStretch, route_stretches
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
@@ -176,7 +176,8 @@ class Drives:
         if np.isnan(places.extents.s[row, columns]).any():
             return NoDrive(ego, "it is far from its road for a while")
         context = drive_context(self._surroundings, places, self._side, row, columns)
-        return to_trace(context, ego, name, self._writer)
+        (drive,) = to_traces(context, [ego], [name], self._writer)
+        return drive
 
     def _is_shared(self, road: DrivenRoad, size: int) -> bool:
         """Whether the places of everybody are worth it for a drive, which takes so many of them."""

@@ -10,8 +10,10 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.paper_words import PAPER_SURFACE
 from rulec.trace import Value
+from rulec.trace.end_to_end import EndToEnd, UnlikeDrivesError
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import smallest_unsigned
 from rulec.trace.vocabulary_projection import fits, is_about, known_type
@@ -51,10 +53,12 @@ def written(
     types: Sequence[Sequence[str]],
     vocabulary: Vocabulary | None,
     names: frozenset[str] | None,
+    spans: EndToEnd,
 ) -> WrittenSignals:
     """The signals that a vocabulary declares, optionally only those in ``names``.
 
-    ``types`` are those of the objects, a row each, the most specific first.
+    ``types`` are those of the objects, a row each, the most specific first. Raises
+    UnlikeDrivesError for drives of which not all say the same.
     """
     if vocabulary is None:
         return _all(signals)
@@ -68,11 +72,11 @@ def written(
             continue
         if name in signals.world and not declaration.parameters:
             column = _in_paper_words(name, signals.world[name], declaration)
-            numbers = _numbers(name, column, signals, declaration)
+            numbers = _numbers(name, column, signals, declaration, spans)
             if numbers is not None:
                 world[name] = numbers
         if name in signals.about and len(declaration.parameters) == 1:
-            numbers = _numbers(name, signals.about[name], signals, declaration)
+            numbers = _numbers(name, signals.about[name], signals, declaration, spans)
             if numbers is not None:
                 about[name] = numbers
                 about_it = {own: is_about(declaration, own, vocabulary) for own in set(own_types)}
@@ -101,7 +105,11 @@ def _all(signals: SignalColumns) -> WrittenSignals:
 
 
 def _numbers(
-    name: str, column: SignalColumn, signals: SignalColumns, declaration: Declaration
+    name: str,
+    column: SignalColumn,
+    signals: SignalColumns,
+    declaration: Declaration,
+    spans: EndToEnd,
 ) -> SignalColumn | None:
     """A column, texts as places among a declaration's; None if it says anything else."""
     texts = signals.texts.get(name)
@@ -121,11 +129,19 @@ def _numbers(
         places = table.take(column)
     strange = places == n_values
     if strange.any():
-        unknown = signals.unknown.get(name)
-        if unknown is None or unknown.all() or (strange & ~unknown).any():
+        unknown = signals.unknown.get(name, np.zeros_like(strange))
+        if spans.n_drives > 1 and strange.ndim > 1:
+            raise UnlikeDrivesError  # perhaps: who is nowhere near in a drive says nothing in it
+        told = [_is_told(strange[..., own], unknown[..., own]) for own in spans.slices]
+        if not spans.agreed(told):
             return None
         places[strange] = 0
     return places
+
+
+def _is_told(strange: Flags, unknown: Flags) -> bool:
+    """Whether there is nothing strange, or only where values are unknown, which not all are."""
+    return not strange.any() or not (unknown.all() or (strange & ~unknown).any())
 
 
 def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -> SignalColumn:
@@ -171,43 +187,67 @@ def with_likeliest(signals: WrittenSignals, vocabulary: Vocabulary) -> WrittenSi
 
 
 def with_signals(
-    trace: TraceArrays, signals: WrittenSignals, present: Sequence[Presence], *, defaults: bool
-) -> TraceArrays:
-    """The trace, in whose objects' order ``present`` is, with these signals.
+    traces: Sequence[TraceArrays],
+    signals: WrittenSignals,
+    present: Sequence[Sequence[Presence]],
+    spans: EndToEnd,
+    *,
+    defaults: bool,
+) -> list[TraceArrays]:
+    """The traces of drives, in whose objects' order each ``present`` is, with their signals.
 
     With ``defaults`` what is unknown is left out, and numbers are as measured.
     """
     columns = signals.columns
-    cells = _cells(present, trace.n_states)
-    rows = np.array([presence.row for presence in present], dtype=intp)
+    cells, bounds = _cells(present, spans)
+    parts = tuple(map(slice, bounds[:-1], bounds[1:]))
+
+    def of_drives(name: str, column: SignalColumn) -> list[SignalColumn]:
+        """A signal's values in each drive: of the world, or of who is present."""
+        if name in columns.world:
+            return [column[own] for own in spans.slices]
+        values = column.ravel().take(cells)
+        return [values[own] for own in parts]
+
+    def all_of(values: Mapping[str, SignalColumn]) -> list[dict[str, SignalColumn]]:
+        by_name = {name: of_drives(name, own) for name, own in values.items()}
+        return [{name: own[k] for name, own in by_name.items()} for k in range(len(traces))]
+
     names = columns.world.keys() | columns.about.keys()
-
-    def own(name: str, column: SignalColumn) -> SignalColumn:
-        return column.ravel().take(cells) if name in columns.about else column
-
-    unknown = {name: own(name, flags) for name, flags in columns.unknown.items() if name in names}
-    bounds = {
-        name: (own(name, low), own(name, high))
-        for name, (low, high) in columns.bounds.items()
-        if name in names
-    }
-    return replace(
-        trace,
-        spans=np.array([(each.first, each.last) for each in present], dtype=intp).reshape(-1, 2),
-        world=columns.world,
-        about={name: own(name, column) for name, column in columns.about.items()},
-        texts=signals.texts,
-        unknown={} if defaults else unknown,
-        absent=unknown if defaults else {},
-        bounds={} if defaults else bounds,
-        only={name: columns.only[name][rows] for name in columns.about if name in columns.only},
+    world, about = all_of(columns.world), all_of(columns.about)
+    unknown = all_of({x: own for x, own in columns.unknown.items() if x in names})
+    low, high = (
+        all_of({x: own[end] for x, own in columns.bounds.items() if x in names}) for end in (0, 1)
     )
-
-
-def _cells(present: Sequence[Presence], n_states: int) -> NDArray[intp]:
-    """Where the values of each presence stand in rows of so many states, one after the other."""
-    parts = [
-        np.arange(each.row * n_states + each.first, each.row * n_states + each.last + 1)
-        for each in present
+    rows = [np.array([presence.row for presence in own], dtype=intp) for own in present]
+    only = {name: flags for name, flags in columns.only.items() if name in columns.about}
+    return [
+        replace(
+            trace,
+            spans=np.array([(x.first, x.last) for x in present[k]], dtype=intp).reshape(-1, 2),
+            world=world[k],
+            about=about[k],
+            texts=signals.texts,
+            unknown={} if defaults else unknown[k],
+            absent=unknown[k] if defaults else {},
+            bounds={} if defaults else {name: (own, high[k][name]) for name, own in low[k].items()},
+            only={name: flags[rows[k]] for name, flags in only.items()},
+        )
+        for k, trace in enumerate(traces)
     ]
-    return np.concatenate([np.empty(0, dtype=intp), *parts])
+
+
+def _cells(
+    present: Sequence[Sequence[Presence]], spans: EndToEnd
+) -> tuple[NDArray[intp], list[int]]:
+    """Where the values of each presence stand in rows of all states, one after the other.
+
+    With where those of each drive begin among them, and those of the last one end.
+    """
+    parts, bounds = [np.empty(0, dtype=intp)], [0]
+    for own, begin in zip(present, spans.bounds[:-1], strict=True):
+        for each in own:
+            at = each.row * spans.n_states + begin
+            parts.append(np.arange(at + each.first, at + each.last + 1))
+        bounds.append(bounds[-1] + sum(each.last - each.first + 1 for each in own))
+    return np.concatenate(parts), bounds

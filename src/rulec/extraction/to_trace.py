@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import count
@@ -14,6 +14,7 @@ import numpy as np
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signal_arrays import (
     Presence,
+    WrittenSignals,
     with_assumed,
     with_likeliest,
     with_signals,
@@ -57,36 +58,49 @@ from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
 
 
-def presences(context: DriveContext) -> Iterator[Presence]:
-    """The contiguous presences of all participants; absences up to ``away_s`` are bridged.
+def presences(context: DriveContext) -> list[list[Presence]]:
+    """The contiguous presences of all participants in each drive.
 
-    Those in which a participant is not beside the road never are: its extents are not known then.
+    Absences up to ``away_s`` are bridged. Those in which one is not beside the road never are: its
+    extents are not known then.
     """
-    taken, numbers = {body.id for body in context.tracks.participants}, dict[str, int]()
-    for row, first, last in _presences(context):
+    found: list[list[Presence]] = [[] for _ in context.spans.slices]
+    numbers: dict[tuple[int, str], int] = {}
+    for drive, row, first, last in _presences(context):
         own = context.tracks.participants[row].id
-        numbers[own] = numbers.get(own, 0) + 1
+        numbers[drive, own] = number = numbers.get((drive, own), 0) + 1
         name = own
-        if numbers[own] > 1:
+        if number > 1:
+            taken = _ids_in(context, drive).union(one.name for one in found[drive])
             name = next(free for k in count(2) if (free := f"{own}_{k}") not in taken)
-            taken.add(name)
-        yield Presence(name, row, first, last)
+        found[drive].append(Presence(name, row, first, last))
+    return found
 
 
-def _presences(context: DriveContext) -> Iterator[tuple[int, int, int]]:
-    """The row, first and last column of each presence.
+def _ids_in(context: DriveContext, drive: int) -> frozenset[str]:
+    """The names of the participants that a drive is about."""
+    columns = context.spans.slices[drive]
+    rows = (context.relevant | context.in_sight)[:, columns].any(axis=1)
+    bodies = context.tracks.participants
+    return frozenset(bodies[row].id for row in np.flatnonzero(rows).tolist())
+
+
+def _presences(context: DriveContext) -> Iterator[tuple[int, int, int, int]]:
+    """The drive, and in it the row, first and last state of each presence.
 
     Who is in sight only, too far away to count, is none.
     """
-    longest = round(context.thresholds.away_s / context.recording.step_s)
+    longest, spans = round(context.thresholds.away_s / context.recording.step_s), context.spans
     rows, columns = np.nonzero(context.relevant)
     unknown = np.cumsum(np.isnan(context.extents.s), axis=1)[rows, columns]
+    drives = spans.number[columns]
     parted = (np.diff(rows) > 0) | (np.diff(columns) > longest + 1) | (np.diff(unknown) > 0)
+    parted |= np.diff(drives) > 0
     if len(rows):
         begins, ends = np.append(True, parted), np.append(parted, True)
-        yield from zip(
-            rows[begins].tolist(), columns[begins].tolist(), columns[ends].tolist(), strict=True
-        )
+        states = columns - spans.first[columns]
+        told = drives[begins], rows[begins], states[begins], states[ends]
+        yield from zip(*[values.tolist() for values in told], strict=True)
 
 
 _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
@@ -216,42 +230,72 @@ class TraceWriter:
 ALL_SIGNALS = TraceWriter()
 
 
-def to_trace(context: DriveContext, ego: str, name: str, writer: TraceWriter) -> Drive:
-    """The drive of ``ego`` as a trace called ``name``."""
-    names = _names_written(writer)
-    signals = together([signals_of(context, names) for signals_of in _SIGNALS])
-    signals = agreeing(settled(signals, LEAST_S, context.recording.step_s, context.spans))
+def to_traces(
+    context: DriveContext, egos: Sequence[str], names: Sequence[str], writer: TraceWriter
+) -> list[Drive]:
+    """The drives of ``egos`` as traces of these names, one each.
+
+    Raises UnlikeDrivesError for several that say different names.
+    """
+    read, spans = _names_written(writer), context.spans
+    signals = together([signals_of(context, read) for signals_of in _SIGNALS])
+    signals = agreeing(settled(signals, LEAST_S, context.recording.step_s, spans))
     types = [body.object_types for body in context.tracks.participants]
-    chosen = written(signals, types, writer.vocabulary, writer.names)
+    chosen = written(signals, types, writer.vocabulary, writer.names, spans)
     chosen = with_assumed(chosen, writer.assumed, context.states)
     if writer.defaults and writer.vocabulary is not None:
         chosen = with_likeliest(chosen, writer.vocabulary)
-    present = list(presences(context))
-    own_types = {presence.name: types[presence.row] for presence in present}
-    if writer.vocabulary is None:
-        objects = {object_name: own[0] for object_name, own in own_types.items()}
-    else:
-        objects = known_types(own_types, writer.vocabulary)
-    present = [presence for presence in present if presence.name in objects]
     kinds = chosen.kinds()
-    empty = TraceArrays(
-        name,
-        context.recording.step_s,
-        context.states,
-        objects,
-        ends="complete" if writer.defaults else "cut",
-        told=None if writer.defaults else frozenset(kinds),
-    )
-    arrays = with_signals(empty, chosen, present, defaults=writer.defaults)
-    start_s = round(int(context.steps[0]) * context.recording.step_s, 9)
-    decided_by = {}
-    if "safe_gap" in chosen.columns.about:
-        rows = {presence.name: presence.row for presence in present}
-        gap, safe = gap_beside_safe_distance(context)
-        errors = context.tolerances.place_m, safe_distance_error(context)
-        decided_by["safe_gap"] = DecidedBy("gap", "m", rows, gap, safe, *errors)
-    places = tuple(_places(context))
-    return Drive(ego, start_s, arrays, kinds, decided_by=decided_by, places=places)
+    traces, present = [], []
+    for name, columns, own in zip(names, spans.slices, presences(context), strict=True):
+        own_types = {presence.name: types[presence.row] for presence in own}
+        if writer.vocabulary is None:
+            objects = {object_name: kind[0] for object_name, kind in own_types.items()}
+        else:
+            objects = known_types(own_types, writer.vocabulary)
+        present.append([presence for presence in own if presence.name in objects])
+        empty = TraceArrays(
+            name,
+            context.recording.step_s,
+            columns.stop - columns.start,
+            objects,
+            ends="complete" if writer.defaults else "cut",
+            told=None if writer.defaults else frozenset(kinds),
+        )
+        traces.append(empty)
+    arrays = with_signals(traces, chosen, present, spans, defaults=writer.defaults)
+    decided_by = _decided_by(context, chosen, present)
+    places, starts = list(_places(context)), context.steps[spans.begins].tolist()
+    return [
+        Drive(
+            ego,
+            round(start * context.recording.step_s, 9),
+            own,
+            kinds,
+            decided_by=decided,
+            places=tuple(places[columns]),
+        )
+        for ego, start, own, decided, columns in zip(
+            egos, starts, arrays, decided_by, spans.slices, strict=True
+        )
+    ]
+
+
+def _decided_by(
+    context: DriveContext, chosen: WrittenSignals, present: Sequence[Sequence[Presence]]
+) -> list[dict[str, DecidedBy]]:
+    """The numbers by which signals of each drive were decided."""
+    if "safe_gap" not in chosen.columns.about:
+        return [{} for _ in present]
+    gap, safe = gap_beside_safe_distance(context)
+    place, error = context.tolerances.place_m, safe_distance_error(context)
+    found = []
+    for own, columns in zip(present, context.spans.slices, strict=True):
+        rows = {presence.name: presence.row for presence in own}
+        values, limits = gap[:, columns], safe[:, columns]
+        numbers = DecidedBy("gap", "m", rows, values, limits, place, error[:, columns])
+        found.append({"safe_gap": numbers})
+    return found
 
 
 def _names_written(writer: TraceWriter) -> SignalNames:

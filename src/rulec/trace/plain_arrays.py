@@ -31,13 +31,15 @@ def median(values: NDArray[Any]) -> float:
 
 def sorted_in(groups: NDArray[np.intp], values: NDArray[np.float64]) -> NDArray[np.intp]:
     """The order by groups, and by values in each of them."""
-    order = np.argsort(values)
+    order = np.argsort(values, kind="stable")
     # Small whole numbers are sorted in linear time
     numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
     return order[np.argsort(numbers[order], kind="stable")]
 
 
-def medians(groups: NDArray[np.intp], values: NDArray[np.float64], count: int) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+def medians(
+    groups: NDArray[np.intp], values: NDArray[np.float64], count: int
+) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     """The median and the size of each of so many groups, NaN of an empty one."""
     sizes = np.bincount(groups, minlength=count)
     ordered = np.append(values[sorted_in(groups, values)], np.nan)

@@ -7,11 +7,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.signals.settling import agreeing, only_when, settled, without_blips
+from rulec.extraction.signals import settling
+from rulec.extraction.signals.settling import agreeing
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.traffic_thresholds import LEAST_S
+from rulec.trace.end_to_end import EndToEnd
 
 columns = st.lists(st.sampled_from("abc"), min_size=1, max_size=20)
+
+
+def without_blips(column, least):
+    return settling.without_blips(column, least, EndToEnd.of_one(column.shape[-1]))
+
+
+def settled(signals, least_s, step_s):
+    (column, *_) = (*signals.world.values(), *signals.about.values())
+    return settling.settled(signals, least_s, step_s, EndToEnd.of_one(column.shape[-1]))
 
 
 def after(text, least=3):
@@ -135,7 +146,8 @@ def test_durations_are_in_seconds_and_by_word():
 )
 def test_a_doubt_between_two_sure_codes_is_about_when(codes, doubtful, there, only):
     rows = [np.array([list(text)]) for text in (codes, doubtful, there)]
-    (found,) = only_when(rows[0], rows[1] == "?", rows[2] == "-", 2)
+    one = EndToEnd.of_one(len(codes))
+    (found,) = settling.only_when(rows[0], rows[1] == "?", rows[2] == "-", 2, one)
     assert "".join(".?"[flag] for flag in found.tolist()) == only
 
 
@@ -156,3 +168,26 @@ def test_what_surely_is_brings_with_it_what_it_implies():
     assert found.world["junction_zone"].tolist() == [False, True, True]
     assert found.about["stopped"].tolist() == [[True, False, False], [False, False, False]]
     assert found.unknown["stopped"].tolist() == [[False, True, True], [True, True, True]]
+
+
+drives = st.lists(st.tuples(st.text("ab", min_size=2, max_size=9)), min_size=1, max_size=4)
+
+
+@given(drives, st.integers(1, 4), st.randoms())
+def test_drives_end_to_end_are_settled_by_themselves(several, least, chance):
+    texts = [text for (text,) in several]
+    columns = [np.array([[letter == "a" for letter in text]]) for text in texts]
+    unknown = [np.array([[chance.random() < 0.2 for _ in text]]) for text in texts]
+    bounds = (0, *np.cumsum([len(text) for text in texts]).tolist())
+
+    def words(column, flags):
+        return SignalColumns(about={"p": column}, unknown={"p": flags})
+
+    whole = words(np.concatenate(columns, axis=1), np.concatenate(unknown, axis=1))
+    found = settling.settled(whole, {"p": 0.1 * least}, 0.1, EndToEnd(bounds))
+    parts = [
+        settled(words(*own), {"p": 0.1 * least}, 0.1) for own in zip(columns, unknown, strict=True)
+    ]
+    for kind in ("about", "unknown"):
+        expected = np.concatenate([getattr(part, kind)["p"] for part in parts], axis=1)
+        assert getattr(found, kind)["p"].tolist() == expected.tolist()

@@ -140,9 +140,11 @@ def _would_stand(context: DriveContext, rows: NDArray[intp]) -> NDArray[intp]:
         ways = np.append(np.zeros((len(rows), 1)), steps.cumsum(axis=1), axis=1)
         stops = ways + braking[:, columns]
         found = [np.searchsorted(*one) for one in zip(ways, stops, strict=True)]
-        return np.array(found, dtype=intp).reshape(stops.shape) + columns.start
+        places: NDArray[intp] = np.array(found, dtype=intp).reshape(stops.shape) + columns.start
+        return places
 
-    return np.maximum(spans.each(of_drive), spans.columns)
+    stands: NDArray[intp] = np.maximum(spans.each(of_drive), spans.columns)
+    return stands
 
 
 _PASSES: Passes = {("ahead_for",): _ahead_for}

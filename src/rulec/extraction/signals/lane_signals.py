@@ -228,7 +228,8 @@ def _not_moved_yet(context: DriveContext) -> Flags:
     away = way > _MOVED_OFF_M + 2 * context.tolerances.place_m
     stood: Flags = spans.latest(away) < spans.first
     counts = np.add.reduceat(stood.astype(intp), spans.begins)
-    return stood & spans.spread((counts - 1) * context.recording.step_s >= _STOOD_S)
+    stood &= spans.spread((counts - 1) * context.recording.step_s >= _STOOD_S)
+    return stood
 
 
 def _outer_lines(context: DriveContext) -> Flags:

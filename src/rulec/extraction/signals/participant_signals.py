@@ -60,7 +60,9 @@ def _station(context: DriveContext) -> SignalColumns:
     longest = round(context.thresholds.passed_s / context.recording.step_s)
     return SignalColumns(
         about={"station": station},
-        unknown={"station": doubtful & ~only_when(station, doubtful, there, longest, context.spans)},
+        unknown={
+            "station": doubtful & ~only_when(station, doubtful, there, longest, context.spans)
+        },
         texts={"station": STATIONS},
     )
 

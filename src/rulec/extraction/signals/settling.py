@@ -8,9 +8,9 @@ from math import ceil
 
 import numpy as np
 
-from rulec.extraction.end_to_end import EndToEnd
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags
+from rulec.trace.end_to_end import EndToEnd
 
 _HAIR = 1e-6
 _MOST_CHANGES = 2

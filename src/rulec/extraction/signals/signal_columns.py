@@ -68,7 +68,10 @@ def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
         name: (low, high)
         for name in parts[0].bounds
         for low, high in [
-            [np.concatenate(ends, axis=-1) for ends in zip(*[x.bounds[name] for x in parts], strict=True)]
+            [
+                np.concatenate(ends, axis=-1)
+                for ends in zip(*[x.bounds[name] for x in parts], strict=True)
+            ]
         ]
     }
     world, about, unknown = map(joined, ("world", "about", "unknown"))

@@ -128,6 +128,21 @@ class RoadExtents:
                 part.__dict__[name] = part_of(self.__dict__[name], rows, columns)
         return part
 
+    def at(self, rows: NDArray[intp], columns: NDArray[intp]) -> RoadExtents:
+        """The extents at places in the arrays, of rows and columns in one shape."""
+        part = RoadExtents(
+            **{name: at_columns(getattr(self, name), rows, columns) for name in _FIELDS}
+        )
+        for name in ("s", "lane"):
+            part.__dict__[name] = getattr(self, name)[rows, columns]
+        return part
+
+    def without(self, absent: Flags) -> RoadExtents:
+        """The same without who is not there, by row and column."""
+        part = RoadExtents(**{name: _blank(getattr(self, name), absent) for name in _FIELDS})
+        part.__dict__["s"] = _blank(self.s, absent)
+        return part
+
     def and_one(self, other: RoadExtents, row: int) -> RoadExtents:
         """These extents, and behind them a row of others in the same steps."""
         return RoadExtents(
@@ -136,6 +151,20 @@ class RoadExtents:
                 for field in fields(self)
             }
         )
+
+
+_FIELDS = tuple(field.name for field in fields(RoadExtents))
+
+
+def _blank(values: Floats, absent: Flags) -> Floats:
+    return np.where(absent if values.ndim == 2 else absent[..., None], np.nan, values)
+
+
+def at_columns(values: NDArray[Any], rows: NDArray[intp], columns: NDArray[intp]) -> NDArray[Any]:
+    """Some columns of rows, or of one row for each; a third axis stays the first in memory."""
+    if values.ndim == 2:
+        return values[rows, columns]
+    return np.moveaxis(np.moveaxis(values, -1, 0)[:, rows, columns], 0, -1)
 
 
 def and_row(values: NDArray[Any], others: NDArray[Any], row: int) -> NDArray[Any]:

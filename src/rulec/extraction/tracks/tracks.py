@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import shapely
@@ -130,6 +130,33 @@ class Tracks:
             rows=self.rows[rows],
             first=self.first + columns.start,
             **{name: getattr(self, name)[rows, columns] for name in _ARRAYS},
+        )
+
+    def at(self, rows: NDArray[intp], columns: NDArray[intp], members: NDArray[intp]) -> Tracks:
+        """What arrays have at places, of rows and columns in one shape; who are the ``members``.
+
+        The columns are any, so that ``first`` says nothing of them.
+        """
+        return Tracks(
+            participants=tuple(self.participants[row] for row in members.tolist()),
+            types=self.types,
+            rows=self.rows[members],
+            first=self.first,
+            **{name: getattr(self, name)[rows, columns] for name in _ARRAYS},
+        )
+
+    def without(self, absent: Flags) -> Tracks:
+        """The same without who is not there, by row and column."""
+
+        def blank(values: NDArray[Any]) -> NDArray[Any]:
+            return values & ~absent if values.dtype == bool else np.where(absent, np.nan, values)
+
+        return Tracks(
+            participants=self.participants,
+            types=self.types,
+            rows=self.rows,
+            first=self.first,
+            **{name: blank(getattr(self, name)) for name in _ARRAYS},
         )
 
     def of_type(self, name: str) -> Flags:

@@ -220,7 +220,11 @@ def _joins_road(context: DriveContext) -> SignalColumns:
     reach, spans = round(context.thresholds.setting_off_s / context.recording.step_s), context.spans
     last_inside, last_stood = spans.latest(inside), spans.latest(stands)
     for state in (np.flatnonzero(spans.enters(inside)) - 1).tolist():
-        left, stood, first = int(last_inside[state]), int(last_stood[state]), int(spans.first[state])
+        left, stood, first = (
+            int(last_inside[state]),
+            int(last_stood[state]),
+            int(spans.first[state]),
+        )
         span = slice(max(stood, left, state - reach, first - 1) + 1, state + 2)
         if outside[span].any() or stood >= first:
             (joins if stood > left and state - stood <= reach else perhaps)[span] = True

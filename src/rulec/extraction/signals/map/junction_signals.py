@@ -162,7 +162,8 @@ def _on_known_way(context: DriveContext, stretch: tuple[float, float], number: i
         if lanelet is not None
     }
     return any(
-        passage.sure and inside & passages.way(passage).names for passage in passages_of(context, number)
+        passage.sure and inside & passages.way(passage).names
+        for passage in passages_of(context, number)
     )
 
 
@@ -281,7 +282,9 @@ def _first_crossed(context: DriveContext, front: Floats, line: float) -> list[in
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     moved = _passes(context, line) | (stands & (front > line))
     latest = context.spans.latest(moved)
-    since: list[int] = np.where(latest < context.spans.first, context.spans.columns, latest).tolist()
+    since: list[int] = np.where(
+        latest < context.spans.first, context.spans.columns, latest
+    ).tolist()
     return since
 
 

@@ -165,9 +165,7 @@ def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Fl
     """
     moves = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
     longest = round(context.thresholds.passed_s / context.recording.step_s)
-    (passing,) = only_when(
-        values[None], unknown[None], moves[None], longest, context.spans
-    )
+    (passing,) = only_when(values[None], unknown[None], moves[None], longest, context.spans)
     doubt: Flags = unknown & ~passing
     return doubt
 

@@ -65,7 +65,7 @@ def drive_by_drive(
 
     @wraps(signals_of)
     def found(context: DriveContext) -> SignalColumns:
-        if context.spans.n_drives == 1 or not own_passages(context):
+        if context.is_one or not own_passages(context):
             return signals_of(context)
         drives = range(context.spans.n_drives)
         return end_to_end([signals_of(context.one(number)) for number in drives])
@@ -112,7 +112,7 @@ def _conflicts(context: DriveContext) -> SignalColumns:
 
 @once
 def own_passages(context: DriveContext) -> tuple[Passage, ...]:
-    """Ego's passages of junctions during the drive, of the first one that has any."""
+    """Ego's passages of junctions during the drive; of several, those of the first with any."""
     for number in range(context.spans.n_drives):
         if found := passages_of(context, number):
             return found

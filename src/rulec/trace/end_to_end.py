@@ -135,7 +135,8 @@ class EndToEnd:
 
     def enters(self, flags: _Flags) -> _Flags:
         """Flags of states in which a flag holds that did not one state before."""
-        return flags & ~self.before(flags)
+        entered: _Flags = flags & ~self.before(flags)
+        return entered
 
     def changes(self, values: NDArray[Any]) -> _Flags:
         """Flags of states in which a value is another one than one state before."""
