@@ -11,7 +11,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, next_state
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import Lanelet, LaneMark, Side
@@ -221,13 +221,11 @@ def _goes_back(context: DriveContext) -> Flags:
 
     Whether that lane was free before, for who had to look for room there, nobody can tell.
     """
-    kerbward = np.diff(context.steady_lane, append=context.steady_lane[-1:])
+    lane, spans = context.steady_lane, context.spans
+    kerbward = spans.after(lane) - lane
     changes = kerbward < 0 if context.side == "right" else kerbward > 0
     steps = round(_CHANGE_S / context.recording.step_s)
-    goes: Flags = (
-        next_state(changes, 2 * context.states + steps) - np.arange(context.states) < steps
-    )
-    return goes
+    return spans.within(changes, steps - 1)
 
 
 def _of_no_use(context: DriveContext) -> Flags:
