@@ -113,6 +113,13 @@ STATES: Final = ResourceLimit(
     "cut the drive into several traces, or tell it with a longer step",
 )
 
+REFUSED: Final = ResourceLimit(
+    "refused",
+    20_000,
+    "traces one after the other that cannot be judged",
+    "mend what is wrong with them, which is often the same for all",
+)
+
 CITES: Final = ResourceLimit(
     "cites",
     100_000_000,
@@ -129,7 +136,18 @@ LOOKBACK: Final = ResourceLimit(
 
 LIMITS: Final = {
     limit.name: limit
-    for limit in (CHOICES, STEPS, STATES, CUBES, PAIRS, TYPE_DEPTH, SEARCH, CITES, LOOKBACK)
+    for limit in (
+        CHOICES,
+        STEPS,
+        STATES,
+        REFUSED,
+        CUBES,
+        PAIRS,
+        TYPE_DEPTH,
+        SEARCH,
+        CITES,
+        LOOKBACK,
+    )
 }
 """All limits that can be lifted."""
 

@@ -94,7 +94,9 @@ def to_verdicts(file: Path, rules: rulec.CompiledRulebook) -> Callable[[], objec
     def judged() -> int:
         with file.open("rb") as stream:
             chunks = read_chunks(stream, str(file), format_of(str(file)))
-            return sum(len(verify_items(items, rules)[1]) for items in chunks)
+            return sum(
+                len([*answers]) for items in chunks for _, answers in verify_items(items, rules)
+            )
 
     return judged
 

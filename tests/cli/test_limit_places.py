@@ -23,12 +23,18 @@ TRACES = "\n".join(
     json.dumps({"step_s": step, "objects": {"a": "car", "b": "car"}, "states": [{}, {}]})
     for step in (1, 0.5, 0.25)
 )
-FILES = {"small.rules": BOOK, "t.jsonl": TRACES, "law.md": "# Act\n\n## Article 1\n\nDrive.\n"}
+FILES = {
+    "small.rules": BOOK,
+    "t.jsonl": TRACES,
+    "refused.jsonl": "{}\n" * 3,
+    "law.md": "# Act\n\n## Article 1\n\nDrive.\n",
+}
 OF_A_RULE = "small.rules:6"
 ASKED = {
     "choices": (0, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:1"),
     "steps": (1, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:3"),
     "states": (1, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:1"),
+    "refused": (1, ["verify", "refused.jsonl", "-r", "./small.rules"], "refused.jsonl:2"),
     "cubes": (1, ["show", "./small.rules", "odd"], "small.rules:11"),
     "pairs": (0, ["analyze", "./small.rules"], OF_A_RULE),
     "type_depth": (1, ["check", "./small.rules"], "small.rules:3"),

@@ -312,11 +312,11 @@ COSTLY_TO_MAKE = {
         2,
         "R0718",
     ),
-    "60,000 rows of Parquet that are each refused": (
-        {"t.parquet": lambda: parquet_of_refused(60_000)},
+    "300,000 rows of Parquet that are each refused": (
+        {"t.parquet": lambda: parquet_of_refused(300_000)},
         ["verify", "t.parquet", "-r", "./soon.rules"],
         2,
-        "59,990 more of this kind",
+        "20,001 traces one after the other that cannot be judged",
     ),
     "a row of 200,000 columns": (
         {

@@ -41,7 +41,7 @@ from rulec.trace.formats.arrow import parquet as parquet_table  # noqa: E402
 def answers(data, form, rules):
     found = []
     for items in read_chunks(io.BytesIO(data), "t", form):
-        found += verify_items(items, rules)[1]
+        found += [answer for _, some in verify_items(items, rules) for answer in some]
     return [told(one) for one in found]
 
 
@@ -326,12 +326,12 @@ def test_the_rulebook_of_a_trace_is_the_one_for_its_step():
     rulebook = mock.Mock(fitted_to=lambda step: asked.append(step) or traffic())
     assert rulebook_for(items, 3, rulebook) is traffic()
     assert asked == [Fraction(1, 2)]
-    found, answered = verify_items(items, traffic())
+    ((found, answered),) = verify_items(items, traffic())
     assert isinstance(found, Block)
     assert found.outline is not None
     assert list(found) == list(items)
     assert [found[place] for place in range(39)] == list(items)
-    assert answered[3] == verify_or_reason(drives()[3], traffic())
+    assert [*answered][3] == verify_or_reason(drives()[3], traffic())
     assert items[3] == drives()[3]
 
 
@@ -355,7 +355,11 @@ csv_table.LARGE_BYTES, arrow_csv._BLOCK_BYTES, parquet._ROWS_AT_ONCE = 1, 1 << 1
 rulebook, file, form = sys.argv[1:]
 rules = rulec.compile_rulebook(rulebook)
 with open(file, "rb") as stream:
-    print(sum(len(verify_items(one, rules)[1]) for one in read_chunks(stream, file, form)))
+    print(sum(
+        len([*answers])
+        for one in read_chunks(stream, file, form)
+        for _, answers in verify_items(one, rules)
+    ))
 (peak,) = (one for one in Path("/proc/self/status").read_text().splitlines() if "VmHWM" in one)
 print(int(peak.split()[1]) << 10)
 """

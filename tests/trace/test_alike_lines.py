@@ -69,7 +69,8 @@ def answers(text, rules, *, together):
     return [
         (answer.trace, answer.error.diagnostics) if isinstance(answer, NotJudged) else answer
         for chunk in chunks(text, together=together)
-        for answer in verify_items(chunk, rules)[1]
+        for _, some in verify_items(chunk, rules)
+        for answer in some
     ]
 
 

@@ -6,6 +6,7 @@ import os
 import stat
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from io import UnsupportedOperation
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
@@ -16,7 +17,7 @@ from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.monitoring.assumptions import Assumptions
-from rulec.monitoring.batch.batch_verify import rulebook_for, verify_items
+from rulec.monitoring.batch.batch_verify import Items, rulebook_for, verify_items
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.findings.diagnostics_text import Complaints
@@ -25,6 +26,7 @@ from rulec.report.verdict_findings.found_in_traces import not_judged_trace, trac
 from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
 from rulec.report.verdicts import verdict_json, verdict_report
 from rulec.report.verdicts.batch_table import BatchTally
+from rulec.resource_limits import REFUSED
 from rulec.trace import Trace
 from rulec.trace.formats.trace_files import Format, format_of, read_chunks
 
@@ -138,18 +140,24 @@ class TraceRun:
     def _in_stream(
         self, stream: IO[bytes], name: str, form: Format, assumed: Assumptions
     ) -> Iterator[Answer]:
+        """Answers of a stream. Raises RulecError R0718 for too many refused traces in a row."""
         size = None if name == "standard input" else _size(stream)
+        refused = 0
         with progress(f"judging {name}", size) as tell:
             for chunk in read_chunks(stream, name, form, together=self.engine is None):
-                items = assumed.of(chunk)
-                if self.engine is None:
-                    traces, answers = verify_items(items, self.rules)
-                else:
-                    traces, answers = self.engine.verify_items(items)
-                for place, answer in enumerate(answers):
+                for traces, place, answer in self._in_chunk(assumed.of(chunk)):
+                    refused = refused + 1 if isinstance(answer, NotJudged) else 0
+                    if isinstance(answer, NotJudged):
+                        REFUSED.within(refused, answer.error.diagnostics[0].place, name)
                     yield traces, place, answer
                 if size is not None:
                     tell(stream.tell())
+
+    def _in_chunk(self, items: Items) -> Iterator[Answer]:
+        judge = partial(verify_items, rulebook=self.rules)
+        for traces, answers in (judge if self.engine is None else self.engine.verify_items)(items):
+            for place, answer in enumerate(answers):
+                yield traces, place, answer
 
 
 def _size(stream: IO[bytes]) -> int | None:

@@ -74,8 +74,9 @@ class TraceTableJudge:
                 yield to_rows.of_nothing({**own, "vehicle": one.name}, _why(error))
             return
         for chunk in chunks:
-            traces, answers = verify_items(self.assumed.of(chunk), to_rows.rules)
-            for place, answer in enumerate(answers):
+            judged = verify_items(self.assumed.of(chunk), to_rows.rules)
+            parts = ((traces, *one) for traces, answers in judged for one in enumerate(answers))
+            for traces, place, answer in parts:
                 named = {**own, "vehicle": next(waiting).name}
                 if isinstance(answer, NotJudged):
                     yield to_rows.of_nothing(named, _why(answer.error))

@@ -47,10 +47,10 @@ class CEngine:
 
     def verify_items(
         self, items: Iterable[Trace | RulecError]
-    ) -> tuple[Sequence[Trace | RulecError], list[Verdict | NotJudged]]:
-        """Traces, and their answers."""
-        traces = list(items)
-        return traces, [self.answer(item) for item in traces]
+    ) -> Iterator[tuple[Sequence[Trace | RulecError], Iterable[Verdict | NotJudged]]]:
+        """Each trace, and its answer."""
+        for item in items:
+            yield [item], [self.answer(item)]
 
     def answer(self, item: Trace | RulecError) -> Verdict | NotJudged:
         """The answer for a trace, or for the error that kept it from being read."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import islice
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
@@ -51,6 +52,9 @@ FEWEST = 4
 
 _LONG = 1 << 6
 """Fewer of them are judged together, too, if they have so many states."""
+
+_MADE_TOGETHER = 1 << 12
+"""Reasons why a trace is refused take a kilobyte or two, and a block may have as many as rows."""
 
 _SHARED = 4
 """Where a state is met so many times, on average, what it means is worked out once."""
@@ -257,16 +261,34 @@ def violations_in(
             yield trace, by_trace.get(trace, ())
 
 
-def verify_items(items: Items, rulebook: CompiledRulebook) -> tuple[Items, Sequence[Answer]]:
-    """Traces as they were read, perhaps a block, and their answers."""
-    if isinstance(items, Block):
-        judged = _verify_block(items, rulebook)
-        if judged is not None:
-            return judged
-        items = list(items)
+def verify_items(
+    items: Items, rulebook: CompiledRulebook
+) -> Iterator[tuple[Items, Iterable[Answer]]]:
+    """Traces as they were read, perhaps a block, and their answers; of an odd block part by part.
+
+    What is judged by itself is so when it is asked for.
+    """
     if isinstance(items, LineBlock):
-        return items, _verify_lines(items, rulebook)
-    return items, verify_chunk(items, rulebook)
+        yield items, _verify_lines(items, rulebook)
+        return
+    judged = _verify_block(items, rulebook) if isinstance(items, Block) else None
+    if judged is not None:
+        yield judged
+        return
+    rest = iter(items)
+    while some := list(islice(rest, _MADE_TOGETHER)):
+        yield some, verify_chunk(some, rulebook)
+
+
+def _with_others(
+    answers: Sequence[Answer | None], block: Block, rulebook: CompiledRulebook
+) -> Iterator[Answer]:
+    """Answers in order; those that are missing are made as they are asked for."""
+    for start in range(0, len(answers), _MADE_TOGETHER):
+        some = answers[start : start + _MADE_TOGETHER]
+        left = [start + number for number, answer in enumerate(some) if answer is None]
+        others = iter(verify_chunk([block[place] for place in left], rulebook))
+        yield from [next(others) if answer is None else answer for answer in some]
 
 
 def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answer]:
@@ -305,7 +327,7 @@ def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> Compil
 
 def _verify_block(
     block: Block, rulebook: CompiledRulebook
-) -> tuple[Block, Sequence[Answer]] | None:
+) -> tuple[Block, Iterator[Answer]] | None:
     """The block with its outline, and its answers; None if something is odd about it."""
     answers: list[Answer | None] = [None] * len(block)
     try:
@@ -318,9 +340,7 @@ def _verify_block(
     except (OddTableError, UnencodableError, NotGivenError, RulecError):
         return None
     block = replace(block, outline=presence)
-    left = [place for place, answer in enumerate(answers) if answer is None]
-    others = iter(verify_chunk([block[place] for place in left], rulebook))
-    return block, [next(others) if answer is None else answer for answer in answers]
+    return block, _with_others(answers, block, rulebook)
 
 
 def _changes(values: Array, layout: Layout) -> bool:
