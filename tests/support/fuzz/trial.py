@@ -21,7 +21,7 @@ from support.fuzz.targets import STANDARD_INPUT, TARGETS, Workplace
 STATUSES = {0, 1, 2}
 LONGEST_S = 10
 LONGEST_WAIT_S = 600
-MOST_BYTES = 2 << 30
+MOST_MIB = 2 << 10
 COMMANDS = re.compile(r"^::(?!error |warning |notice )", re.MULTILINE)
 """What a runner of workflows would obey, but for annotations."""
 CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
@@ -33,26 +33,29 @@ class HangError(BaseException):
 
 @dataclass
 class FuzzTrial:
-    """What came of some inputs of a target: failures by seed, and the longest time."""
+    """What came of some inputs of a target: failures by seed, the longest time and its seed."""
 
     target: str
     inputs: int = 0
     statuses: dict[int, int] = field(default_factory=dict)
     failures: dict[int, str] = field(default_factory=dict)
     longest_s: float = 0.0
+    longest: int | None = None
+    peak_mib: int = 0
 
 
-def tried(target, folder, seeds, until=None):
-    """A trial of a target; ``until``: the time (``time.monotonic``) at which it ends early."""
+def tried(target, folder, seeds, seconds=None):
+    """A trial of a target; after so many seconds it ends early, what it begins with apart."""
     trial = FuzzTrial(target)
     shutil.copytree(_filled().name, folder, dirs_exist_ok=True)
     place = Workplace(folder)
+    started = time.monotonic()
     for seed in seeds:
-        if until is not None and time.monotonic() >= until:
+        if seconds is not None and time.monotonic() >= started + seconds:
             break
         _try_one(trial, place, seed)
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss << 10
-    assert peak < MOST_BYTES, f"{target}: {peak >> 20} MiB"
+    trial.peak_mib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10
+    assert trial.peak_mib < MOST_MIB, f"{target}: {trial.peak_mib} MiB"
     return trial
 
 
@@ -88,7 +91,9 @@ def _try_one(trial, place, seed):
             signal.alarm(0)
     said = "".join(stream.getvalue() for stream in streams)
     trial.inputs += 1
-    trial.longest_s = max(trial.longest_s, time.monotonic() - started)
+    took_s = time.monotonic() - started
+    if took_s > trial.longest_s:
+        trial.longest_s, trial.longest = took_s, seed
     if status is not None:
         trial.statuses[status] = trial.statuses.get(status, 0) + 1
     if not problem and status not in STATUSES:
@@ -161,5 +166,8 @@ def _quiet(typed=b""):
 def summary(trial):
     """One line on a trial, and one for each failure."""
     came = ", ".join(f"{count} of status {key}" for key, count in sorted(trial.statuses.items()))
-    head = f"{trial.target}: {trial.inputs:,} inputs, {came}; longest {trial.longest_s:.2f} s"
+    head = (
+        f"{trial.target}: {trial.inputs:,} inputs, {came}; "
+        f"longest {trial.longest_s:.2f} s ({trial.longest}), at most {trial.peak_mib:,} MiB"
+    )
     return "\n".join([head, *(f"  {seed}: {said}" for seed, said in trial.failures.items())])
