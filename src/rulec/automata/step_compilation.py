@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import RulebookFormulas, build_all, lower
 from rulec.diagnostics import RulecError
-from rulec.logic.bounds import Rounding, in_steps
+from rulec.logic.bounds import Rounding, has_seconds, in_steps
 from rulec.logic.formula import Formula
 from rulec.resource_limits import STEPS
 from rulec.rulebook.rulebook_model import Rule, Rulebook
@@ -113,7 +113,8 @@ def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]
 
 def _check_steps(before: int, rulebook: Rulebook) -> None:
     """Raise RulecError R0718 if one more step is too many."""
-    STEPS.within(before + 1, None, f"rulebook `{rulebook.name}`")
+    places = (rule.span.place for rule in rulebook.rules if rule.span and has_seconds(rule.formula))
+    STEPS.within(before + 1, next(places, None), f"rulebook `{rulebook.name}`")
 
 
 def build_automata(formulas: RulebookFormulas, steps: StepCompiler) -> CompiledRulebook:

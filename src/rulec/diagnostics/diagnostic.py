@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
@@ -105,6 +106,24 @@ def as_answer(error: RulecError) -> RulecError:
     """
     error.__traceback__ = error.__cause__ = error.__context__ = None
     return error
+
+
+@contextmanager
+def placed_at(place: SourceLocation) -> Iterator[None]:
+    """Run a block; what it says without a place is about this one."""
+    try:
+        yield
+    except RulecError as error:
+        raise with_place(error, place) from error.__cause__
+
+
+def with_place(error: RulecError, place: SourceLocation | None) -> RulecError:
+    """An error of which all that says no place is about this one."""
+    if place is None or all(one.place for one in error.diagnostics):
+        return error
+    return RulecError(
+        [one if one.place else replace(one, place=place) for one in error.diagnostics]
+    )
 
 
 def _one_line(diagnostic: Diagnostic) -> str:

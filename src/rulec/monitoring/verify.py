@@ -10,7 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
-from rulec.diagnostics.diagnostic import as_answer
+from rulec.diagnostics.diagnostic import as_answer, with_place
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, Cast, types_of
 from rulec.monitoring.implied_values import with_all_said
@@ -142,7 +142,7 @@ def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Ve
     try:
         return verify(item, rulebook)
     except RulecError as error:
-        return NotJudged(item.id, as_answer(error))
+        return NotJudged(item.id, as_answer(with_place(error, item.place)))
 
 
 def run(machine: MealyMonitor, word: Sequence[int], start: int = 0) -> tuple[bool, int | None]:

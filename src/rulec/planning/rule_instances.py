@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation, named
+from rulec.diagnostics.diagnostic import at
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.verdict import NO_PAST, CarriedState
@@ -52,7 +53,7 @@ def partition_for(
     }
     if len(needed) > 1:
         raise TWO_PARTITIONS.error(
-            None,
+            _place_of(RELATIONS_OF["paper"], rules),
             f"rulebook `{rules.name}` reads {needed['paper']} and {needed['fine']}, "
             "which no one partition supplies",
             help="say it with `station` and `lateral` alone: they tell apart all that `position` "
@@ -61,7 +62,7 @@ def partition_for(
     for name, relations in needed.items():
         if requested not in (None, name):
             raise TWO_PARTITIONS.error(
-                None,
+                _place_of(RELATIONS_OF[name], rules),
                 f"rulebook `{rules.name}` reads {relations}, which the partition "
                 f"`{requested}` does not supply",
                 help=f"use the partition `{name}`, or leave the choice to the rulebook",
@@ -69,6 +70,18 @@ def partition_for(
         return name
     declares_fine = not rules.vocabulary.declarations.keys().isdisjoint(RELATIONS_OF["fine"])
     return requested or ("fine" if declares_fine else "paper")
+
+
+def _place_of(
+    relations: Collection[str], rules: Rulebook | CompiledRulebook
+) -> SourceLocation | None:
+    """The first rule that reads one of these; of a compiled file its rulebook."""
+    wanted = set(relations)
+    reading = (rule for rule in rules.rules if not wanted.isdisjoint(names_in(rule.formula)))
+    name = next(reading).name
+    if isinstance(rules, CompiledRulebook):
+        return rules.place_of(name) or SourceLocation(rules.name)
+    return at(next(rule.span for rule in rules.rules if rule.name == name))
 
 
 NOTHING_ASSUMED = Assumptions()

@@ -59,7 +59,7 @@ def check_signed(path: Path, data: bytes) -> None:
         signed = has_signed(key, signature, data)
     except ImportError:
         raise NO_CRYPTOGRAPHY.error(
-            None,
+            SourceLocation(str(path)),
             "a signature cannot be checked: the package `cryptography` is not installed",
             help=f"`{install_command('signed')}`",
         ) from None

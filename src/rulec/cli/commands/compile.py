@@ -14,6 +14,7 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_standard_output
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, rulebooks_named, told_apart
+from rulec.diagnostics import SourceLocation, placed_at
 from rulec.report.text.console import print_line
 
 _WRITTEN = (".hoa", ".json")
@@ -119,7 +120,10 @@ def command(
                 paths = session.write_compiled(compiled, folder, certificate=not no_certificate)
             else:
                 compiled = session.compile_rulebook(book, step_s=steps_s or None)
-                paths = session.write_monitor(compiled, folder, objects, prove=prove, language=emit)
+                with placed_at(SourceLocation(book)):
+                    paths = session.write_monitor(
+                        compiled, folder, objects, prove=prove, language=emit
+                    )
             for path in paths:
                 print_line(f"wrote {path}")
             written += 1

@@ -32,7 +32,7 @@ from rulec.cli.options.scenario_options import (
 from rulec.cli.options.verb_class import VerbGroup
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.cli.standard_input import file_named
-from rulec.diagnostics import RulecError, named
+from rulec.diagnostics import RulecError, SourceLocation, named, placed_at
 from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
@@ -282,10 +282,13 @@ def _judged(
         scene_reading(options, None)
         scene = read_scene(scenario, options)
         options["partition"] = options["partition"] or "paper"
-        return rulec.navigation_graph(scene, **options), None, None
+        with placed_at(SourceLocation(scenario)):
+            return rulec.navigation_graph(scene, **options), None, None
     rules = read_machines(rulebook, at)
     reading = scene_reading(options, rules.vocabulary)
-    maneuvers = rulec.find_maneuvers(read_scene(scenario, options), rules, **reading, **options)
+    scene = read_scene(scenario, options)
+    with placed_at(SourceLocation(scenario)):
+        maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
     place = number or 1
     maneuver = None
     legal = maneuvers.satisfying + maneuvers.open

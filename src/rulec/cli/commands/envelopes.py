@@ -18,6 +18,7 @@ from rulec.cli.options.scenario_options import (
 )
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_written, read_machines
+from rulec.diagnostics import SourceLocation, placed_at
 from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
@@ -58,8 +59,9 @@ def command(
     rules = read_machines(rulebook, at)
     reading = scene_reading(options, rules.vocabulary)
     scene = read_scene(scenario, options)
-    maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
-    cheapest = maneuvers.cheapest(number, perhaps=True)
+    with placed_at(SourceLocation(scenario)):
+        maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
+        cheapest = maneuvers.cheapest(number, perhaps=True)
     with output_stream(to) as (stream, name):
         write_envelopes(maneuvers.graph, cheapest, stream, name, cast("Format", to.form))
     legal = shown_count(maneuvers.satisfying + maneuvers.open)

@@ -25,6 +25,7 @@ from rulec.cli.output import (
     read_machines,
     rulebooks_named,
 )
+from rulec.diagnostics import SourceLocation, placed_at
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_remark
 
@@ -120,8 +121,9 @@ def command(
                 own = dict(options)
                 reading = scenario_options.scene_reading(own, rules.vocabulary)
                 scene = scenario_options.read_scene(path, own)
-                maneuvers = rulec.find_maneuvers(scene, rules, after=past, **reading, **own)
-                shown = asked.answered(maneuvers, to.form)
+                with placed_at(SourceLocation(path)):
+                    maneuvers = rulec.find_maneuvers(scene, rules, after=past, **reading, **own)
+                    shown = asked.answered(maneuvers, to.form)
                 seconds = time.perf_counter() - begin
                 begin += seconds
                 write(_shown(maneuvers, shown, seconds, to.form, several=several))

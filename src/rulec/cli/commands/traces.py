@@ -20,6 +20,7 @@ from rulec.cli.options.output_options import TABLES, Output, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_lost, print_written, read_machines
 from rulec.cli.standard_input import file_named
+from rulec.diagnostics import SourceLocation, placed_at
 from rulec.report.text.console import progress
 from rulec.report.text.terminal_text import shown_count
 
@@ -87,12 +88,14 @@ def command(
     from rulec.trace.trace_model import all_traces
 
     scene = scenario_options.read_scene(scenario, options)
-    if rulebook is None:
-        options["partition"] = options["partition"] or "paper"
-        graph = rulec.navigation_graph(scene, **options).trace_graph()
-    else:
-        graph = rulec.find_maneuvers(scene, read_machines(rulebook), **options).paths
-    total = count_paths(graph)
+    rules = None if rulebook is None else read_machines(rulebook)
+    with placed_at(SourceLocation(scenario)):
+        if rules is None:
+            options["partition"] = options["partition"] or "paper"
+            graph = rulec.navigation_graph(scene, **options).trace_graph()
+        else:
+            graph = rulec.find_maneuvers(scene, rules, **options).paths
+        total = count_paths(graph)
     if limit is None and total > MOST_TRACES:
         raise click.UsageError(
             f"There are {shown_count(total)} traces; that would fill a disk. "

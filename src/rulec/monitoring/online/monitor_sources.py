@@ -13,6 +13,7 @@ import msgspec
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.diagnostic import with_place
 from rulec.files import MAX_SAVED_BYTES, opened, read_whole, written_whole
 from rulec.logic.codec import number_from_data
 from rulec.monitoring.letter_reader import present_in
@@ -60,7 +61,7 @@ def answer(monitor: Monitor, item: LiveState | RulecError) -> SoFar | RulecError
     try:
         return monitor.step(item.state, item.objects, item.place)
     except RulecError as error:
-        return error
+        return with_place(error, item.place)
 
 
 def read_saved(path: Path) -> Any:

@@ -7,8 +7,9 @@ machine, whoever the others are, no other is looked for. So a rule is bound vari
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
 from heapq import merge
+from itertools import chain
 from typing import TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
@@ -57,7 +58,9 @@ def doubtful_bindings(
         yield from cast.bindings(rule)
         return
     names = [variable.name for variable in rule.variables]
-    for chosen in _in_order(search.choices(), begun, cast):
+    # All at first: to judge many and refuse the rest would be for nothing.
+    every = list(search.choices())
+    for chosen in _in_order(iter(every), begun, cast):
         binding = binding_of(dict(zip(names, chosen, strict=True)), cast.present, cast.n_states)
         if binding.first <= binding.last:
             yield binding
@@ -96,6 +99,14 @@ class _Search:
         self._variables = [variable.name for variable in rule.variables]
         self._reads = [(own, _variables_of(own)) for own in rule.machine.reads]
         self._anything = tuple([(1 << own.size) - 1 for own in rule.machine.reads])
+        places = {variable: place for place, variable in enumerate(self._variables)}
+        self._about = [tuple([places[name] for name in names]) for _, names in self._reads]
+        self._known = [
+            [number for number, own in enumerate(self._about) if max(own, default=-1) == place]
+            for place in range(-1, len(places))
+        ]
+        """The reads that choosing nobody makes known, then those that each variable does."""
+        self._so_far = [tuple(chain(*self._known[: end + 1])) for end in range(len(self._known))]
         self._columns: dict[tuple[int, tuple[str, ...]], tuple[Digits, int]] = {}
         self._busy: dict[tuple[tuple[int, ...], tuple[int, ...]], bool] = {}
         self._most = CHOICES.value()
@@ -110,68 +121,79 @@ class _Search:
                 continue
             types = [type_of[variable] for variable in variables]
             for chosen in choices(types, objects, self._cast.vocabulary):
-                self._column(number, dict(zip(variables, chosen, strict=True)))
+                self._column(number, chosen)
 
     def choices(self) -> Iterator[tuple[str, ...]]:
         """Those of which some state does something to the rule's machine."""
         cast = self._cast
-        everywhere = range(cast.n_states)
+        nobody = self._longer(dict.fromkeys(range(cast.n_states), ()), (), range(cast.n_states))
         fitting = []
-        for variable, kind in zip(self._variables, types_of(self._rule), strict=True):
+        for place, kind in enumerate(types_of(self._rule)):
             busy = {
-                item: frozenset(self._busy_states({variable: item}, everywhere))
+                item: self._busy_alone(place, item)
                 for item in fitting_objects(kind, cast.objects, cast.vocabulary)
             }
             fitting.append({item: states for item, states in busy.items() if states})
         if all(fitting):
-            yield from self._extended({}, frozenset(everywhere), fitting)
+            yield from self._extended((), nobody, fitting)
 
     def _extended(
         self,
-        chosen: Mapping[str, str],
-        states: frozenset[int],
+        chosen: tuple[str, ...],
+        cubes: Mapping[int, tuple[int, ...]],
         fitting: Sequence[Mapping[str, frozenset[int]]],
     ) -> Iterator[tuple[str, ...]]:
+        """Choices that begin with the chosen; ``cubes`` are what is read of these, by state."""
         if len(chosen) == len(fitting):
-            yield tuple(chosen.values())
+            yield chosen
             return
-        variable = self._variables[len(chosen)]
         for item, own in fitting[len(chosen)].items():
-            if item in chosen.values():
+            if item in chosen:
                 continue
             self._tried += 1
             if self._tried > self._most:
                 raise CHOICES.exceeded(self._cast.place, f"rule `{self._rule.name}`")
-            longer = {**chosen, variable: item}
-            both = self._busy_states(longer, sorted(states & own))
+            longer = *chosen, item
+            both = self._longer(cubes, longer, own)
             if both:
-                yield from self._extended(longer, frozenset(both), fitting)
+                yield from self._extended(longer, both, fitting)
 
-    def _busy_states(self, chosen: Mapping[str, str], states: Sequence[int]) -> list[int]:
-        """Those of some states in which the rule may not be kept, whoever the others are."""
-        own = binding_of(chosen, self._cast.present, self._cast.n_states)
-        states = [state for state in states if own.first <= state <= own.last]
-        known = tuple(
-            [n for n, (_, variables) in enumerate(self._reads) if chosen.keys() >= set(variables)]
-        )
-        parts: list[Sequence[int]] = []
-        for number in known:
-            column, first = self._column(number, chosen)
-            if isinstance(column, int):
-                parts.append([column] * len(states))
-            else:
-                parts.append([column[state - first] for state in states])
-        cubes = zip(*parts, strict=True) if parts else [()] * len(states)
-        return [
-            state for state, cube in zip(states, cubes, strict=True) if self._is_busy(known, cube)
+    def _longer(
+        self, cubes: Mapping[int, tuple[int, ...]], chosen: tuple[str, ...], own: Container[int]
+    ) -> Mapping[int, tuple[int, ...]]:
+        """Cubes with what the last of the chosen makes known, where it may not be kept."""
+        columns = [
+            self._column(number, tuple([chosen[place] for place in self._about[number]]))
+            for number in self._known[len(chosen)]
         ]
+        known = self._so_far[len(chosen)]
+        result = {}
+        for state, cube in cubes.items():
+            if state in own:
+                digits = *cube, *[_digit(column, state - first) for column, first in columns]
+                if self._is_busy(known, digits):
+                    result[state] = digits
+        return result
 
-    def _column(self, number: int, chosen: Mapping[str, str]) -> tuple[Digits, int]:
+    def _busy_alone(self, place: int, item: str) -> frozenset[int]:
+        """The states in which somebody is and the rule may not be kept, whoever the others are."""
+        own = binding_of({self._variables[place]: item}, self._cast.present, self._cast.n_states)
+        known = tuple([n for n, about in enumerate(self._about) if set(about) <= {place}])
+        columns = [self._column(n, (item,) * len(self._about[n])) for n in known]
+        return frozenset(
+            state
+            for state in range(own.first, own.last + 1)
+            if self._is_busy(
+                known, tuple([_digit(column, state - first) for column, first in columns])
+            )
+        )
+
+    def _column(self, number: int, items: tuple[str, ...]) -> tuple[Digits, int]:
         """What a read may be wherever its own objects are, and the first state of these."""
-        read, variables = self._reads[number]
-        key = number, tuple([chosen[variable] for variable in variables])
+        key = number, items
         if key not in self._columns:
-            about = dict(zip(variables, key[1], strict=True))
+            read, variables = self._reads[number]
+            about = dict(zip(variables, items, strict=True))
             own = binding_of(about, self._cast.present, self._cast.n_states)
             met = own.first <= own.last
             digits = self._read(read, about, (own.first, own.last)) if met else []
@@ -188,6 +210,10 @@ class _Search:
                 cube[number] = own
             busy = self._busy[key] = not self._idle.of_cube(cube)
         return busy
+
+
+def _digit(column: Digits, place: int) -> int:
+    return column if isinstance(column, int) else column[place]
 
 
 def _variables_of(read: Read | NumberRead) -> tuple[str, ...]:
