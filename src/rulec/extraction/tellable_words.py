@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
-from rulec.extraction.selection import SelectedDrives
-from rulec.extraction.to_trace import Drive
+if TYPE_CHECKING:
+    from rulec.extraction.selection import SelectedDrives
 
 _EITHER = frozenset(
     (
@@ -114,5 +115,8 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
 
 def told_words(drives: SelectedDrives) -> frozenset[str]:
     """The words that some of these drives tell."""
+    # Extraction and its arrays, 250 ms: not for the tables above.
+    from rulec.extraction.to_trace import Drive
+
     found = (drive for ego in drives.egos for drive in drives.of(ego))
     return frozenset().union(*(drive.words for drive in found if isinstance(drive, Drive)))

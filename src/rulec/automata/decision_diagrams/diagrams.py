@@ -6,13 +6,33 @@ So equal functions are equal integers, on every machine.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
-
-from dd.bdd import BDD
 
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
+
+
+@contextmanager
+def _without_graphs() -> Iterator[None]:
+    """``dd`` can draw its diagrams as graphs of NetworkX, which takes 0.4 s to load.
+
+    Without it nothing else of ``dd`` changes.
+    """
+    if "networkx" in sys.modules:
+        yield
+        return
+    sys.modules["networkx"] = None  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        del sys.modules["networkx"]
+
+
+with _without_graphs():
+    from dd.bdd import BDD
 
 TRUE, FALSE = 1, -1
 

@@ -161,7 +161,7 @@ def _facts(rule: Rule, rulebook: str) -> Iterator[tuple[str, str]]:
 
 def _untold(rule: Rule) -> str:
     """The words that no format of recordings tells, of a rule of which some are told."""
-    # What recordings tell, 100 ms: for who asks about a rule alone.
+    # What recordings tell: for who asks about a rule alone.
     from rulec.extraction.tellable_words import TELLABLE_WORDS
 
     told = frozenset[str]().union(*TELLABLE_WORDS.values())
