@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from html import escape
 from itertools import pairwise
 from pathlib import Path
@@ -69,9 +70,13 @@ def _highlighted(text: str, language: str, _: str) -> str:
     lexer = _LEXERS.get(language)
     if lexer is None:
         return ""
-    # Classes, not colours, so that they follow the reader's theme.
-    shown = highlight(text, lexer(), HtmlFormatter(nowrap=True))
-    return str(shown)
+    return str(highlight(text, lexer(), _formatter()))
+
+
+@cache
+def _formatter() -> HtmlFormatter[str]:
+    # Classes, not colours, so that they follow the reader's theme. To make one takes 1 ms.
+    return HtmlFormatter(nowrap=True)
 
 
 def _name_headings(tokens: Sequence[Token]) -> None:
