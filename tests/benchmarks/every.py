@@ -30,6 +30,7 @@ NAMES = (
     "drives",
     "compiling",
     "starting",
+    "verbs",
     "typing_rules",
 )
 

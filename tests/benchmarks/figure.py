@@ -44,12 +44,16 @@ class Figure:
 
 @dataclass(frozen=True)
 class Result:
-    """The figures of work on one input; ``input`` says what it is, ``notes`` what else to know."""
+    """The figures of work on one input; ``input`` says what it is, ``notes`` what else to know.
+
+    ``table`` has all of it where figures are of many things alike, its first row their names.
+    """
 
     title: str
     input: str
     figures: list[Figure]
     notes: list[str] = field(default_factory=list)
+    table: list[list[str]] = field(default_factory=list)
 
 
 COLUMNS = ("figure", "wanted", "median", "fastest", "peer takes")
@@ -67,9 +71,9 @@ def cells(figure: Figure) -> tuple[str, ...]:
 def as_text(result: Result) -> str:
     """A result for a terminal."""
     rows = [COLUMNS, *map(cells, result.figures)]
-    return "\n".join(
-        [result.title, f"  {result.input}", *aligned(rows), *(f"  * {one}" for one in result.notes)]
-    )
+    notes = [f"  * {one}" for one in result.notes]
+    more = aligned(result.table) if result.table else []
+    return "\n".join([result.title, f"  {result.input}", *aligned(rows), *notes, *more])
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> list[str]:

@@ -41,6 +41,12 @@ def section(name: str, result: Result) -> Iterator[str]:
     if result.notes:
         yield ""
         yield from (f"- {note}" for note in result.notes)
+    if result.table:
+        head, *rows = result.table
+        yield ""
+        yield row(head)
+        yield row(["---", *["---:"] * (len(head) - 1)])
+        yield from map(row, rows)
 
 
 def row(texts: Sequence[str]) -> str:

@@ -30,6 +30,7 @@ from rulec.automata.compiler_messages import no_machine, no_spot, not_confined
 from rulec.automata.worker import compiler_choice
 from rulec.automata.worker.machine_cache import MachineCache
 from rulec.automata.worker.worker_answers import HAS_PROCESSES, WorkerGreeting, answered_here
+from rulec.cache.keeping import is_keeping
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_steps
@@ -181,6 +182,8 @@ def answers_to(
         return [*answered_here(jobs)], ""
     if choice is None:
         choice = compiler_choice.choice()
+    # A command ends soon, and before that asks for another rulebook, step, or words that are cut.
+    more_will_come = more_will_come or is_keeping()
     cache = MachineCache(choice)
     known, spot = cache.recalled(jobs)
     missing = [job for job, answer in zip(jobs, known, strict=True) if answer is None]

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import RulebookFormulas, build_all, lower
-from rulec.cache.keeping import is_keeping
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import Rounding, has_seconds, in_steps
 from rulec.logic.formula import Formula
@@ -93,9 +92,8 @@ class StepCompiler:
             if missing and self._header is not None:
                 _check_steps(self._built, self.rulebook)
                 self._built += 1
-            # Whoever has met a second step will meet more; and a command, which ends soon, asks for
-            # the step of what it judges next, or for words that are cut.
-            more_will_come = self._header is not None or is_keeping()
+            # Whoever has met a second step will meet more.
+            more_will_come = self._header is not None
             lacking = replace(formulas, rules=missing)
             built = build_all(self.rulebook, lacking, more_will_come=more_will_come)
             self._header = replace(built, source=self.rulebook, recompile=self, prefixes=_prefixes)
