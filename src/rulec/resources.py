@@ -25,14 +25,15 @@ def rulebooks_folder() -> Path:
 
 
 def package_files() -> Iterator[tuple[str, os.stat_result]]:
-    """Files of code and grammar in rulec, in a fixed order."""
-    folders = [str(_PACKAGE), str(_folder("grammar"))]
+    """Files of code, grammar and phrases in rulec, in a fixed order."""
+    phrases = rulebooks_folder() / "vocabulary" / "phrases"
+    folders = [str(_PACKAGE), str(_folder("grammar")), str(phrases)]
     while folders:
         with os.scandir(folders.pop()) as scandir_iterator:
             for entry in sorted(scandir_iterator, key=lambda dir_entry: dir_entry.name):
                 if entry.is_dir(follow_symlinks=False):
                     folders += [] if entry.name == "__pycache__" else [entry.path]
-                elif entry.name.endswith((".py", ".lark", ".json")):
+                elif entry.name.endswith((".py", ".lark", ".json", ".toml")):
                     yield entry.path, entry.stat()
 
 

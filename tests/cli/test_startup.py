@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.verb_table import VERBS
@@ -79,3 +80,45 @@ def test_a_recording_is_judged_with_what_has_been_compiled(tmp_path, monkeypatch
     assert runs[0][0] == runs[1][0]
     assert "lark" in runs[0][1]
     assert runs[1][1] & (NOT_FOR_A_RECORDING | {"0"}) == {"0"}
+
+
+BOOK = """\
+rulebook {}
+use road
+hard rule slow {{
+    require always (fast implies eventually[<= 1 s] not fast)
+    accept {{ speed = 9 km/h }}
+}}
+define fast = speed > {} km/h
+"""
+ASKED_AGAIN = [
+    *("test one.rules", "show one.rules", "audit one.rules", "diff one.rules two.rules"),
+    *("monitor one.rules", "verify drive.xml -r one.rules", "compile one.rules -o out"),
+]
+
+
+def test_what_is_asked_again_is_neither_parsed_nor_compiled(tmp_path, monkeypatch):
+    monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "cache"))
+    samples = Path(__file__).parents[2] / "docs" / "samples"
+    (tmp_path / "drive.xml").write_bytes((samples / "following.xml").read_bytes())
+    for name, speed in (("one", 80), ("two", 90)):
+        (tmp_path / f"{name}.rules").write_text(BOOK.format(name, speed))
+    program = (
+        "import sys; from rulec.cli.main import main; from rulec.automata import compiler\n"
+        "begun, start = [], compiler._started\n"
+        "compiler._started = lambda choice: begun.append(choice) or start(choice)\n"
+        f"for line in {ASKED_AGAIN}:\n"
+        "    status = main(line.split())\n"
+        "    print('@', line, status, 'lark' in sys.modules, begun, file=sys.stderr)\n"
+    )
+    runs = []
+    for _ in range(2):
+        call = [sys.executable, "-c", program]
+        state = b'{"state": {}}'
+        done = subprocess.run(call, capture_output=True, input=state, cwd=tmp_path, check=True)
+        asked = [line for line in done.stderr.decode().splitlines() if line.startswith("@")]
+        runs.append((done.stdout, asked))
+    assert runs[0][0] == runs[1][0]
+    assert all(" 2 True" not in line for line in runs[0][1])
+    assert runs[0][1][-1].endswith("True ['', 'diagrams']")
+    assert [line[-8:] for line in runs[1][1]] == ["False []"] * len(ASKED_AGAIN)

@@ -18,9 +18,8 @@ RULE = 'hard rule r {\n  cite "Article 1"\n  require always (p implies q)\n}\n'
 
 @pytest.fixture
 def read(tmp_path, monkeypatch):
-    """The texts that have been parsed, with a cache of their own in which short ones are kept."""
+    """The texts that have been parsed, with a cache of their own."""
     monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "cache"))
-    monkeypatch.setattr(tree_cache, "LEAST_TEXT", 0)
     texts = []
 
     def noting(source):

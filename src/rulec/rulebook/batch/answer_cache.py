@@ -45,7 +45,8 @@ class AnswerQuestion:
             with path.open("rb") as stream:
                 if not is_own(os.fstat(stream.fileno())):
                     return None
-                kept = json.loads(stream.read())
+                digest, _, text = stream.read().partition(b"\n")
+            kept = json.loads(text) if digest == _digest(text) else {}
             if kept["stamp"] == self._stamp(kept["sources"]):
                 os.utime(path)
                 return kept["answer"]
@@ -60,7 +61,8 @@ class AnswerQuestion:
             return
         with suppress(OSError, RulecError, ValueError):
             kept = {"sources": paths, "stamp": stamp, "answer": answer}
-            write_own(path, json.dumps(kept).encode())
+            text = json.dumps(kept).encode()
+            write_own(path, _digest(text) + b"\n" + text)
             tidy(path.parent, f"*{_ENDING}", MOST_ANSWERS)
 
     def _path(self) -> Path | None:
@@ -89,3 +91,7 @@ class AnswerQuestion:
             names = sorted(map(str, rules_files(folder)))
             seen.update("\0".join(names).encode("utf-8", "surrogatepass"))
         return seen.hexdigest()
+
+
+def _digest(text: bytes) -> bytes:
+    return sha256(text).hexdigest().encode()

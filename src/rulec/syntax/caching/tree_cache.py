@@ -19,14 +19,11 @@ from rulec.syntax.parser import parse
 MOST_TREES = 200
 """So many are kept; those longest unused go first."""
 
-LEAST_TEXT = 2_000
-"""Characters; a shorter text is read as quickly as its tree."""
-
 
 def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     """What ``parse`` says of a text, from the cache if it is there, and kept there if not."""
     kept = KeptBytes("tree", MOST_TREES)
-    if len(source.text) < LEAST_TEXT or not kept.can_be:
+    if not kept.can_be:
         return parse(source)
     key = kept.key(source.text)
     data = kept.recall(key)
