@@ -171,6 +171,10 @@ def test_oncoming_moves_against_ego_or_waits_beside_its_lanes():
     assert found.relevant[0].all()
     assert participant_signals(found).about["oncoming"][0].all()
     assert places.states.keys() <= stopped.states.keys()
+    # Nor is it overtaken where it backs a little there, or its box drifts, as of one that waits
+    backs = context(steady(8, 60, 8, speed=0.5, heading=float(np.pi)))
+    assert backs.relevant[0].all()
+    assert participant_signals(backs).about["oncoming"][0].all()
     # Reversing is not coming: it faces ego's way
     assert not about(steady(8, 60, 4, speed=-5, heading=0.0))["oncoming"]
 

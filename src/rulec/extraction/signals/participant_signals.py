@@ -211,11 +211,13 @@ def _waits_elsewhere(context: DriveContext) -> Flags:
 
     Ego does not overtake those that face it, no more than ones that move, nor follow one that waits
     in a junction for its turn. What only stands there, the wrong way round, is an obstacle in ego's
-    lanes.
+    lanes. One that faces ego and moves away from it backs, or its box drifts: as good as standing.
     """
-    stands = np.abs(context.extents.along) * KMH < context.thresholds.standing_kmh
+    along = context.extents.along
+    stands = np.abs(along) * KMH < context.thresholds.standing_kmh
     vehicles = context.tracks.of_type("vehicle")[:, None]
     moves_elsewhere = context.elsewhere & ~context.spans.all(stands)
+    stands |= (along > 0) & (np.cos(context.extents.turned) < -0.5)
     waits: Flags = stands & vehicles & (moves_elsewhere | ~context.on_lanes)
     return waits
 
