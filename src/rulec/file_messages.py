@@ -219,6 +219,8 @@ def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
 def reason_in_words(problem: OSError | ValueError) -> str:
     if isinstance(problem, IsADirectoryError):
         return "it is a folder"
+    if isinstance(problem, FileExistsError):
+        return "a file of this name is there, where a folder is wanted"
     known = problem.strerror if isinstance(problem, OSError) else None
     return (known or str(problem)).lower()
 

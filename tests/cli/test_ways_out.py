@@ -32,6 +32,10 @@ def said(capsys, *arguments):
             "signal p\nhard rule keep right { require always p }",
             "a name is one word: `keep_right`",
         ),
+        (
+            "param gap_min : length = 1.5\nsignal p\nhard rule r { require always p }",
+            "write the unit, such as `1.5 m`",
+        ),
         ("extends germany", "did you mean `de` (Germany)?"),
     ],
 )
@@ -77,6 +81,9 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["show", "de", "--at"], "error: --at is given without a value"),
         (["check", "--fail-on", "error", "--fail-on", "error"], "--fail-on is given twice"),
         (["show", "de", *(["--at", "2026-01-01"] * 3)], "--at is given 3 times, and takes one"),
+        (["show", "de", "--at", "2026"], "error: --at: `2026` is no date: a date is written"),
+        (["verify", "x.xml", "de"], "  = help: a rulebook is given by `-r de`"),
+        (["verify", "x.xml", "mine.rules"], "  = help: a rulebook is given by `-r mine.rules`"),
         (["new", "Belgium 2"], "  = help: such as `belgium_2`"),
         (
             ["maneuvers", "s1", "-r", "esterle2019", "--step", "0.307692"],

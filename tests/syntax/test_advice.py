@@ -18,6 +18,11 @@ AS_IN = "as in `3 m if wet else 2 m if dark else 1 m`"
 CONDITIONAL = "a conditional is written `(1.5 m if built_up else 2 m)`"
 DIGITS = "a number's digits stand together, such as `1000`"
 NO_DATES = "an option has no dates; a parameter and a rule may have them"
+NO_FUNCTION = "there is no"
+ONE_BY_ONE = "one after the other, `x <= a"
+BY_ITSELF = "each value stands for itself: write"
+IN_A_FORMULA = "in a formula write"
+A_CLAUSE = "of a whole rule it is a clause"
 ONE_VARIABLE = "it has one variable; put one inside the other: "
 FORMULAS = [
     ("p => q", "=>", "write `implies` or `->`"),
@@ -121,9 +126,10 @@ FORMULAS = [
     ("gap > (if town then 1.5 m else 2 m)", "if", CONDITIONAL),
     ("p if q", "if", "write `q implies p` for `p if q`"),
     # Some, every, count.
-    ("exists x: T (p)", "x", "write `some x: vehicle (…)`"),
-    ("∀ x: T (p)", "∀", "write `every x: vehicle (…)`"),
-    ("for all x: T (p)", "all", "write `every x: vehicle (…)`"),
+    ("exists x: T (p)", "x", "write `some x: T (…)`"),
+    ("∀ x: T (p)", "∀", "write `every x: T (…)`"),
+    ("for all x: T (p)", "all", "write `every x: T (…)`"),
+    ("forall x in T (p)", "x", "write `every x: vehicle (…)`"),
     ("some x in T (p)", "in", "it is written `some x: vehicle (…)`"),
     (
         "some x: T p(x)",
@@ -141,6 +147,27 @@ FORMULAS = [
     ("p(v w)", "w", "separate the names by `,`"),
     ("p()", ")", "without arguments there are no parentheses"),
     ("p(1)", "1", NAMES),
+    (
+        "speed <= min(limit, 50 km/h)",
+        "50",
+        f"{NO_FUNCTION} `min`: compare {ONE_BY_ONE} and x <= b`",
+    ),
+    ("gap >= max(3 m, gap)", "3", f"{NO_FUNCTION} `max`: compare {ONE_BY_ONE} or x <= b`"),
+    # What other languages have.
+    ("ego.speed > 3 m/s", ".", "what is ego's stands alone: write `speed`"),
+    ("v.speed > 3 m/s", ".", "what is of an object is written `speed(v)`"),
+    ("place(v) in {left, right}", "in", f"{BY_ITSELF} `left(v) or right(v)`"),
+    ("place in (left, right)", "in", f"{BY_ITSELF} `left or right`"),
+    ("gap in 3 m .. 4 m", "in", "write `a <= x and x <= b`"),
+    ('speed <= "50 km/h"', '"50 km/h"', "write `50 km/h` without quotes"),
+    ("p for at least 3 s", "for", "for how long stands in a bound, such as `always[<= 3 s] p`"),
+    (
+        "speed < previous speed",
+        "speed",
+        "numbers of earlier states cannot be read; formulas can: `previously (speed > 0)`",
+    ),
+    ("(when p then q)", "when", f"{IN_A_FORMULA} `p implies q`; {A_CLAUSE}"),
+    ("(unless p then q)", "unless", f"{IN_A_FORMULA} `not p implies q`; {A_CLAUSE}"),
     ("p, q", ",", "formulas are joined by `and`"),
     ("p; q", ";", "formulas are joined by `and`"),
     ("{ p }", "{", "a formula stands in parentheses, or alone, but not in braces"),
@@ -186,7 +213,7 @@ LINES = [
     ("x is a, b", "a", "the values stand behind `is one of`, such as `is one of a, b`"),
     ("x is one of a or b", "or", "separate the names by `,`"),
     ("sgnal p", "sgnal", "did you mean `signal`?"),
-    ("import p", "import", ""),
+    ("import p", "import", "write `use NAME`"),
     ("use paper, road", ",", "write a `use` line for each vocabulary"),
     ("use my words", "words", "a name is one word, such as `my_words`"),
     ('law "A" 2020', "2020", 'the line is written `law "…"` or `law "…" as of 2006-03-28`'),
@@ -204,6 +231,7 @@ LINES = [
         "car",
         "a variable is written with its type, such as `v: vehicle`",
     ),
+    ("hard rule a:", ":", "what a rule says stands between `{` and `}`"),
     ("hard rule a () { require p }", ")", "a rule without variables has no parentheses"),
     (
         "hard rule a { require p accept { p, q } }",

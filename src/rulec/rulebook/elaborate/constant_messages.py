@@ -12,7 +12,16 @@ from rulec.rulebook.elaborate.elaboration_messages import kind_of, origins, shor
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, WRONG_ARITY
 from rulec.rulebook.overlay.rulebook_overlay import Value
 from rulec.syntax import tree
-from rulec.vocabulary.dimensions import Dimension
+from rulec.vocabulary.dimensions import (
+    ACCELERATION,
+    ANGLE,
+    LENGTH,
+    MASS,
+    NUMBER,
+    SPEED,
+    TIME,
+    Dimension,
+)
 
 if TYPE_CHECKING:
     from rulec.rulebook.elaborate.scope import Scope
@@ -121,11 +130,17 @@ def parameter_of_another_kind(
     item: tree.ParamItem | tree.SetItem, number: NumberByCases, wanted: Dimension, first: tree.Name
 ) -> Diagnostic:
     assert not isinstance(item.value, bool), "only an option is on or off"
+    unit = _usual_unit(wanted) if number.dimension == NUMBER else None
     return MIXED_DIMENSIONS.at(
         item.value.span,
         f"`{item.name.text}` is a {wanted.name}, and `{short(item.value)}` "
         f"{kind_of(number.dimension)}",
         expected=f"expected a {wanted.name}",
-        help="check the unit",
+        help=f"write the unit, such as `{short(item.value)} {unit}`" if unit else "check the unit",
         labels=() if first is item.name else (Label(first.span.place, "its kind is given here"),),
     )
+
+
+def _usual_unit(dimension: Dimension) -> str:
+    units = {ACCELERATION: "m/s^2", ANGLE: "deg", LENGTH: "m", MASS: "kg", SPEED: "km/h", TIME: "s"}
+    return units.get(dimension, "")

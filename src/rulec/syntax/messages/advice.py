@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Final
 
@@ -101,11 +102,16 @@ def _quotes(scene: ParseContext) -> str:
         return 'put the text in double quotes: "…"'
     if token.kind == "string" and "STRING" not in scene.accepted:
         inside = token.text[1:-1]
+        if scene.quantity and _QUANTITY.fullmatch(inside):
+            return f"write `{inside}` without quotes"
         if inside in map(spelling, scene.accepted) or ("NAME" in scene.accepted and _names(inside)):
             return f"write `{inside}` without quotes"
     if before is not None and before.kind == "string" and scene.is_word() and scene.touches():
         return 'a quote inside a text is written \\"'
     return ""
+
+
+_QUANTITY: Final = re.compile(r"[0-9.]+ ?[A-Za-z%/0-9]*")
 
 
 def _names(text: str) -> bool:
@@ -134,7 +140,21 @@ def _misspelt(scene: ParseContext) -> str:
     near = did_you_mean(token.text, words) if len(token.text) > 1 else ""
     if near or before is None or before.text in RESERVED or not scene.operator:
         return near
+    if before.text in _EARLIER:
+        return "numbers of earlier states cannot be read; formulas can: `previously (speed > 0)`"
     return did_you_mean(before.text, UNARY_OPERATORS)
+
+
+_EARLIER: Final = ("previous", "last", "prior", "earlier", "old")
+
+
+def _least(scene: ParseContext) -> str:
+    opened = scene.opened("(", ")")
+    function = "" if opened is None else scene.text_at(opened - 1)
+    if function not in ("min", "max") or scene.operand:
+        return ""
+    word = "and" if function == "min" else "or"
+    return f"there is no `{function}`: compare one after the other, `x <= a {word} x <= b`"
 
 
 def _name(scene: ParseContext) -> str:
@@ -187,6 +207,7 @@ _IN_ORDER: tuple[Callable[[ParseContext], str], ...] = (
     advise_on_aggregate,
     _name_of_two_words,
     _misspelt,
+    _least,
     _name,
     advise_on_rule_head,
     advise_on_clause,

@@ -57,7 +57,12 @@ def advise_on_aggregate(scene: ParseContext) -> str:
     text, before = scene.text, scene.text_before
     word = _QUANTIFIERS.get(text) or (_QUANTIFIERS.get(before) if scene.operator else None)
     if word and (scene.operand or scene.operator) and scene.unexpected is not None:
-        return f"write `{word} x: vehicle (…)`"
+        if any(scene.is_number(scene.at + number) for number in range(1, 4)) and text == "for":
+            return "for how long stands in a bound, such as `always[<= 3 s] p`"
+        at = scene.at + (text in _QUANTIFIERS)
+        own = scene.text_at(at + 1) == ":" and scene.text_at(at + 2).isidentifier()
+        variable = f"{scene.text_at(at)}: {scene.text_at(at + 2)}" if own else "x: vehicle"
+        return f"write `{word} {variable} (…)`"
     if before in _AGGREGATES and scene.accepted == {"NAME"}:
         return f"it is written `{before} x: vehicle (…)`"
     heads = [index for index in range(scene.at) if scene.text_at(index) in _AGGREGATES]
@@ -158,6 +163,8 @@ def _comparisons(scene: ParseContext) -> str:
         return "powers cannot be written; arithmetic is linear"
     if scene.operator and text in RELATIONS and not scene.accepted & COMPARISONS:
         return _chain(scene)
+    if scene.operator and text == "in" and scene.text_behind in ("{", "(", "["):
+        return _any_value(scene)
     if scene.operator and text in ("between", "in"):
         return "write `a <= x and x <= b`"
     if text == "+" and scene.quantity:
@@ -193,8 +200,32 @@ def _operators(scene: ParseContext) -> str:
     return ""
 
 
+def _any_value(scene: ParseContext) -> str:
+    """Advice on ``lateral(v) in {left_of, right_of}``: each value is true or false by itself."""
+    values: list[str] = []
+    for token in scene.tokens[scene.at + 2 :]:
+        if token.kind == "word":
+            values.append(token.text)
+        elif token.text != ",":
+            break
+    opened = next((n for n in range(scene.at - 1, 0, -1) if scene.text_at(n) == "("), None)
+    of = ""
+    if scene.text_before == ")" and opened is not None:
+        of = "".join(token.text for token in scene.tokens[opened : scene.at])
+    said = " or ".join(f"{value}{of}" for value in values[:3])
+    return f"each value stands for itself: write `{said}`" if values else ""
+
+
+_EGO: Final = ("ego", "self", "this", "me", "host")
+
+
 def _joined(scene: ParseContext) -> str:
     behind = scene.token(scene.at + 1)
+    member = behind is not None and behind.kind == "word" and behind.text not in keywords.RESERVED
+    if scene.operator and scene.text == "." and member and scene.before and scene.touches():
+        if scene.text_before in _EGO:
+            return f"what is ego's stands alone: write `{scene.text_behind}`"
+        return f"what is of an object is written `{scene.text_behind}({scene.text_before})`"
     more = behind is not None and behind.text not in {")", *keywords.CLAUSE_WORDS}
     if scene.operator and more and scene.text in (",", ";", "."):
         return "formulas are joined by `and`"

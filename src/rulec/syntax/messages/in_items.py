@@ -43,6 +43,7 @@ _OTHER_WORDS: Final = {
     **dict.fromkeys(("const", "let", "var"), "param NAME = 1.5 m"),
     **dict.fromkeys(("bool", "boolean", "flag"), "signal NAME"),
     **dict.fromkeys(("inherits", "imports"), "extends NAME"),
+    **dict.fromkeys(("import", "include", "uses"), "use NAME"),
     **dict.fromkeys(("assume", "axiom", "invariant"), "fact formula"),
 }
 
@@ -169,6 +170,8 @@ def advise_on_rule_head(scene: ParseContext) -> str:
         return "a rule without variables has no parentheses"
     if scene.accepted == {"COLON"}:
         return "a variable is written with its type, such as `v: vehicle`"
+    if text == ":" and "RPAR" not in scene.accepted:
+        return "what a rule says stands between `{` and `}`"
     return _HEAD if "RPAR" not in scene.accepted else ""
 
 

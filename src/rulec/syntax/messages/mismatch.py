@@ -96,7 +96,7 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
     if token is not None and token.kind == "unterminated":
         return _unterminated(span)
     if token is not None and _is_word_for_name(scene):
-        return _reserved(span, token.text)
+        return _reserved(span, token.text, in_formula=scene.operand)
     if piece.kind == "item" and at < 2 and first not in keywords.ITEM_WORDS:
         return _unknown_item(source, inside)
     what = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
@@ -189,13 +189,17 @@ def _is_word_for_name(scene: ParseContext) -> bool:
     return scene.kind != "state" or token.text in keywords.ITEM_WORDS | keywords.CLAUSE_WORDS
 
 
-def _reserved(span: Span, word: str) -> Diagnostic:
+def _reserved(span: Span, word: str, *, in_formula: bool) -> Diagnostic:
     kind = "an operator" if word in keywords.OPERATOR_LETTERS else "a word of the language"
+    another = f"choose another name, such as `{word.lower()}_1`"
+    if in_formula and word in ("when", "unless"):
+        other = "not p" if word == "unless" else "p"
+        another = f"in a formula write `{other} implies q`; of a whole rule it is a clause"
     return RESERVED_WORD.at(
         span,
         f"`{word}` is {kind} and cannot be a name",
         expected="expected a name",
-        help=f"choose another name, such as `{word.lower()}_1`",
+        help=another,
     )
 
 
