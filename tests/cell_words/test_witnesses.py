@@ -1,23 +1,34 @@
 """Words in cells hold for every drive through them, and so do the verdicts on maneuvers."""
 
+import os
+import random
 from dataclasses import replace
-from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from rulec import RulecError, compile_rulebook, find_maneuvers, verify
+from rulec import RulecError, compile_rulebook, find_maneuvers
 from rulec.scenario import Choice
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
 from support.builders.recordings import RECORDINGS, recording, straight, vehicle
+from support.generators.driven_motions import driven, paths_of
 from support.oracles.witness_drives import (
     contradicting,
+    disagreeing,
     drives_of,
     in_layers,
     on_an_edge,
+    sampled,
+    states_of,
     witnesses,
 )
+
+MOTIONS = int(os.environ.get("RULEC_TEST_MOTIONS", "1000"))
+"""So many random motions in each recording."""
+
+AT_ONCE = 50
 
 FILES = sorted(RECORDINGS.glob("*.xml"))
 LANES = (straight(1, 0, 300, left_of=2), straight(2, 0, 300, y=4, right_of=1))
@@ -31,29 +42,41 @@ def german():
 def check(found, most):
     """Compare some maneuvers with the drives of their trajectories."""
     pairs = witnesses(found, most) if found.traces else []
-    if not pairs:
-        return 0
-    compared = 0
-    drives = drives_of(found, [trajectory for _, trajectory in pairs])
-    for (nodes, trajectory), drive in zip(pairs, drives, strict=True):
+    step_s, count = states_of(found)
+    return compared(
+        found,
+        [(nodes, sampled(trajectory.states, step_s, count)) for nodes, trajectory in pairs],
+    )
+
+
+def compared(found, pairs):
+    """Compare maneuvers with drives through them: how many were drives."""
+    number = 0
+    drives = drives_of(found, [motion for _, motion in pairs]) if pairs else ()
+    for (nodes, motion), drive in zip(pairs, drives, strict=True):
         trace = None if drive is None else in_layers(found, drive)
-        if trace is None or on_an_edge(found, nodes, trajectory):
+        if trace is None or on_an_edge(found, nodes, motion):
             continue
         assert list(contradicting(found, nodes, trace)) == []
-        of_drive = verify(trace, found.rules)
-        mine = found.verdict(SimpleNamespace(nodes=nodes))
-        violated, doubtful = keys(mine.violations), keys(mine.open)
-        own, own_doubtful = keys(of_drive.violations), keys(of_drive.open)
-        dark = {rule.rule for rule in mine.not_judged}
-        assert {key for key in own - violated - doubtful if key[0] not in dark} == set()
-        dark = {rule.rule for rule in of_drive.not_judged}
-        assert {key for key in violated - own - own_doubtful if key[0] not in dark} == set()
-        compared += 1
-    return compared
+        assert list(disagreeing(found, nodes, trace)) == []
+        number += 1
+    return number
 
 
-def keys(results):
-    return {(one.rule, tuple(sorted(one.binding.items()))) for one in results}
+def check_sampled(found, number, chance):
+    """Compare random motions with the maneuvers that they are: how many were."""
+    graph, (step_s, count) = found.graph, states_of(found)
+    every = round(graph.step_s / step_s)
+    pairs, compared_so_far = [], 0
+    for left in reversed(range(number)):
+        motion = np.array(driven(graph.scenario.ego, graph.bounds, step_s, count, chance, 2))
+        path = paths_of(graph, motion[::every].tolist())
+        if path is not None and all(len(cells) == 1 for cells in path):
+            pairs.append((tuple(next(iter(cells)) for cells in path), motion))
+        if len(pairs) == AT_ONCE or not left:
+            compared_so_far += compared(found, pairs)
+            pairs = []
+    return compared_so_far
 
 
 @st.composite
@@ -96,3 +119,30 @@ def test_random_scenes(german, scene):
 def test_recordings(german, file, most):
     found = find_maneuvers(file, german)
     check(found, most)
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not FILES, reason="CommonRoad's scenarios are not here")
+@pytest.mark.parametrize("file", FILES or [""], ids=lambda file: getattr(file, "stem", ""))
+def test_random_motions_in_recordings(german, file):
+    found = find_maneuvers(file, german)
+    if abs(found.graph.step_s / states_of(found)[0] % 1) < 1e-9:
+        check_sampled(found, MOTIONS, random.Random(file.stem))
+
+
+@pytest.mark.long
+def test_random_motions_in_random_scenes(german):
+    number = 0
+
+    @given(scenes(), st.integers(0, 10**6))
+    @settings(max_examples=200, suppress_health_check=list(HealthCheck))
+    def in_a_scene(scene, seed):
+        nonlocal number
+        try:
+            found = find_maneuvers(scene, german, horizon_s=2.0)
+        except RulecError:
+            assume(False)
+        number += check_sampled(found, 100, random.Random(seed))
+
+    in_a_scene()
+    assert number > 1000

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.cell_words.conduct_words import CONDUCT, ConductWords
 from rulec.cell_words.ego_boxes import EgoBoxes, ego_boxes
 from rulec.cell_words.place_words import PlaceWords, SceneWords, Words, settled_by_place
 from rulec.cell_words.probe_drives import ProbeDrives, probe_drives
@@ -24,6 +25,7 @@ from rulec.trace import State
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
+_HAIR_S = 1e-6
 _BEFORE_M, _BEYOND_M = 100.0, 250.0
 """What is farther from where ego may be gives no reason for any word."""
 
@@ -79,7 +81,7 @@ class _Words:
         self._graph, self._probes, self._frame = graph, probes, frame
         self._vocabulary: Vocabulary = rules.vocabulary
         self._names = names_read(rules) & probes.told
-        self._boxes = list(ego_boxes(graph, probes.among.surroundings.tolerances.speed_mps))
+        self._boxes = list(ego_boxes(graph))
         self._scene = self._scene_words()
         self._places = PlaceWords(probes, self._names)
         self._bodies = probes.among.recording.participants[:-1]
@@ -114,18 +116,26 @@ class _Words:
         )
         junctions = frame is None or near(frame.junctions)
         return SceneWords(
-            self._probes, self._names, not (junctions or crossings or rails), not crossings
+            self._probes,
+            self._names,
+            no_junction=not (junctions or crossings or rails),
+            no_crossing=not crossings,
+            straight=frame is not None and frame.goes_straight,
         )
 
     def _presences(self) -> dict[str, tuple[int, int]]:
         """First and last layers of all who are on the scene's road, or count for ego.
 
         By their ids in the recording: who leaves the scene's road and comes back may be beside it
-        meanwhile.
+        meanwhile. Nobody is there for rules after the recording's end.
         """
         spans: dict[str, tuple[int, int]] = {}
+        seen = sum(layer.start_s <= self._until_s + _HAIR_S for layer in self._graph.layers) - 1
         for name, obstacle in self._graph.objects.items():
             first, last = self._graph.present[name]
+            if first > seen:
+                continue
+            last = min(last, seen)
             low, high = spans.get(obstacle.id, (first, last))
             spans[obstacle.id] = min(low, first), max(high, last)
         for number, (now, boxes) in enumerate(zip(self._now, self._boxes, strict=True)):
@@ -137,6 +147,13 @@ class _Words:
                 first, last = spans.get(self._bodies[row].id, (number, number))
                 spans[self._bodies[row].id] = min(first, number), max(last, number)
         return spans
+
+    @property
+    def _until_s(self) -> float:
+        """The scene's time (s) at which the recording of the others ends."""
+        steps = [max(body.outlines) for body in self._bodies if body.outlines and not body.standing]
+        origin = self._probes.origin
+        return (max(steps, default=0) - origin.start.step) * origin.recording.step_s
 
     def _layer(self, number: int) -> Iterator[State]:
         layer, boxes, now = self._graph.layers[number], self._boxes[number], self._now[number]
@@ -209,9 +226,10 @@ class _Words:
             return {name: [dict(unknown) for _ in boxes.s[0]] for name in names}
         relations = Relations(boxes, now, self._frame)
         flows = {name: relations.flow(FLOWS[name]) for name in self._names & FLOWS.keys()}
-        sure = relations.near & now.counts
+        sure = np.broadcast_to(now.counts, relations.stations.shape)
         rows = [(item, self._rows.get(item)) for item in items]
-        found: dict[str, list[Any]] = dict(flows)
+        conduct = ConductWords(boxes, now, self._frame, relations)
+        found: dict[str, list[Any]] = {**flows, **conduct.words(self._names & CONDUCT)}
         for name, values in relations.words(names).items():
             found[name] = [
                 {

@@ -25,18 +25,14 @@ _WINDOW_S = 0.5
 _BEND_RAD = np.radians(6.0)
 """The directions of two lines along one road differ by less, where it bends."""
 
-_GRIP_MPS2, _SLIP_S = 10.0, 0.3
-"""What gains or loses more speed than this, for so long, is taken to slip off its track."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EgoBoxes:
     """Bounds for each cell when its layer begins.
 
     ``s`` and ``d`` (m) are those of ego's centre, ``speed`` that along the road and ``mean_speed``
-    the one that extraction finds, whatever its direction, less than 0 as far as it may be wrong
-    (m/s). Half its body's extents along and across the road (m) are for all headings that ego may
-    have.
+    the one that extraction measures, a mean, whatever its direction (m/s). Half its body's extents along and across the road (m) are for all headings that ego may
+    have; ``sideways`` is the greatest speed across it (m/s).
     """
 
     s: Bounds
@@ -45,10 +41,16 @@ class EgoBoxes:
     mean_speed: Bounds
     half_length: Bounds
     half_width: Bounds
+    sideways: Floats
 
 
-def ego_boxes(graph: NavigationGraph, error_mps: float) -> Iterator[EgoBoxes]:
-    """The bounds in each layer; speeds over a second are known to ``error_mps``."""
+def column(values: Floats) -> Floats:
+    """Numbers by cell as a column, to be compared with those of others in a row."""
+    return values[:, None]
+
+
+def ego_boxes(graph: NavigationGraph) -> Iterator[EgoBoxes]:
+    """The bounds in each layer."""
     motion = graph.bounds
     size = body_size(graph)
     last = len(graph.layers) - 1
@@ -56,7 +58,7 @@ def ego_boxes(graph: NavigationGraph, error_mps: float) -> Iterator[EgoBoxes]:
         reach = graph.reach[number] if graph.reach else (None,) * len(layer.cells)
         before = min(number * graph.step_s, _WINDOW_S)
         after = min((last - number) * graph.step_s, _WINDOW_S)
-        yield _boxes(layer, reach, size, _mean_margins(motion, before, after, error_mps))
+        yield _boxes(layer, reach, size, _mean_margins(motion, before, after))
 
 
 def body_size(graph: NavigationGraph) -> tuple[float, float]:
@@ -65,19 +67,14 @@ def body_size(graph: NavigationGraph) -> tuple[float, float]:
     return ego.length or bounds.length, ego.width or bounds.width
 
 
-def _mean_margins(
-    motion: MotionBounds | None, before: float, after: float, error_mps: float
-) -> tuple[float, float]:
-    """How far a mean of speed, with what it may be wrong, may be below and above the speed."""
+def _mean_margins(motion: MotionBounds | None, before: float, after: float) -> tuple[float, float]:
+    """How far a mean of speed may be below and above the speed."""
     if motion is None or not before + after:
         return _FASTEST_MPS, _FASTEST_MPS
     gains, loses, seconds = motion.acceleration, motion.braking, before + after
     below = (gains * before**2 + loses * after**2) / 2 / seconds
     above = (loses * before**2 + gains * after**2) / 2 / seconds
-    most = max(gains, loses)
-    wrong = error_mps / seconds + most * abs(after - before) / 2
-    wrong += max(most - _GRIP_MPS2, 0.0) * _SLIP_S / seconds
-    return below + wrong, above + wrong
+    return below, above
 
 
 def _boxes(
@@ -110,6 +107,7 @@ def _boxes(
         mean_speed=means,
         half_length=lengths,
         half_width=widths,
+        sideways=sideways,
     )
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rulec.cell_words.ego_boxes import EgoBoxes, Floats
 from rulec.cell_words.probe_drives import EVERY_M, LaneProbe, ProbeDrives
+from rulec.extraction.signals.map.junction_signals import COLOURS
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
 Words: TypeAlias = dict[str, Any]
@@ -72,6 +73,7 @@ OF_PLACE = frozenset(
         "narrowing",
         "merged",
         "light",
+        "turn",
     }
 )
 """Decided by where ego is along the road, and in which lane."""
@@ -81,7 +83,6 @@ DISTANCES = frozenset({"distance_to_crossing", "distance_to_junction"})
 NEEDS_JUNCTION = frozenset(
     {
         "enters_junction",
-        "turn",
         "all_way_stop",
         "unregulated_junction",
         "own_road_ends",
@@ -106,6 +107,11 @@ NEEDS_JUNCTION = frozenset(
 
 NEEDS_CROSSING = frozenset({"crossing_use", "stopped_for_pedestrian", "nearest_to_crossing"})
 """The same everywhere on a road without pedestrian crossings."""
+
+_NEEDS_TYPE = {"emergency_vehicle_near": "emergency_vehicle", "conflict_with_rail": "rail_vehicle"}
+"""False where nobody of a type is recorded."""
+
+_ANY_LIGHT = OneOf(frozenset(COLOURS.values()))
 
 _AT_ZONE: Mapping[str, Any] = {"enters_junction": False, "turn": "straight_on"}
 """What they are where ego is not at a junction."""
@@ -181,15 +187,23 @@ class PlaceWords:
     def _between(self, low: float, high: float, first: int, last: int) -> Words:
         """The words for all places between two, in a range of lanes."""
         spans = []
-        reached = dict.fromkeys(range(first, last + 1), False)
+        there = [
+            (lane, max(begin, low) + EVERY_M, min(end, high) - EVERY_M)
+            for lane, begin, end in self._probes.stretches
+            if first <= lane <= last and begin <= high and end >= low
+        ]
+        untold = set(there)
         for number, lane in enumerate(self._lanes):
             if first <= lane.probe.lane <= last and lane.s[0] <= high and lane.s[-1] >= low:
                 begin = max(int(np.searchsorted(lane.s, low, "right")) - 1, 0)
                 end = min(int(np.searchsorted(lane.s, high, "left")), len(lane.s) - 1)
-                whole = lane.s[0] <= low and lane.s[-1] >= high
-                reached[lane.probe.lane] |= whole
+                untold -= {
+                    one
+                    for one in there
+                    if one[0] == lane.probe.lane and lane.s[0] <= one[1] and lane.s[-1] >= one[2]
+                }
                 spans.append((number, int(lane.run[begin]), int(lane.run[end])))
-        key = tuple(spans), all(reached.values())
+        key = tuple(spans), not untold
         if key not in self._known:
             self._known[key] = self._said_in(*key)
         found = self._known[key]
@@ -207,7 +221,7 @@ class PlaceWords:
             return dict.fromkeys(self._names, UNKNOWN)
         words = {name: hull(one[name] for one in said) for name in self._names}
         if words.get("light", UNKNOWN) != "no_light" and "light" in words:
-            words["light"] = UNKNOWN  # another one at other times
+            words["light"] = _ANY_LIGHT  # another one at other times
         return words
 
     def _ways(self, spans: Sequence[tuple[int, int, int]], low: float, high: float) -> Words:
@@ -239,14 +253,16 @@ def _runs(probe: LaneProbe, names: frozenset[str]) -> _Lane:
 class SceneWords:
     """The words of a whole scene, and those of a time.
 
-    ``nothing_there`` says whether no junction, crossing or level crossing is on the road, as far as
-    ego may get, and beyond; ``no_crossing`` the same of pedestrian crossings alone.
+    ``no_junction`` says whether no junction, crossing or level crossing is on the road, as far as
+    ego may get, and beyond; ``no_crossing`` the same of pedestrian crossings alone. ``straight``:
+    does the road turn in none of its junctions?
     """
 
     probes: ProbeDrives
     names: frozenset[str]
     no_junction: bool
     no_crossing: bool
+    straight: bool
 
     @cached_property
     def everywhere(self) -> Words:
@@ -258,15 +274,18 @@ class SceneWords:
             values = list(self._values(name))
             if values and not any(isinstance(value, Mapping) for value in values):
                 words[name] = hull(values)
-        if "emergency_vehicle_near" in self.names:
-            kinds = {body.type for body in self.probes.recording.participants}
-            words["emergency_vehicle_near"] = UNKNOWN if "priorityVehicle" in kinds else False
+        for name, type_ in _NEEDS_TYPE.items():
+            if name in self.names:
+                others = self.probes.recording.participants
+                words[name] = UNKNOWN if any(type_ in o.object_types for o in others) else False
+        if self.straight:
+            words |= dict.fromkeys(self.names & {"in_way_of_oncoming"}, False)
         return words
 
     @cached_property
     def about_all(self) -> Words:
         """Words about others that are the same of all of them in all cells: name -> value."""
-        return {
+        of_all = {
             name: hull(
                 inner
                 for value in self._values(name)
@@ -276,6 +295,9 @@ class SceneWords:
             for name in self._guarded
             if any(isinstance(value, Mapping) for value in self._values(name))
         }
+        if self.straight:
+            of_all |= dict.fromkeys(self.names & {"turns_in_way_of"}, False)
+        return of_all
 
     @cached_property
     def _guarded(self) -> frozenset[str]:

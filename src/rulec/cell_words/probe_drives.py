@@ -26,6 +26,9 @@ EVERY_M = 1.0
 _BEFORE_M, _BEYOND_M = 30.0, 30.0
 _SLOWER_MPS, _FASTER_MPS = 10.0, 10.0
 
+_ON_S, _ON_MPS, _ON_MPS2 = 8.0, 10.0, 3.0
+"""For how long drives go on, and how fast; they speed up by no more than the third."""
+
 Row: TypeAlias = tuple[Floats, Floats, Floats]
 """s and d (m) in the scene, and the direction from the road's (rad), state by state."""
 
@@ -58,7 +61,8 @@ class TimedProbe:
 class ProbeDrives:
     """The drives of a scene, and what they are made in.
 
-    ``told`` are the names that the recording tells, ``side`` is that of traffic.
+    ``told`` are the names that the recording tells. ``stretches`` are those of the lanes that were
+    asked for: lane, and from where to where (m) it is there.
     """
 
     among: CandidateDrives
@@ -66,6 +70,7 @@ class ProbeDrives:
     lanes: tuple[LaneProbe, ...]
     timed: tuple[TimedProbe, ...]
     told: frozenset[str]
+    stretches: tuple[tuple[int, float, float], ...]
 
     @property
     def recording(self) -> Recording:
@@ -149,7 +154,14 @@ def probe_drives(
             elif len(own) == 1:
                 trace = drive.trace
                 timed.append(TimedProbe(drive.first_step, trace.states, trace.objects))
-    return ProbeDrives(among, origin, tuple(lane_probes), tuple(timed), frozenset(told))
+    return ProbeDrives(
+        among=among,
+        origin=origin,
+        lanes=tuple(lane_probes),
+        timed=tuple(timed),
+        told=frozenset(told),
+        stretches=tuple((lane, float(row[0][0]), float(row[0][-1])) for lane, row in rows),
+    )
 
 
 def _along_lanes(origin: SceneOrigin, low: float, high: float) -> Iterator[tuple[int, Row]]:
@@ -168,9 +180,20 @@ def _along_lanes(origin: SceneOrigin, low: float, high: float) -> Iterator[tuple
 def _through_time(
     graph: NavigationGraph, count: int, step_s: float
 ) -> Iterator[tuple[Row, Floats]]:
-    """Along ego's place across the road, at its speed, slower and faster."""
+    """Along ego's place across the road, at its speed, slower and faster.
+
+    And then on along it: only who drives on shows which road it is on.
+    """
     ego = graph.scenario.ego
+    last = max(graph.scenario.road.s[1] - _BEYOND_M, 0.0)
     times: Floats = np.arange(count, dtype=np.float64) * step_s
+    after: Floats = np.arange(1, round(_ON_S / step_s) + 1) * step_s
     own = ego.speed or 0.0
     for speed in (own, max(own - _SLOWER_MPS, 0.0), own + _FASTER_MPS):
-        yield (ego.s + speed * times, np.full(count, ego.d), np.zeros(count)), np.full(count, speed)
+        fast = max(speed, _ON_MPS)
+        for_s = np.minimum(after, (fast - speed) / _ON_MPS2)
+        on = speed * for_s + _ON_MPS2 * for_s**2 / 2 + fast * (after - for_s)
+        s = np.concatenate((speed * times, speed * times[-1] + on)) + ego.s
+        speeds = np.concatenate((np.full(count, speed), speed + _ON_MPS2 * for_s))
+        kept = max(count, int(np.searchsorted(s, last)))
+        yield (s[:kept], np.full(kept, ego.d), np.zeros(kept)), speeds[:kept]

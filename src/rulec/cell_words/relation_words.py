@@ -7,11 +7,12 @@ Each set or interval contains what extraction finds for any of them; see
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from rulec.cell_words.ego_boxes import Bounds, EgoBoxes, Floats
+from rulec.cell_words.ego_boxes import Bounds, EgoBoxes, Floats, column
 from rulec.cell_words.road_frame import Flags, OthersNow, RoadFrame
 from rulec.extraction.drive_context import KMH
 from rulec.extraction.signals.measured_numbers import LONGEST_S
@@ -58,15 +59,13 @@ class Relations:
         self._ahead = others.s[0] - frame.loose_s, others.s[1] + frame.loose_s
         # Front and rear of ego, at their least and greatest
         half = boxes.half_length
-        self._front = _column(boxes.s[0] + half[0]), _column(boxes.s[1] + half[1])
-        self._rear = _column(boxes.s[0] - half[1]), _column(boxes.s[1] - half[0])
-        self.near: Flags = self._gaps()[1] <= USUAL.near_m
-        """Is each surely so near that it counts?"""
+        self.front = column(boxes.s[0] + half[0]), column(boxes.s[1] + half[1])
+        self.rear = column(boxes.s[0] - half[1]), column(boxes.s[1] - half[0])
         self.stations = self._stations()
         self.laterals = self._laterals()
 
     def _stations(self) -> np.ndarray[Any, np.dtype[np.int8]]:
-        (front, far_front), (rear, far_rear) = self._front, self._rear
+        (front, far_front), (rear, far_rear) = self.front, self.rear
         (low, high), apart = self._others.s, self._frame.apart_s
         found = np.where(front <= low + apart, BEHIND, 0)
         found |= np.where((far_front > low - apart) & (rear < high + apart), BESIDE, 0)
@@ -79,8 +78,8 @@ class Relations:
         Who is hardly in its lane, but in the way of its body, is in the lane.
         """
         boxes, others, straight = self._boxes, self._others, self._straight
-        low, high = _column(boxes.d[0]) + _HAIR_M, _column(boxes.d[1]) - _HAIR_M
-        width = _column(boxes.half_width[1]) + self._frame.loose_d
+        low, high = column(boxes.d[0]) + _HAIR_M, column(boxes.d[1]) - _HAIR_M
+        width = column(boxes.half_width[1]) + self._frame.loose_d
         touches, count = others.perhaps.any(axis=1), others.perhaps.shape[1]
         first = np.where(touches, others.perhaps.argmax(axis=1), 0)
         last = np.where(touches, count - 1 - others.perhaps[:, ::-1].argmax(axis=1), count - 1)
@@ -96,25 +95,32 @@ class Relations:
         return np.where(self._surely_same(), SAME, found).astype(np.int8)
 
     def _surely_same(self) -> Flags:
-        """Flags of who takes up half of ego's way wherever in the cell it is."""
-        others, loose, straight = self._others, self._frame.loose_d, self._straight
-        width = _column(self._boxes.half_width[0])
-        ends = [_column(end) for end in self._boxes.d]
-        overlaps = [
-            np.minimum(end + width, others.d[1]) - np.maximum(end - width, others.d[0])
-            for end in ends
-        ]
-        narrower = np.minimum(2 * width, others.d[1] - others.d[0])
+        """Flags of those in whose lanes ego's middle is wherever in the cell it is.
+
+        But for who reaches beyond ego's lane and may be clear of ego sideways. What places leave in
+        doubt is unknown to extraction.
+        """
+        others, loose, straight = self._others, self._frame.apart_d, self._straight
+        low, high = (column(end) for end in self._boxes.d)
         lanes, some = others.lanes, others.lanes.any(axis=1)
         first = np.where(some, lanes.argmax(axis=1), 0)
         last = np.where(some, lanes.shape[1] - 1 - lanes[:, ::-1].argmax(axis=1), -1)
-        inside = (ends[0] + _HAIR_M >= straight[first]) & (ends[1] - _HAIR_M <= straight[last + 1])
-        same: Flags = some & inside & (np.minimum(*overlaps) - loose > narrower / 2)
+        inside = (low + _HAIR_M >= straight[first]) & (high - _HAIR_M <= straight[last + 1])
+        wide, reach = column(self._boxes.half_width[0]), USUAL.touching_m - loose
+        right = np.clip(np.searchsorted(straight, low + _HAIR_M, "right") - 1, 0, len(straight) - 2)
+        left = np.clip(np.searchsorted(straight, high - _HAIR_M, "left"), 1, len(straight) - 1)
+        # Of several lanes the innermost bounds are those that are reached beyond first
+        nearest = np.minimum(straight[right + 1], straight[left])
+        farthest = np.maximum(straight[left - 1], straight[right])
+        beyond = (others.d[1] - nearest > reach) | (farthest - others.d[0] > reach)
+        clear = np.maximum(others.d[0] - low - wide, high - wide - others.d[1]) > reach
+        same: Flags = some & inside & ~(beyond & clear)
         return same
 
-    def _gaps(self) -> Bounds:
+    @cached_property
+    def gaps(self) -> Bounds:
         """The least and the greatest gap (m), below 0 beside each other."""
-        (low, high), (front, far_front), (rear, far_rear) = self._ahead, self._front, self._rear
+        (low, high), (front, far_front), (rear, far_rear) = self._ahead, self.front, self.rear
         least = np.maximum(low - far_front, rear - high)
         inward = self._others.s[0] + self._frame.loose_s, self._others.s[1] - self._frame.loose_s
         return least, np.maximum(inward[0] - front, far_rear - inward[1])
@@ -126,7 +132,7 @@ class Relations:
             found["station"] = _texts(self.stations, STATIONS)
         if "lateral" in names:
             found["lateral"] = _texts(self.laterals, LATERALS)
-        near, far = (np.maximum(gap, 0.0) for gap in self._gaps())
+        near, far = (np.maximum(gap, 0.0) for gap in self.gaps)
         if "gap" in names:
             found["gap"] = _intervals(near, far)
         if "lateral_gap" in names:
@@ -156,7 +162,7 @@ class Relations:
     def flow(self, below_kmh: float) -> list[Any]:
         """Whether traffic around ego is slower than this in the median, by cell."""
         others, limit = self._others, below_kmh / KMH
-        near, far = self._gaps()
+        near, far = self.gaps
         may = others.may_go_along & (near <= USUAL.near_m)
         must = others.goes_along & (far <= USUAL.flow_reach_m)
         low, high = (np.maximum(speed, 0.0) for speed in others.along)
@@ -175,8 +181,8 @@ class Relations:
     def _aside(self) -> Bounds:
         boxes, others = self._boxes, self._others
         loose = self._frame.loose_d + self._frame.stretched
-        wide, narrow = _column(boxes.half_width[1]), _column(boxes.half_width[0])
-        low, high = _column(boxes.d[0]), _column(boxes.d[1])
+        wide, narrow = column(boxes.half_width[1]), column(boxes.half_width[0])
+        low, high = column(boxes.d[0]), column(boxes.d[1])
         least = np.maximum(others.d[0] - high - wide, low - wide - others.d[1]) - loose
         most = np.maximum(others.d[0] - low - narrow, high - narrow - others.d[1]) + loose
         return np.maximum(least, 0.0), np.maximum(most, 0.0)
@@ -191,10 +197,10 @@ class Relations:
             np.where(still, np.maximum(high, 0.0), high),
         )
         slow, fast = self._boxes.mean_speed
-        return (_column(slow) - high) * KMH, (_column(fast) - low) * KMH
+        return (column(slow) - high) * KMH, (column(fast) - low) * KMH
 
     def _headways(self, near: Floats, far: Floats) -> Bounds:
-        slow, fast = (_column(speed) for speed in self._boxes.mean_speed)
+        slow, fast = (column(speed) for speed in self._boxes.mean_speed)
         standing = USUAL.standing_kmh / KMH
         may_stand = slow < 2 * standing
         longest = np.where(may_stand, LONGEST_S, far / np.maximum(slow, standing))
@@ -204,20 +210,16 @@ class Relations:
     def _may_be_ahead(self) -> Flags:
         """Flags of who may be ahead in ego's lane, as wrong as places and the map may be."""
         boxes, others, aside = self._boxes, self._others, _MAP_M + self._frame.place_m
-        low, high = _column(boxes.d[0]) - aside, _column(boxes.d[1]) + aside
-        before = self._front[0] <= others.s[0] + self._frame.loose_s
+        low, high = column(boxes.d[0]) - aside, column(boxes.d[1]) + aside
+        before = self.front[0] <= others.s[0] + self._frame.loose_s
         ahead: Flags = before & (others.d[0] < high) & (others.d[1] > low)
         return ahead
 
     def _safe_distance(self) -> Floats:
-        fast = _column(self._boxes.mean_speed[1])
+        fast = column(self._boxes.mean_speed[1])
         slowest = np.maximum(self._others.along[0], 0.0)
         safe: Floats = USUAL.reaction_s * fast + (fast**2 - slowest**2) / (2 * USUAL.braking_mps2)
         return safe + self._frame.place_m
-
-
-def _column(values: Floats) -> Floats:
-    return values[:, None]
 
 
 def _texts(bits: np.ndarray[Any, Any], texts: Sequence[str]) -> list[list[Any]]:

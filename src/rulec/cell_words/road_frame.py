@@ -14,9 +14,12 @@ from rulec.cell_words.ego_boxes import Floats
 from rulec.cell_words.probe_drives import ProbeDrives
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_places import RoadPlaces
+from rulec.extraction.traffic_thresholds import USUAL
 
 _FAR_M = 300.0
 _HAIR_M = 0.05
+_BENDS = np.radians(USUAL.turned_deg - 15.0)
+"""Whose way in a junction differs by less from its direction before goes straight on."""
 
 Flags: TypeAlias = NDArray[bool_]
 
@@ -27,9 +30,9 @@ class OthersNow:
 
     ``s`` and ``d`` (m) are the ends of their bodies in the scene's coordinates, ``lanes`` those
     that they reach into for sure, ``perhaps`` those that they may. ``along`` are speeds along the
-    road, wrong as they may be (m/s). ``counts``: is it one who counts for ego, if it is near?
-    ``is_there``: was it, or will it be, so soon that it was there all the time? ``goes_along`` are
-    vehicles that go ego's way for sure, ``may_go_along`` those that may.
+    road, wrong as they may be (m/s). ``counts``: is it one who counts for ego, if it is near,
+    ``may_count``: may it be? ``is_there``: is it, or was it and will it be, so soon that it was there all
+    the time? ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along`` those that may.
     """
 
     s: tuple[Floats, Floats]
@@ -38,6 +41,7 @@ class OthersNow:
     perhaps: Flags
     along: tuple[Floats, Floats]
     counts: Flags
+    may_count: Flags
     is_there: Flags
     goes_along: Flags
     may_go_along: Flags
@@ -47,8 +51,9 @@ class RoadFrame:
     """A scene's road, with everybody on it as extraction has them.
 
     ``apart_s`` (m) says how far coordinates along it may differ from those along another road on
-    the same lanes, ``loose_s`` and ``loose_d`` how far distances may be wrong for that and since
-    places are known to ``place_m`` only. Raises ValueError: no drive has such a road, or it meets
+    the same lanes, ``apart_d`` how far those across it, ``loose_s`` and ``loose_d`` how far
+    distances may be wrong for that and since places are known to ``place_m`` only. ``has_rails``:
+    is there a level crossing on it? ``goes_straight``: does it turn in none of its junctions? Raises ValueError: no drive has such a road, or it meets
     itself.
     """
 
@@ -65,12 +70,20 @@ class RoadFrame:
         self.places: RoadPlaces = among.places(replace(road, line=origin.line, lanes=origin.lanes))
         self.crossings = self._in_scene(road, road.crossings)
         self.junctions = self._in_scene(road, road.junctions)
+        lanelets = (lanelet for row in road.rows for lanelet in row if lanelet is not None)
+        self.has_rails = any("level_crossing" in lanelet.types for lanelet in lanelets)
+        turns = (
+            road.line.heading_at(end + 1.0) - road.line.heading_at(start - 1.0)
+            for start, end in road.junctions
+        )
+        self.goes_straight = all(abs((one + np.pi) % (2 * np.pi) - np.pi) < _BENDS for one in turns)
         at = np.abs(origin.lanes.s - origin.ego_s) <= _FAR_M
         widths = np.diff(origin.lanes.bounds[at], axis=1)
         self.stretched = np.abs(widths - np.diff(self._straight)).sum(axis=1).max(initial=0.0)
         self.place_m = among.surroundings.tolerances.place_m
         differs = np.abs(widths - np.diff(self._straight)).max(initial=0.0)
-        self.loose_d = self.place_m + _HAIR_M + min(float(differs), 1.0) / 2
+        self.apart_d = _HAIR_M + min(float(differs), 1.0) / 2
+        self.loose_d = self.place_m + self.apart_d
         # On bends lines beside each other are not equally long
         headings = np.unwrap(origin.line.headings_at(origin.lanes.s[at]))
         across = float(self._straight[-1] - self._straight[0])
@@ -118,7 +131,8 @@ class RoadFrame:
         error = tracks.speed_error[:, columns]
         along = ends.along[:, columns]
         away = round(places.thresholds.away_s / self.probes.recording.step_s)
-        around = slice(max(int(columns[0]) - away, 0), int(columns[-1]) + away + 1)
+        before = slice(max(int(columns[0]) - away, 0), int(columns[-1]) + 1)
+        behind = slice(int(columns[0]), int(columns[-1]) + away + 1)
         vehicles = tracks.of_type("vehicle")
         goes = places.on_lanes & (np.abs(ends.turned) < 1.0) & ~places.crosses
         return OthersNow(
@@ -128,7 +142,8 @@ class RoadFrame:
             perhaps=np.any((inside > least - _HAIR_M) & there, axis=1),
             along=((along - error).min(axis=1), (along + error).max(axis=1)),
             counts=np.all(places.counts[:, columns], axis=1),
-            is_there=np.any(places.counts[:, around], axis=1),
+            may_count=np.any(places.counts[:, columns], axis=1),
+            is_there=places.counts[:, before].any(axis=1) & places.counts[:, behind].any(axis=1),
             goes_along=vehicles & np.all(goes[:, columns], axis=1),
             may_go_along=vehicles & np.any(goes[:, columns], axis=1),
         )

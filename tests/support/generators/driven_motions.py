@@ -7,18 +7,21 @@ STEPS = 10
 """Accelerations change so many times in a layer."""
 
 
-def driven(ego, bounds, step, layers, chance: random.Random):
-    """Places and speeds (s, v, d, w) when layers begin; whatever is asked for, within bounds."""
+def driven(ego, bounds, step, layers, chance: random.Random, pieces=STEPS):
+    """Places and speeds (s, v, d, w) when layers begin; whatever is asked for, within bounds.
+
+    In so many pieces a layer.
+    """
     speed = chance.uniform(0, bounds.speed) if ego.speed is None else ego.speed
     s, v, d, w = ego.s, speed, ego.d, ego.lateral_speed
     slope = max(1.0, abs(w) / v if v else 1.0)
     top, side = max(bounds.speed, v), max(bounds.lateral_speed, abs(w))
     states = [(s, v, d, w)]
-    dt = step / STEPS
+    dt = step / pieces
     # Motions that keep to something for long reach the bounds, those that change do not.
     hold = chance.choice([1, 3, STEPS, 4 * STEPS])
     a = b = 0.0
-    for k in range((layers - 1) * STEPS):
+    for k in range((layers - 1) * pieces):
         if k % hold == 0:
             pick = chance.choice([chance.uniform, lambda low, high: chance.choice([low, high, 0])])
             a = pick(-bounds.braking, bounds.acceleration)
@@ -34,7 +37,7 @@ def driven(ego, bounds, step, layers, chance: random.Random):
         sideways = min(max(b, least), greatest)
         s, v = s + v * dt + ahead * dt * dt / 2, v + ahead * dt
         d, w = d + w * dt + sideways * dt * dt / 2, w + sideways * dt
-        if (k + 1) % STEPS == 0:
+        if (k + 1) % pieces == 0:
             states.append((s, v, d, w))
     return states
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import islice, pairwise
 from math import ceil, floor
+from types import SimpleNamespace
 
 import numpy as np
 
+from rulec import verify
 from rulec.cell_words.probe_drives import body_along, world_of
 from rulec.extraction.recording_verdicts import names_read
 from rulec.extraction.to_trace import Drive, TraceWriter
@@ -15,6 +17,9 @@ from rulec.planning.ranking.cheapest import cheapest
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
 _EDGE_M = 0.02
+
+_ON_S, _ON_MPS, _ON_MPS2 = 8.0, 10.0, 3.0
+"""For how long a motion goes on, and how fast; it speeds up by no more than the third."""
 
 
 def witnesses(found, most):
@@ -44,18 +49,40 @@ def sampled(states, step_s, count):
     return np.array(rows)
 
 
-def drives_of(found, trajectories):
-    """For each trajectory its drive and the number of the drive's state at time 0; None without."""
+def _going_on(motion, step_s, count):
+    """A motion that goes on along the road, so that its drive shows which one that is."""
+    s, v, d, _ = motion[-1]
+    times = step_s * np.arange(1, count + 1)
+    fast = max(v, _ON_MPS)
+    for_s = np.minimum(times, (fast - v) / _ON_MPS2)
+    speeds = v + _ON_MPS2 * for_s
+    places = s + v * for_s + _ON_MPS2 * for_s**2 / 2 + fast * (times - for_s)
+    onward = np.column_stack((places, speeds, np.full(count, d), np.zeros(count)))
+    return np.concatenate((motion, onward))
+
+
+def states_of(found):
+    """The recording's step (s), and how many states of it a maneuver has."""
+    graph = found.graph
+    step_s = graph.scenario.account.origin.recording.step_s
+    return step_s, round((len(graph.layers) - 1) * graph.step_s / step_s) + 1
+
+
+def drives_of(found, motions):
+    """The drive of each motion, given by place and speed along and across in each state.
+
+    None in place of one that leaves the map.
+    """
     graph, origin = found.graph, found.graph.scenario.account.origin
-    step_s = origin.recording.step_s
-    count = round((len(graph.layers) - 1) * graph.step_s / step_s) + 1
+    step_s, count = states_of(found)
+    after = round(_ON_S / step_s)
     bodies = []
-    for trajectory in trajectories:
-        s, v, d, w = sampled(trajectory.states, step_s, count).T
+    for motion in motions:
+        s, v, d, w = _going_on(motion, step_s, after).T
         turned = np.where(v > 0.05, np.arctan2(w, np.maximum(v, 1e-6)), 0.0)
         row = s, d, np.clip(turned, -np.pi / 4, np.pi / 4)
         bodies.append(body_along(graph, origin, row, np.hypot(v, w)))
-    among = world_of(origin, bodies[0], found.rules.traffic or "right", count)
+    among = world_of(origin, bodies[0], found.rules.traffic or "right", count + after)
     writer = TraceWriter(found.rules.vocabulary, names_read(found.rules))
     for drives in among.of(bodies, writer):
         own = [drive for drive in drives if isinstance(drive, Drive)]
@@ -69,7 +96,7 @@ def in_layers(found, drive):
     None if the layers are not among its states.
     """
     graph = found.graph
-    per_layer = graph.step_s / found.graph.scenario.account.origin.recording.step_s
+    per_layer = graph.step_s / states_of(found)[0]
     every, trace = round(per_layer), drive.trace
     if abs(per_layer - every) > 1e-6 or len(trace.states) < every * (len(graph.layers) - 1) + 1:
         return None
@@ -98,15 +125,33 @@ def in_layers(found, drive):
     )
 
 
-def on_an_edge(found, nodes, trajectory):
+def on_an_edge(found, nodes, motion):
     """Whether ego is on the border of a cell, across the road, when a layer begins."""
     graph = found.graph
-    places = sampled(trajectory.states, graph.step_s, len(graph.layers))[:, 2]
+    places = motion[:: round(graph.step_s / states_of(found)[0]), 2]
     return any(
         min(abs(d - edge) for box in layer.cells[node].boxes for edge in (box.d_min, box.d_max))
         < _EDGE_M
         for layer, node, d in zip(graph.layers, nodes, places, strict=True)
     )
+
+
+def disagreeing(found, nodes, trace):
+    """What a maneuver and a drive through it judge for sure, and the other one does otherwise.
+
+    A drive violates nothing that the maneuver keeps, and keeps nothing that it violates.
+    """
+    of_drive, mine = verify(trace, found.rules), found.verdict(SimpleNamespace(nodes=nodes))
+    own, own_doubtful = _keys(of_drive.violations), _keys(of_drive.open)
+    violated, doubtful = _keys(mine.violations), _keys(mine.open)
+    dark = {rule.rule for rule in mine.not_judged}
+    yield from (key for key in own - violated - doubtful if key[0] not in dark)
+    dark = {rule.rule for rule in of_drive.not_judged}
+    yield from (key for key in violated - own - own_doubtful if key[0] not in dark)
+
+
+def _keys(results):
+    return {(one.rule, tuple(sorted(one.binding.items()))) for one in results}
 
 
 def contradicting(found, nodes, trace):
@@ -130,5 +175,6 @@ def contains(said, known):
         return known in said.values
     low, high = (known.low, known.high) if isinstance(known, Interval) else (known, known)
     if isinstance(said, Interval):
-        return said.low - 1e-6 <= low and high <= said.high + 1e-6
-    return said == known
+        # What was measured is within both
+        return said.low - 1e-6 <= high and low <= said.high + 1e-6
+    return low <= said <= high if isinstance(known, Interval) else said == known

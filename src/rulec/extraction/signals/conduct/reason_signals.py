@@ -26,6 +26,9 @@ from rulec.trace.plain_arrays import distinct
 _REACH_S, _GENTLE_MPS2, _REACH_M = 3.0, 4.0, 20.0
 """What makes ego brake is no farther ahead than it drives in so long, brakes so hard, and this."""
 
+FOLLOWS_S = 3.0
+"""Who is so far behind by time, or nearer, is held up by ego."""
+
 _IN_WAY_M, _COMES_M, _ROAD_M, _CROSSES_M = 2.5, 6.0, 15.0, 30.0
 """Sideways: who is in ego's way, may come into it, is on its road, comes on a road across."""
 
@@ -80,7 +83,11 @@ def _shows_no_hazard(context: DriveContext) -> Flags:
 
 
 def _reach(context: DriveContext) -> Floats:
-    speed = context.ego.speed[0]
+    return reach_at(context.ego.speed[0])
+
+
+def reach_at(speed: Floats) -> Floats:
+    """How far ahead (m) somebody looks for reasons to brake, by speed (m/s)."""
     reach: Floats = _REACH_S * speed + speed**2 / (2 * _GENTLE_MPS2) + _REACH_M
     return reach
 
@@ -202,7 +209,7 @@ def _followed(context: DriveContext) -> Flags:
     station, speed = relations.station(context), context.extents.along
     same = context.touched[:, np.arange(context.states), context.ego_lane]
     behind = context.going_along & (station == relations.IN_FRONT_OF) & same
-    near = relations.gap(context) <= _REACH_S * np.maximum(speed, 0.0)
+    near = relations.gap(context) <= FOLLOWS_S * np.maximum(speed, 0.0)
     followed: Flags = (behind & near).any(axis=0)
     return followed
 

@@ -24,7 +24,7 @@ _LINE_REACH_M = 40.0
 _SLOWEST_MPS = 5.0
 """Who stands at the end of a drive goes on so fast."""
 
-_COLOURS = {
+COLOURS = {
     "red": "red_light",
     "redYellow": "red_light",
     "yellow": "amber_light",
@@ -273,7 +273,7 @@ def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light | O
 
 def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], state: int) -> str:
     step = int(context.steps[state])
-    shown = {_COLOURS.get(light.colour_at(step), "") for light in lights}
+    shown = {COLOURS.get(light.colour_at(step), "") for light in lights}
     return shown.pop() if len(shown) == 1 else ""
 
 

@@ -35,7 +35,7 @@ _LIGHTS_AT_CROSSING_M = 30.0
 _BEFORE_LINE_M = 10.0
 """On maps without stop lines crossings are up to so far before the ends of lanelets with lights."""
 
-_ROOM_M = 1.0
+ROOM_M = 1.0
 Stretches = Sequence[tuple[float, float]]
 
 
@@ -254,7 +254,7 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
         if not (nears & (~passed | context.spans.any(perhaps))).any():
             continue
         short, may_be_short, stops, may_stop = (
-            _free_beyond(context, those, (start, end)) < front - rear + _ROOM_M
+            _free_beyond(context, those, (start, end)) < front - rear + ROOM_M
             for those in (ahead & ~still, ahead, ahead & ~still & holds_up, ahead & holds_up)
         )
         blocked = nears & short & _until(context, stuck & stops)
@@ -282,7 +282,7 @@ def _free_beyond(context: DriveContext, ahead: Flags, place: tuple[float, float]
     others, (start, end) = context.extents, place
     room = np.where(ahead & (others.s_max > end), others.s_min - end, np.inf)
     inside = ahead & (others.s_max <= end) & (others.s_max > start)
-    taken = np.where(inside, others.s_max - others.s_min + _ROOM_M, 0.0)
+    taken = np.where(inside, others.s_max - others.s_min + ROOM_M, 0.0)
     free: Floats = room.min(axis=0, initial=np.inf) - taken.sum(axis=0)
     return free
 

@@ -1,0 +1,179 @@
+"""Words about what ego does among others, bounded for all places that it may have in a cell.
+
+Each is known where the others, or the road, leave but one value for any of these places; see
+``extraction/signals/`` for what the words mean.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rulec.cell_words.ego_boxes import EgoBoxes, Floats, column
+from rulec.cell_words.relation_words import BEHIND, BESIDE, IN_FRONT, LEFT, RIGHT, Relations
+from rulec.cell_words.road_frame import Flags, OthersNow, RoadFrame
+from rulec.extraction.drive_context import KMH
+from rulec.extraction.signals.conduct.reason_signals import FOLLOWS_S, reach_at
+from rulec.extraction.signals.map.zone_signals import ROOM_M
+from rulec.extraction.traffic_thresholds import USUAL
+from rulec.vocabulary.partial_values import UNKNOWN
+
+CONDUCT = frozenset(
+    {
+        "impedes_traffic",
+        "being_overtaken",
+        "overtaking",
+        "oncoming_clear",
+        "straddling",
+        "lane_change",
+        "enters_junction",
+        "exit_clear",
+    }
+)
+
+_HAIR_M = 0.05
+
+
+class ConductWords:
+    """What ego does in each cell of a layer (rows), by where the others are (columns)."""
+
+    def __init__(
+        self, boxes: EgoBoxes, others: OthersNow, frame: RoadFrame, relations: Relations
+    ) -> None:
+        self._boxes, self._others, self._frame, self._relations = boxes, others, frame, relations
+        self._straight = frame.probes.origin.lanes.straight
+
+    def words(self, names: frozenset[str]) -> Mapping[str, list[Any]]:
+        """Name -> its values by cell."""
+        never = {
+            "impedes_traffic": self._holds_nobody_up,
+            "being_overtaken": self._overtaken_by_nobody,
+            "overtaking": self._overtakes_nobody,
+            "straddling": self._within_a_lane,
+            "lane_change": self._stays_in_lane,
+            "enters_junction": self._at_no_entry,
+        }
+        found: dict[str, list[Any]] = {
+            name: _known(never[name](), value=False) for name in never.keys() & names
+        }
+        always = {"oncoming_clear": self._meets_nobody, "exit_clear": self._has_room_beyond}
+        return found | {name: _known(always[name](), value=True) for name in always.keys() & names}
+
+    @cached_property
+    def _lanes(self) -> Flags:
+        """Flags of the lanes that ego's middle may be in, by cell."""
+        low, high = self._boxes.d
+        found: Flags = (self._straight[None, :-1] <= high[:, None] + _HAIR_M) & (
+            self._straight[None, 1:] >= low[:, None] - _HAIR_M
+        )
+        return found
+
+    @cached_property
+    def _may_share(self) -> Flags:
+        """Flags of who may reach into ego's lane."""
+        return self._lanes.astype(int) @ self._others.perhaps.T.astype(int) > 0
+
+    @cached_property
+    def _shares(self) -> Flags:
+        """Flags of who surely does, whichever lane that is."""
+        return self._lanes.astype(int) @ (~self._others.lanes).T.astype(int) == 0
+
+    def _holds_nobody_up(self) -> Flags:
+        """Nobody follows near enough, or there is a reason for any speed of ego."""
+        others, (near, _) = self._others, self._relations.gaps
+        fastest = np.maximum(others.along[1], 0.0)
+        follows = others.may_go_along & (self._relations.stations & IN_FRONT > 0)
+        follows &= self._may_share & (near <= FOLLOWS_S * fastest)
+        return ~follows.any(axis=1) | self._has_a_reason()
+
+    def _has_a_reason(self) -> Flags:
+        """Somebody is surely ahead in ego's lane, or a junction, so near that it is a reason."""
+        others, frame = self._others, self._frame
+        reach = reach_at(np.maximum(self._boxes.mean_speed[0], 0.0))
+        (front, far_front), (_, far_rear) = self._relations.front, self._relations.rear
+        ahead = others.goes_along & others.counts & (self._relations.stations == BEHIND)
+        ahead &= self._shares & (self._relations.gaps[1] <= column(reach))
+        found: Flags = ahead.any(axis=1)
+        for start, end in (*frame.junctions, *frame.crossings):
+            near = (front[:, 0] >= start + frame.apart_s - reach) & (far_front[:, 0] <= start)
+            inside = (front[:, 0] >= start) & (far_rear[:, 0] <= end - frame.apart_s)
+            found |= near | inside
+        return found
+
+    def _overtaken_by_nobody(self) -> Flags:
+        others = self._others
+        side = RIGHT if self._frame.probes.among.side == "right" else LEFT
+        faster = others.along[1] - column(self._boxes.mean_speed[0])
+        comes = others.may_go_along & (faster * KMH >= USUAL.clearly_faster_kmh)
+        comes &= self._relations.stations & (BESIDE | IN_FRONT) > 0
+        comes &= self._relations.laterals & side > 0
+        comes &= self._relations.gaps[0] <= np.maximum(faster, 0.0) * USUAL.passed_s
+        return ~comes.any(axis=1)
+
+    def _overtakes_nobody(self) -> Flags:
+        others = self._others
+        side = LEFT if self._frame.probes.among.side == "right" else RIGHT
+        fast = column(self._boxes.mean_speed[1])
+        slower = others.may_go_along & (others.along[0] < fast)
+        slower &= self._relations.laterals & side > 0
+        reach = np.maximum((fast - others.along[0]) * USUAL.catching_up_s, fast * USUAL.passed_s)
+        return ~(slower & (self._relations.gaps[0] <= reach)).any(axis=1)
+
+    def _meets_nobody(self) -> Flags:
+        """Nobody comes, or so far away that both would meet too late."""
+        others = self._others
+        closing = column(self._boxes.mean_speed[1]) - others.along[0]
+        against = (others.along[0] * KMH < -USUAL.standing_kmh) & others.may_count
+        comes = against & (self._relations.stations & (BEHIND | BESIDE) > 0)
+        # Both may become faster until then
+        comes &= self._relations.gaps[0] < 3 * USUAL.overtaking_s * closing
+        return ~comes.any(axis=1)
+
+    def _room(self, aside: Floats) -> Flags:
+        """Whether so much room (m) is left to both bounds of ego's lane, wherever in the cell."""
+        (low, high), loose = self._boxes.d, self._frame.loose_d
+        lane = np.clip(np.searchsorted(self._straight, low, "right") - 1, 0, None)
+        lane = np.minimum(lane, len(self._straight) - 2)
+        inside = (low - aside - loose > self._straight[lane]) | (lane == 0)
+        top = lane == len(self._straight) - 2
+        return inside & ((high + aside + loose < self._straight[lane + 1]) | top)
+
+    def _within_a_lane(self) -> Flags:
+        return self._room(self._boxes.half_width[1] - USUAL.touching_m)
+
+    def _stays_in_lane(self) -> Flags:
+        """Since the state before it has come from no other lane."""
+        step_s = self._frame.probes.recording.step_s
+        return self._room(self._boxes.sideways * step_s + USUAL.changed_m)
+
+    def _at_no_entry(self) -> Flags:
+        """Ego's front is before all junctions, or was beyond their beginning in the state before."""
+        (front, far_front), frame = self._relations.front, self._frame
+        before = front[:, 0] - self._boxes.mean_speed[1] * frame.probes.recording.step_s
+        away = np.ones(len(before), dtype=bool)
+        for start, _ in frame.junctions:
+            loose = frame.loose_s + _HAIR_M
+            away &= (far_front[:, 0] < start - loose) | (before > start + loose)
+        return away
+
+    def _has_room_beyond(self) -> Flags:
+        """Nobody who may be ahead in ego's lane leaves too little room behind what ego enters."""
+        others, frame, loose = self._others, self._frame, self._frame.apart_s + _HAIR_M
+        (_, far_front), (rear, _) = self._relations.front, self._relations.rear
+        if frame.has_rails:
+            return np.zeros(len(far_front), dtype=bool)
+        ahead = others.may_go_along & (self._relations.stations & BEHIND > 0) & self._may_share
+        room = 2 * column(self._boxes.half_length[1]) + ROOM_M + loose
+        short = np.zeros(ahead.shape, dtype=bool)
+        for start, end in (*frame.junctions, *frame.crossings):
+            enters = (far_front >= start - USUAL.approach_m - loose) & (rear <= end + loose)
+            leaves_too_little = (others.s[1] > start - loose) & (others.s[0] < end + room)
+            short |= enters & leaves_too_little
+        return ~(ahead & short).any(axis=1)
+
+
+def _known(flags: Flags, *, value: bool) -> list[Any]:
+    return [value if one else UNKNOWN for one in flags.tolist()]
