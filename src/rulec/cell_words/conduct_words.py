@@ -74,12 +74,14 @@ class ConductWords:
     @cached_property
     def _may_share(self) -> Flags:
         """Flags of who may reach into ego's lane."""
-        return self._lanes.astype(int) @ self._others.perhaps.T.astype(int) > 0
+        found: Flags = self._lanes.astype(int) @ self._others.perhaps.T.astype(int) > 0
+        return found
 
     @cached_property
     def _shares(self) -> Flags:
         """Flags of who surely does, whichever lane that is."""
-        return self._lanes.astype(int) @ (~self._others.lanes).T.astype(int) == 0
+        found: Flags = self._lanes.astype(int) @ (~self._others.lanes).T.astype(int) == 0
+        return found
 
     def _holds_nobody_up(self) -> Flags:
         """Nobody follows near enough, or there is a reason for any speed of ego."""
@@ -87,7 +89,7 @@ class ConductWords:
         fastest = np.maximum(others.along[1], 0.0)
         follows = others.may_go_along & (self._relations.stations & IN_FRONT > 0)
         follows &= self._may_share & (near <= FOLLOWS_S * fastest)
-        return ~follows.any(axis=1) | self._has_a_reason()
+        return _nobody(follows) | self._has_a_reason()
 
     def _has_a_reason(self) -> Flags:
         """Somebody is surely ahead in ego's lane, or a junction, so near that it is a reason."""
@@ -111,7 +113,7 @@ class ConductWords:
         comes &= self._relations.stations & (BESIDE | IN_FRONT) > 0
         comes &= self._relations.laterals & side > 0
         comes &= self._relations.gaps[0] <= np.maximum(faster, 0.0) * USUAL.passed_s
-        return ~comes.any(axis=1)
+        return _nobody(comes)
 
     def _overtakes_nobody(self) -> Flags:
         others = self._others
@@ -120,7 +122,7 @@ class ConductWords:
         slower = others.may_go_along & (others.along[0] < fast)
         slower &= self._relations.laterals & side > 0
         reach = np.maximum((fast - others.along[0]) * USUAL.catching_up_s, fast * USUAL.passed_s)
-        return ~(slower & (self._relations.gaps[0] <= reach)).any(axis=1)
+        return _nobody(slower & (self._relations.gaps[0] <= reach))
 
     def _meets_nobody(self) -> Flags:
         """Nobody comes, or so far away that both would meet too late."""
@@ -130,7 +132,7 @@ class ConductWords:
         comes = against & (self._relations.stations & (BEHIND | BESIDE) > 0)
         # Both may become faster until then
         comes &= self._relations.gaps[0] < 3 * USUAL.overtaking_s * closing
-        return ~comes.any(axis=1)
+        return _nobody(comes)
 
     def _room(self, aside: Floats) -> Flags:
         """Whether so much room (m) is left to both bounds of ego's lane, wherever in the cell."""
@@ -139,7 +141,8 @@ class ConductWords:
         lane = np.minimum(lane, len(self._straight) - 2)
         inside = (low - aside - loose > self._straight[lane]) | (lane == 0)
         top = lane == len(self._straight) - 2
-        return inside & ((high + aside + loose < self._straight[lane + 1]) | top)
+        found: Flags = inside & ((high + aside + loose < self._straight[lane + 1]) | top)
+        return found
 
     def _within_a_lane(self) -> Flags:
         return self._room(self._boxes.half_width[1] - USUAL.touching_m)
@@ -150,7 +153,7 @@ class ConductWords:
         return self._room(self._boxes.sideways * step_s + USUAL.changed_m)
 
     def _at_no_entry(self) -> Flags:
-        """Ego's front is before all junctions, or was beyond their beginning in the state before."""
+        """Ego's front is before all junctions, or was in them already in the state before."""
         (front, far_front), frame = self._relations.front, self._frame
         before = front[:, 0] - self._boxes.mean_speed[1] * frame.probes.recording.step_s
         away = np.ones(len(before), dtype=bool)
@@ -172,7 +175,13 @@ class ConductWords:
             enters = (far_front >= start - USUAL.approach_m - loose) & (rear <= end + loose)
             leaves_too_little = (others.s[1] > start - loose) & (others.s[0] < end + room)
             short |= enters & leaves_too_little
-        return ~(ahead & short).any(axis=1)
+        return _nobody(ahead & short)
+
+
+def _nobody(flags: Flags) -> Flags:
+    """Cells (rows) in which no flag of the others is set."""
+    found: Flags = ~np.any(flags, axis=1, keepdims=False)
+    return found
 
 
 def _known(flags: Flags, *, value: bool) -> list[Any]:

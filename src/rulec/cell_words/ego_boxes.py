@@ -31,8 +31,9 @@ class EgoBoxes:
     """Bounds for each cell when its layer begins.
 
     ``s`` and ``d`` (m) are those of ego's centre, ``speed`` that along the road and ``mean_speed``
-    the one that extraction measures, a mean, whatever its direction (m/s). Half its body's extents along and across the road (m) are for all headings that ego may
-    have; ``sideways`` is the greatest speed across it (m/s).
+    the one that extraction measures, a mean, whatever its direction (m/s). Half its body's extents
+    along and across the road (m) are for all headings that ego may have; ``sideways`` is the
+    greatest speed across it (m/s).
     """
 
     s: Bounds

@@ -187,13 +187,13 @@ def _through_time(
     ego = graph.scenario.ego
     last = max(graph.scenario.road.s[1] - _BEYOND_M, 0.0)
     times: Floats = np.arange(count, dtype=np.float64) * step_s
-    after: Floats = np.arange(1, round(_ON_S / step_s) + 1) * step_s
+    after: Floats = np.arange(1.0, round(_ON_S / step_s) + 1.0) * step_s
     own = ego.speed or 0.0
     for speed in (own, max(own - _SLOWER_MPS, 0.0), own + _FASTER_MPS):
         fast = max(speed, _ON_MPS)
-        for_s = np.minimum(after, (fast - speed) / _ON_MPS2)
+        for_s: Floats = np.minimum(after, (fast - speed) / _ON_MPS2)
         on = speed * for_s + _ON_MPS2 * for_s**2 / 2 + fast * (after - for_s)
-        s = np.concatenate((speed * times, speed * times[-1] + on)) + ego.s
+        s: Floats = np.concatenate((speed * times, speed * times[-1] + on)) + ego.s
         speeds = np.concatenate((np.full(count, speed), speed + _ON_MPS2 * for_s))
         kept = max(count, int(np.searchsorted(s, last)))
         yield (s[:kept], np.full(kept, ego.d), np.zeros(kept)), speeds[:kept]

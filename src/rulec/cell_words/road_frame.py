@@ -31,8 +31,9 @@ class OthersNow:
     ``s`` and ``d`` (m) are the ends of their bodies in the scene's coordinates, ``lanes`` those
     that they reach into for sure, ``perhaps`` those that they may. ``along`` are speeds along the
     road, wrong as they may be (m/s). ``counts``: is it one who counts for ego, if it is near,
-    ``may_count``: may it be? ``is_there``: is it, or was it and will it be, so soon that it was there all
-    the time? ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along`` those that may.
+    ``may_count``: may it be? ``is_there``: is it, or was it and will it be, so soon that it was
+    there all the time? ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along``
+    those that may.
     """
 
     s: tuple[Floats, Floats]
@@ -53,8 +54,8 @@ class RoadFrame:
     ``apart_s`` (m) says how far coordinates along it may differ from those along another road on
     the same lanes, ``apart_d`` how far those across it, ``loose_s`` and ``loose_d`` how far
     distances may be wrong for that and since places are known to ``place_m`` only. ``has_rails``:
-    is there a level crossing on it? ``goes_straight``: does it turn in none of its junctions? Raises ValueError: no drive has such a road, or it meets
-    itself.
+    is there a level crossing on it? ``goes_straight``: does it turn in none of its junctions?
+    Raises ValueError: no drive has such a road, or it meets itself.
     """
 
     def __init__(self, probes: ProbeDrives) -> None:
@@ -135,6 +136,9 @@ class RoadFrame:
         behind = slice(int(columns[0]), int(columns[-1]) + away + 1)
         vehicles = tracks.of_type("vehicle")
         goes = places.on_lanes & (np.abs(ends.turned) < 1.0) & ~places.crosses
+        was, will = (
+            np.any(places.counts[:, part], axis=1, keepdims=True) for part in (before, behind)
+        )
         return OthersNow(
             s=(s0 - self._origin.ego_s, s1 - self._origin.ego_s),
             d=(d0, d1),
@@ -143,7 +147,7 @@ class RoadFrame:
             along=((along - error).min(axis=1), (along + error).max(axis=1)),
             counts=np.all(places.counts[:, columns], axis=1),
             may_count=np.any(places.counts[:, columns], axis=1),
-            is_there=places.counts[:, before].any(axis=1) & places.counts[:, behind].any(axis=1),
+            is_there=(was & will)[:, 0],
             goes_along=vehicles & np.all(goes[:, columns], axis=1),
             may_go_along=vehicles & np.any(goes[:, columns], axis=1),
         )
