@@ -136,3 +136,27 @@ def test_the_same_cells_hold_it():
     (first,) = found.cheapest(1)
     s, d = at(first.trajectory.states, 2.0)
     assert first.nodes[4] in cells_of(found.graph.layers[4], s, d)
+
+
+def test_an_emergency_is_called_one(capsys):
+    # A point stops before the rear of one that stands, 14 m ahead, with 12² / 2 / 14 = 5.14 m/s²
+    road = Road((-50.0, 500.0), (-2.0, 2.0))
+    ego = Ego(0.0, 0.0, 4.0, 1.8, speed=12.0, bounds=MotionBounds())
+    found = find_maneuvers(Scenario("h", road, ego, (car("c", 16.0, 0.0),), step_s=0.5), PAPER)
+    assert 5.0 <= found.least_braking <= 5.15
+    (first,) = found.cheapest(1)
+    # With 2 m of it before its middle: 12² / 2 / 12
+    assert first.trajectory.greatest_braking >= 6.0
+    eased = find_maneuvers(Scenario("e", road, ego, (car("c", 40.0, 0.0),), step_s=0.5), PAPER)
+    assert eased.least_braking is None
+
+
+def test_one_that_has_braked_hard_goes_on_behind_who_cut_in():
+    # It comes from the left lane, 3 m before ego's front and 5 m/s slower
+    motion = ConstantAcceleration(7.0, 4.0, 10.0, lateral_speed=-3.0, until_d=0.0)
+    cuts = Obstacle("c", "vehicle", 4.0, 1.8, motion)
+    ego = Ego(0.0, 0.0, 4.0, 1.8, speed=15.0, bounds=MotionBounds())
+    found = find_maneuvers(Scenario("z", ROAD, ego, (cuts,), step_s=0.25), PAPER)
+    (first,) = found.cheapest(1)
+    assert min(state[2] for state in first.trajectory.states) > 3.0
+    check_driven(found.graph, first)

@@ -1,9 +1,10 @@
 """Expected statistics of nuPlan's own tests of metrics, and what rulec says of the same.
 
 Source: motional/nuplan-devkit, nuplan/planning/metrics/evaluation_metrics/common/test/json/:
-speed_limit_compliance/speed_limit_violation.json and driving_direction_compliance/
-ego_drives_backward.json. The roads are straight ones drawn here, since the map of the scenes is not
-public, and places follow from the speeds, which in the first of these scenes they do not.
+speed_limit_compliance/speed_limit_violation.json, driving_direction_compliance/
+ego_drives_backward.json, drivable_area_compliance/drivable_area_violation.json and
+no_drivable_area_violation.json. The roads are straight ones drawn here, since the map of the scenes
+is not public, and places follow from the speeds, which in the first of these scenes they do not.
 """
 
 import numpy as np
@@ -55,3 +56,48 @@ def test_driving_against_its_heading():
         (drive,) = Drives(whole, "right").of("ego")
         found.append({state["reversing"] for state in drive.trace.states})
     assert found == [{True}, {False}]
+
+
+# Ego's poses (m, m, rad), one a second; the scene without violation has the first two of them.
+# Coordinates are from 664700, 3999400.
+POSES = [
+    (51.662199684, 61.989363281, -2.0085689660475055),
+    (45.7648709918, 56.8245754833, -2.110825581755435),
+    (37.5883774936, 52.2951032147, -2.0894044289663976),
+    (36.0983882715, 41.208863881, -2.2235551885626497),
+    (27.3146130748, 42.052379835, -2.894766277197636),
+    (19.6775568399, 37.0747503983, 3.119544135682711),
+]
+
+
+def two_lanes():
+    """A straight road of two lanes, as wide as the first two poses take.
+
+    It leads where these look, and its middle is 1.4 m to the right of the first one.
+    """
+    along = -2.0597
+    ahead, left = (
+        np.array([np.cos(along), np.sin(along)]),
+        np.array([-np.sin(along), np.cos(along)]),
+    )
+    first = np.array(POSES[0][:2])
+    centres = [first + (aside - 1.4) * left for aside in (1.8, -1.8)]
+    ways = [[centre - 40 * ahead, centre + 80 * ahead] for centre in centres]
+    return [
+        build_lanelet("left", ways[0], 3.6, right_of="right"),
+        build_lanelet("right", ways[1], 3.6, left_of="left"),
+    ]
+
+
+@pytest.mark.parametrize(("states", "compliant"), [(2, True), (6, False)])
+def test_drivable_area(states, compliant):
+    x, y, heading = np.array(POSES[:states]).T
+    t = np.arange(2.0)
+    stands = [np.full(2, values[0]) for values in (x, y, heading)]
+    own = build_participant("ego", "car", t, stands[0], stands[1], step_s=1.0, heading=stands[2])
+    own = TrafficWorld(build_recording(two_lanes(), [own], step_s=1.0, side="right"), "ego")
+    speed = np.hypot(np.diff(x), np.diff(y))
+    ahead = np.column_stack((x[1:], y[1:], heading[1:], speed))
+    found = score(ahead[None], own, machines("de"), own.past)
+    assert (found.off_road[0] == 0) == compliant
+    assert bool(found.perhaps_allowed[0]) == compliant

@@ -8,9 +8,10 @@ from rulec.partition.cells.cell_links import AdjacencyName
 from rulec.partition.cells.cell_model import Cell, Layer
 from rulec.partition.cells.regions import ExtentName, PartitionName
 from rulec.partition.envelope import Envelope, envelope
-from rulec.partition.navigation_graph import GraphOptions, navigation_graph
+from rulec.partition.navigation_graph import COMFORTABLE, GraphOptions, navigation_graph
 
 __all__ = [
+    "COMFORTABLE",
     "AdjacencyName",
     "Cell",
     "Envelope",

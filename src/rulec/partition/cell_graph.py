@@ -138,10 +138,21 @@ class NavigationGraph:
         least = [[int(Fraction(cost) / unit) for cost in row] for row in self.driving]
         return tuple(
             tuple(
-                tuple(weight + least[p + 1][j] for weight, j in zip(row, onward, strict=True))
-                for row, onward in zip(weights, followers, strict=True)
+                tuple(
+                    least[p + 1][j] + (0 if weight and self.goes_on(p, i, j) else weight)
+                    for weight, j in zip(row, onward, strict=True)
+                )
+                for i, (row, onward) in enumerate(zip(weights, followers, strict=True))
             )
             for p, (weights, followers) in enumerate(zip(rows, self.successors, strict=True))
+        )
+
+    def goes_on(self, p: int, i: int, j: int) -> bool:
+        """Whether from cell i of layer p to cell j of the next one only the surface changes."""
+        here, there = self.layers[p].cells[i], self.layers[p + 1].cells[j]
+        before, after = here.signature, there.signature
+        return here.surface != there.surface and all(
+            before[name] == after[name] for name in before.keys() & after.keys()
         )
 
     def _states(self, layer: Layer) -> tuple[State, ...]:

@@ -174,7 +174,7 @@ class Maneuvers(Rows):
         """The ``n`` cheapest of a product; with bounds of ego's motion those that are proved."""
         if self._search is None:
             return _first(n, cheapest(product))
-        return proven(cheapest(product), n, self.graph, self._search)
+        return proven(product, n, self.graph, self._search)
 
     @cached_property
     def _search(self) -> WitnessSearch | None:
@@ -225,6 +225,16 @@ class Maneuvers(Rows):
         from rulec.partition.dead_ends import dead_end  # all of the partition, for few answers
 
         return dead_end(self.graph)
+
+    @cached_property
+    def least_braking(self) -> float | None:
+        """How hard every maneuver brakes at least (m/s²), if that is more than 4; None else.
+
+        What can be driven, with ego's body, may brake harder still.
+        """
+        from rulec.partition.emergencies import least_braking  # only in an emergency
+
+        return least_braking(self.graph)
 
     def without_each_rule(self) -> dict[str, int]:
         """By hard rule, most first, how many maneuvers violate it and no other hard rule."""

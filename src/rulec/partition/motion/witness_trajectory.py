@@ -178,6 +178,18 @@ class WitnessSearch:
         rows[:, -1] = 1.0 - axis
         return _Places(rows, np.full(self._count, sideways * axis))
 
+    def is_free(self, time: float, s: Row, d: Row) -> NDArray[np.bool_]:
+        """Whether ego's body overlaps nobody at a time, at each of some places."""
+        k = int(np.abs(self._times - time).argmin())
+        length, width = self._body
+        free = np.ones(len(s), dtype=bool)
+        for there, boxes in self._others.values():
+            if there[k]:
+                low, high, right, left = boxes[k].tolist()
+                beside = (s + length <= low) | (s - length >= high)
+                free &= beside | (d + width <= right) | (d - width >= left)
+        return free
+
     def of(self, path: Sequence[int]) -> WitnessTrajectory | None:
         """The trajectory of least cost that was found for a path; None if none was."""
         cells = [layer.cells[i] for layer, i in zip(self._graph.layers, path, strict=True)]

@@ -201,7 +201,8 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     On ``open`` more than those ``satisfying`` it depends on what is ``unknown``; ``exact`` is false
     if there was too much to look at, and some may be known after all. ``judged`` are the rules that
     half of them or more keep or violate for sure, null unless cells have words. With ``bounds`` of
-    ego's motion (m, s) they are paths through reachable cells, else through all.
+    ego's motion (m, s) they are paths through reachable cells, else through all. ``least_braking``
+    (m/s²) is there where one is shown that brakes hard, and none brakes less than that.
     """
 
     scenario: str
@@ -234,6 +235,7 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     worlds: Sequence[WorldData] | UnsetType = UNSET
     rules: Sequence[PruningData] | UnsetType = UNSET
     classes: ClassesData | UnsetType = UNSET
+    least_braking: float | UnsetType = UNSET
 
 
 def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
@@ -241,6 +243,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     graph, scenario = maneuvers.graph, maneuvers.graph.scenario
     several = any(obstacle.alternatives for obstacle in scenario.obstacles)
     several = several or answers.worlds is not None
+    least = maneuver_report.least_braking(maneuvers, answers)
     return as_line(
         filled(
             ManeuversDocument,
@@ -277,6 +280,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             worlds=_each(answers.worlds, _world),
             rules=_each(answers.prunings, partial(_pruning, maneuvers)),
             classes=UNSET if answers.classes is None else _classes(maneuvers, *answers.classes),
+            least_braking=UNSET if least is None else round(least, 3),
         )
     )
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from rulec.diagnostics import named
 from rulec.monitoring.verdict import Verdict, Violation
-from rulec.partition import NavigationGraph
+from rulec.partition import COMFORTABLE, NavigationGraph
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
 from rulec.planning.ranking.cheapest import Maneuver
@@ -67,6 +67,16 @@ def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[A
     }
 
 
+def least_braking(maneuvers: Maneuvers, answers: ManeuverAnswers) -> float | None:
+    """How hard every maneuver brakes at least, if one that is shown brakes hard and all do."""
+    shown = [*(answers.listed or ())]
+    shown += [one.maneuver for one in (*(answers.best or ()), *(answers.ranked or ()))]
+    driven = [one.trajectory for one in shown if one.trajectory is not None]
+    if all(one.greatest_braking <= COMFORTABLE for one in driven):
+        return None
+    return maneuvers.least_braking
+
+
 def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
     """Write the counts, and a block for each maneuver asked for."""
     graph, rules = maneuvers.graph, maneuvers.rules
@@ -100,6 +110,9 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     if answers.classes is not None:
         lines += _class_counts(maneuvers, answers.classes[0])
     lines.append(f"computed in {seconds:.3f} s")
+    least = least_braking(maneuvers, answers)
+    if least is not None:
+        lines.append(f"emergency   every maneuver brakes by more than {least:.1f} m/s²")
     if answers.listed is not None and not answers.listed and maneuvers.satisfying:
         lines.append("listed      none: no trajectory was found along those that cost least")
     for number, maneuver in enumerate(answers.listed or (), 1):

@@ -1,0 +1,41 @@
+"""How hard every way through a scenario brakes at least, where that is harder than usual."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rulec.partition.cell_graph import NavigationGraph
+from rulec.partition.navigation_graph import COMFORTABLE, navigation_graph
+
+_WITHIN = 0.1
+"""It is found as nearly as this (m/s²)."""
+
+
+def least_braking(graph: NavigationGraph) -> float | None:
+    """The braking (m/s²) that every way of a graph takes at least; None if that is usual.
+
+    It is proved by reachable sets, in which ego is a point: the least that can be driven may be
+    more.
+    """
+    bounds = graph.bounds
+    if bounds is None or not graph.leads_to_a_goal or bounds.braking <= COMFORTABLE:
+        return None
+
+    def is_enough(braking: float) -> bool:
+        return navigation_graph(
+            graph.scenario,
+            partition=graph.partition,
+            adjacency=graph.adjacency,
+            extent=graph.extent,
+            step_s=graph.step_s,
+            horizon_s=float(graph.step * (len(graph.layers) - 1)),
+            bounds=replace(bounds, braking=braking),
+        ).leads_to_a_goal
+
+    least, enough = COMFORTABLE, bounds.braking
+    if is_enough(least):
+        return None
+    while enough - least > _WITHIN:
+        between = (least + enough) / 2
+        least, enough = (least, between) if is_enough(between) else (between, enough)
+    return least
