@@ -111,6 +111,15 @@ def test_both_indicators_are_hazard_lights_or_nobody_knows(hazards, unknown):
     assert found.unknown["indicator"].tolist() == [unknown] * 4
 
 
+def test_hazard_lights_of_a_drive_whose_file_contradicts_itself_are_not_known():
+    """Both are lit in states 1 and 2, and in state 2 the hazard lights are off."""
+    both, shows = {"left_indicator", "right_indicator"}, {"hazard_lights"}
+    lit = [{"left_indicator"}, both | shows, both, {"left_indicator"}]
+    body = vehicle(7, CHANGE)
+    body = replace(body, lamps=dict(enumerate(map(frozenset, lit))), shows=frozenset(both | shows))
+    assert changes(body=body).unknown["indicator"].tolist() == [False, True, True, False]
+
+
 def marks(y, right=None, left=None, count=2, route=("1",)):
     """The signals of marks in the first state; marks are those on both lanelets beside a line."""
     road = lanes(count)

@@ -91,7 +91,7 @@ def _indicator(context: DriveContext) -> SignalColumns:
     """Ego's indicator, if the recording has its lamps.
 
     Both at once are no indication, as hazard lights are none; a file that says that these are off
-    contradicts itself.
+    contradicts itself, and nobody knows what both mean in that drive at other times.
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
@@ -101,13 +101,16 @@ def _indicator(context: DriveContext) -> SignalColumns:
     lit = [(lamps or frozenset()) & _INDICATORS for lamps in steps]
     codes = np.array([0 if len(lamps) != 1 else 2 if far in lamps else 1 for lamps in lit])
     tells_hazards = context.spans.spread(["hazard_lights" in ego.shows for ego in egos]).tolist()
-    unknown = [
-        lamps is None or (tells and lamps >= _INDICATORS and "hazard_lights" not in lamps)
+    both = np.array([lamps is not None and lamps >= _INDICATORS for lamps in steps])
+    no_hazards = [
+        tells and "hazard_lights" not in (lamps or ())
         for lamps, tells in zip(steps, tells_hazards, strict=True)
     ]
+    unknown = both & context.spans.any(both & np.array(no_hazards))
+    unknown |= np.array([lamps is None for lamps in steps])
     return SignalColumns(
         {"indicator": codes},
-        unknown={"indicator": np.array(unknown)},
+        unknown={"indicator": unknown},
         texts={"indicator": _INDICATIONS},
     )
 
