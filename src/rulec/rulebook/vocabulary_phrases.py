@@ -7,14 +7,16 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rulec.diagnostics import Source
-from rulec.logic.sentences.language import TypeWords
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.rulebook_model import SourceFile
 from rulec.toml import parsed_toml
+
+if TYPE_CHECKING:
+    from rulec.logic.sentences.language import TypeWords
 
 
 class HasSources(Protocol):
@@ -61,6 +63,9 @@ def phrases_in(vocabulary: str, language: str) -> Mapping[str, str]:
 
 def types_in(vocabulary: str, language: str) -> Mapping[str, TypeWords]:
     """How to speak of the types of a vocabulary that ships; none in English, which has rules."""
+    # Patterns of sentences, 10 ms: whoever asks for phrases alone does without.
+    from rulec.logic.sentences.language import TypeWords
+
     types = _file(f"{vocabulary}.{language}.toml").get("types", {})
     return {name: TypeWords(*words) for name, words in types.items()}
 

@@ -9,7 +9,6 @@ import click
 from click.shell_completion import CompletionItem
 
 from rulec.diagnostics import RulecError
-from rulec.report.findings.code_registry import all_codes
 from rulec.settings import search_path
 
 
@@ -66,6 +65,9 @@ def complete_codes(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Codes of messages, with what they are about."""
+    # 4 ms: only to complete codes.
+    from rulec.report.findings.code_registry import all_codes
+
     return [
         CompletionItem(text, help=code.title)
         for text, code in all_codes().items()
