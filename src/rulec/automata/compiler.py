@@ -203,7 +203,7 @@ def answers_to(
 
 _Started: TypeAlias = "tuple[subprocess.Popen[bytes], str]"
 _waiting: dict[tuple[object, ...], _Started] = {}
-"""A worker that waits for more, by the process that has started it and how; one at most."""
+"""Workers that wait for more, by the process that has started them and how; one for each."""
 
 
 @contextmanager
@@ -216,7 +216,7 @@ def _worker(choice: str, *, more_will_come: bool = False) -> Iterator[_Started]:
     is_fit = False
     try:
         yield process, spot
-        is_fit = more_will_come and process.poll() is None and not _waiting
+        is_fit = more_will_come and process.poll() is None and key not in _waiting
     finally:
         if is_fit:
             _waiting[key] = process, spot

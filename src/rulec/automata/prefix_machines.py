@@ -8,7 +8,7 @@ run may start in whatever state the letters before it lead to.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
@@ -16,6 +16,7 @@ from rulec.automata.compiler import answers_to, job_of
 from rulec.automata.compiler_jobs import MOST_LETTERS, Done, Failed, Job
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, Read
 from rulec.automata.outcome_machine import OutcomeMachine, of_prefixes
+from rulec.automata.worker import compiler_choice
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.semantics import Semantics
@@ -30,7 +31,7 @@ _MOST_KNOWN = 1 << 10
 def prefix_machines(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
     """The machine of each rule for prefixes, by the rule's name; None where it gets too large.
 
-    They are compiled on first use. Raises RulecError R0403 if Spot is not installed.
+    They are compiled on first use. Raises RulecError R0403 if Spot is asked for and not installed.
     """
     keys = {rule.name: _key(rule, rulebook) for rule in rulebook.rules}
     missing = [rule for rule in rulebook.rules if keys[rule.name] not in _KNOWN]
@@ -38,12 +39,30 @@ def prefix_machines(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine |
         _KNOWN.clear()
         missing = list(rulebook.rules)
     jobs = [job for rule in missing for job in _jobs(rule, rulebook)]
-    answers = iter(answers_to(jobs)[0] if jobs else ())
+    answers = iter(_answers(jobs, is_spots=bool(rulebook.spot)))
     for rule in missing:
         own = _table(next(answers)) if _looks_back(rule) else rule.machine
         finite = own if rulebook.semantics == "finite" else _table(next(answers))
         _KNOWN[keys[rule.name]] = None if own is None or finite is None else _machine(own, finite)
     return {name: _KNOWN[key] for name, key in keys.items()}
+
+
+def _answers(jobs: Sequence[Job], *, is_spots: bool) -> list[Done | Failed | None]:
+    """The machines, by decision diagrams where nobody asks for another compiler.
+
+    Spot takes twice as long for words that end, and of some rules ten times; the tables are the
+    same. What diagrams have no way for is Spot's, if that has made the rulebook.
+    """
+    if not jobs:
+        return []
+    if compiler_choice.choice():
+        return answers_to(jobs)[0]
+    answers, _ = answers_to(jobs, choice=compiler_choice.DIAGRAMS)
+    left = [job for job, answer in zip(jobs, answers, strict=True) if not isinstance(answer, Done)]
+    if not left or not is_spots:
+        return answers
+    others = iter(answers_to(left)[0])
+    return [answer if isinstance(answer, Done) else next(others) for answer in answers]
 
 
 def _key(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[object, ...]:
