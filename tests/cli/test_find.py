@@ -155,7 +155,7 @@ def test_a_name_that_the_words_lack(files, capsys):
     assert main(["find", "(v: lorry) built_up", files[1]]) == 2
     assert "the formula says nothing about `v`" in capsys.readouterr().err
     assert main(["find", "built_up", files[1]]) == 2
-    assert "which vocabulary `road` does not know" in capsys.readouterr().err
+    assert "which `road` does not know" in capsys.readouterr().err
 
 
 def test_a_trace_that_does_not_fit_is_said_and_others_are_asked(files, tmp_path, capsys):

@@ -82,6 +82,7 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["check", "--fail-on", "error", "--fail-on", "error"], "--fail-on is given twice"),
         (["show", "de", *(["--at", "2026-01-01"] * 3)], "--at is given 3 times, and takes one"),
         (["show", "de", "--at", "2026"], "error: --at: `2026` is no date: a date is written"),
+        (["verify", "--watch"], "no option `--watch` here; `rulec check` and `rulec test` have it"),
         (["verify", "x.xml", "de"], "  = help: a rulebook is given by `-r de`"),
         (["verify", "x.xml", "mine.rules"], "  = help: a rulebook is given by `-r mine.rules`"),
         (["new", "Belgium 2"], "  = help: such as `belgium_2`"),

@@ -171,7 +171,7 @@ def test_a_state_counts_from_the_beginning_of_the_trace():
 @pytest.mark.parametrize(
     ("arrays", "message"),
     [
-        ({"world": {"fast": np.array([True])}}, "`fast`, which vocabulary `many`"),
+        ({"world": {"fast": np.array([True])}}, "`fast`, which `many`"),
         ({"objects": {"a": "bus"}, "spans": np.array([[0, 0]])}, "type `bus`"),
     ],
 )

@@ -52,6 +52,14 @@ _ONE_EACH = {
 }
 """By verb that answers one question with one file: how several are asked."""
 
+_OF_OTHER_VERBS = {
+    "--coverage": "`rulec test` has it",
+    "--fix": "`rulec check` has it",
+    "--lock": "`rulec check` has it",
+    "--watch": "`rulec check` and `rulec test` have it",
+}
+"""Options that somebody may look for at another verb."""
+
 _NO_CHOICE = re.compile(r"'(?P<given>.*)' is not one of ")
 _NO_NUMBER = re.compile(r"'(?P<given>.*)' is not a valid integer")
 _TOO_MUCH = re.compile(r"Got unexpected extra arguments? \((?P<given>.*)\)")
@@ -63,6 +71,8 @@ def reworded(problem: click.ClickException) -> str:
     message = problem.format_message()
     if isinstance(problem, click.NoSuchOption) and problem.ctx is not None:
         known = [option for one in problem.ctx.command.params for option in one.opts]
+        if others := _OF_OTHER_VERBS.get(problem.option_name):
+            return f"there is no option `{problem.option_name}` here; {others}"
         fitting = [option for option in known if option.startswith(problem.option_name)]
         near = fitting[0] if fitting else nearest_name(problem.option_name, known)
         way_out = f"; did you mean `{near}`?" if near else ""

@@ -101,8 +101,7 @@ def check_objects(
         if kind not in vocabulary.types:
             raise UNKNOWN_OBJECT.error(
                 place,
-                f"object `{name}` is of type `{kind}`, which vocabulary "
-                f"`{vocabulary.name}` does not know",
+                f"object `{name}` is of type `{kind}`, which `{vocabulary.name}` does not know",
                 help=_suggest(kind, vocabulary.types),
             )
 
@@ -115,7 +114,7 @@ def check_told(
         if name not in vocabulary.declarations:
             raise UNDECLARED_NAME.error(
                 place,
-                f"`told` has `{name}`, which vocabulary `{vocabulary.name}` does not know",
+                f"`told` has `{name}`, which `{vocabulary.name}` does not know",
                 help=_unknown_name(name, vocabulary),
             )
 
@@ -163,7 +162,7 @@ def check_state(
         if declaration is None:
             raise UNDECLARED_NAME.error(
                 place,
-                f"{where} speaks of `{name}`, which vocabulary `{vocabulary.name}` does not know",
+                f"{where} speaks of `{name}`, which `{vocabulary.name}` does not know",
                 help=_unknown_name(name, vocabulary),
             )
         _check_value(value, declaration, declaration.parameters, about)
