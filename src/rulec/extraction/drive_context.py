@@ -296,6 +296,34 @@ def _near(
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class PairStates:
+    """All states of pairs of a drive and a participant, end to end.
+
+    ``rows`` and ``columns`` say where each is in a context's arrays, ``spans`` are the pairs'.
+    """
+
+    rows: NDArray[intp]
+    columns: NDArray[intp]
+    spans: EndToEnd
+
+
+def pair_states(
+    context: DriveContext, cells: tuple[NDArray[intp], ...]
+) -> tuple[PairStates, NDArray[intp]]:
+    """The pairs of which some cells, rows and columns, are states; and the cells' places there."""
+    (rows, columns), spans = cells, context.spans
+    keys = rows * spans.n_drives + spans.number[columns]
+    pairs = distinct(keys)
+    begins, lengths = spans.begins, np.diff(spans.bounds)
+    drives = pairs % spans.n_drives
+    bounds = np.append(0, np.cumsum(lengths[drives]))
+    own = EndToEnd(bounds.tolist())
+    shift = begins[drives] - bounds[:-1]
+    states = PairStates(own.spread(pairs // spans.n_drives), own.columns + own.spread(shift), own)
+    return states, columns - shift[np.searchsorted(pairs, keys)]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class EgosOnRoad:
     """Drives along one road: rows of ``places``, and the columns in which each is.
 

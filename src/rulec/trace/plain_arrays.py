@@ -30,8 +30,21 @@ def median(values: NDArray[Any]) -> float:
 
 
 def sorted_in(groups: NDArray[np.intp], values: NDArray[np.float64]) -> NDArray[np.intp]:
-    """The order by groups, and by values in each of them."""
-    order = np.argsort(values, kind="stable")
+    """The order by groups, and by values in each of them; equal ones stay in theirs."""
+    order = _sorted_in(groups, values)
+    ascending, numbers = values[order], groups[order]
+    is_new = np.ones(len(order) + 1, dtype=bool)
+    is_new[1:-1] = (ascending[1:] != ascending[:-1]) | (numbers[1:] != numbers[:-1])
+    equal = np.flatnonzero(~(is_new[:-1] & is_new[1:]))
+    if len(equal):
+        own, runs = order[equal], np.cumsum(is_new[:-1])[equal]
+        order[equal] = own[np.lexsort((own, runs))]
+    return order
+
+
+def _sorted_in(groups: NDArray[np.intp], values: NDArray[np.float64]) -> NDArray[np.intp]:
+    """The same with equal ones in any order."""
+    order = np.argsort(values)
     # Small whole numbers are sorted in linear time
     numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
     return order[np.argsort(numbers[order], kind="stable")]
@@ -42,7 +55,7 @@ def medians(
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     """The median and the size of each of so many groups, NaN of an empty one."""
     sizes = np.bincount(groups, minlength=count)
-    ordered = np.append(values[sorted_in(groups, values)], np.nan)
+    ordered = np.append(values[_sorted_in(groups, values)], np.nan)
     begins = np.cumsum(sizes) - sizes
     low, high = begins + np.maximum(sizes - 1, 0) // 2, begins + sizes // 2
     return np.where(sizes > 0, (ordered[low] + ordered[high]) / 2, np.nan), sizes

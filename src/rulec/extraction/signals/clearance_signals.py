@@ -295,19 +295,17 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
     lane, there = _next_lane(context, context.side)
     perhaps: Flags = there & ~_known_behind(context)
     others, spans, step_s = context.extents, context.spans, context.recording.step_s
-    some = np.flatnonzero(context.driving_along.any(axis=1))
-    seen, rows = context.driving_along[some], some[:, None]
-    is_there = spans.any(seen)
-    first = spans.next_state(seen)[:, spans.first]
-    last = spans.latest(seen)[:, spans.end - 1]
-    edges = (last, is_there & (spans.columns > last)), (first, is_there & (spans.columns < first))
-    for edge, unseen in edges:
-        edge = np.where(is_there, edge, spans.first)
-        away_s = (spans.columns - edge) * step_s
+    seen = context.driving_along
+    before, behind = spans.latest(seen), spans.next_state(seen)
+    gone, comes = before >= spans.first, behind < spans.end
+    for unseen, edges in ((gone & ~comes, before), (comes & ~gone, behind)):
+        rows, states = (unseen & there).nonzero()
+        edge = edges[rows, states]
+        away_s = (states - edge) * step_s
         place = others.s[rows, edge] + others.along[rows, edge] * away_s
-        near = np.abs(place - context.ego_extents.s[0]) < context.thresholds.approach_m
-        near &= others.lane[rows, edge] == lane
-        perhaps |= (unseen & there & near & (np.abs(away_s) < _UNSEEN_S)).any(axis=0)
+        near = np.abs(place - context.ego_extents.s[0, states]) < context.thresholds.approach_m
+        near &= (others.lane[rows, edge] == lane[states]) & (np.abs(away_s) < _UNSEEN_S)
+        perhaps[states[near]] = True
     return perhaps
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.drive_context import DriveContext, PairStates, pair_states
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S
 from rulec.extraction.signals.signal_columns import (
@@ -22,9 +22,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
-from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.trace.plain_arrays import distinct
 
 _AWAY_MPS = 0.3
 
@@ -82,68 +80,63 @@ def _before(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -
     return time
 
 
-def parts_soon(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those whose lane is not ego's at some state within ``parting_s``.
+def parts_soon(context: DriveContext, cells: tuple[NDArray[intp], ...]) -> Flags:
+    """Flags of those cells, rows and columns, whose lane is not ego's within ``parting_s``.
 
     Or who are clear of ego at its side then, as on a broad lane; or who are lost from sight before,
     and go aside by ``_AWAY_MPS``, or ego does when they are seen last, such that it may be clear of
-    them then. Where ways part in a junction nobody is clear of one that stops before. Of these
-    rows, False in all others.
+    them then. Where ways part in a junction nobody is clear of one that stops before.
     """
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
-    parts, rows = np.zeros(context.relevant.shape, dtype=bool), distinct(rows)
-    way_across = relations.way_across(context)[rows]
-    apart = context.extents.lane[rows] != context.ego_extents.lane
+    (pairs, places), others, own = pair_states(context, cells), context.extents, context.ego_extents
+    spans, at, columns = pairs.spans, (pairs.rows, pairs.columns), pairs.columns
+    seen, way_across = context.relevant[at], relations.way_across(context)[at]
+    apart = others.lane[at] != own.lane[0, columns]
     apart |= way_across > context.thresholds.touching_m
-    apart &= context.relevant[rows]
-    spans, states = context.spans, context.spans.columns
-    seen, own = context.relevant[rows], context.ego_extents
-    others = context.extents.part(rows, slice(None))
-    inside, stopped = _in_junctions(context, others), _would_stand(context, rows)
-    parts[rows] = spans.next_state(apart & ~inside, horizon) <= states + horizon
-    in_time = np.minimum(stopped, states + horizon)
-    parts[rows] |= spans.next_state(apart & inside, horizon) <= in_time
-    side = np.sign(others.d_min + others.d_max - (own.d_min + own.d_max))
+    apart &= seen
+    until = spans.columns + horizon
+    inside = _in_junctions(context, pairs)
+    parts = spans.within(apart & ~inside, horizon)
+    stopped = _would_stand(context, pairs) if inside.any() else until
+    parts |= spans.next_state(apart & inside, horizon) <= np.minimum(stopped, until)
+    middles = others.d_min[at] + others.d_max[at], own.d_min[0, columns] + own.d_max[0, columns]
+    side = np.sign(middles[0] - middles[1])
     gone = spans.next_state(~seen, horizon)
     last = np.clip(gone - 1, spans.first, spans.end - 1)
-    away, still = (
-        np.take_along_axis(values, last, axis=1) for values in (-own.across * side, way_across)
-    )
-    left_s = (states + horizon - last) * context.recording.step_s
+    away, still = (-own.across[0, columns] * side)[last], way_across[last]
+    left_s = (until - last) * context.recording.step_s
     swings_out = (away >= _AWAY_MPS) & (still + away * left_s > -context.tolerances.place_m)
-    until = np.where(np.take_along_axis(inside, last, axis=1), stopped, states + horizon)
-    lost = gone <= np.minimum(until, states + horizon)
-    parts[rows] |= seen & lost & ((others.across * side >= _AWAY_MPS) | swings_out)
-    return parts
+    lost = gone <= np.minimum(np.where(inside[last], stopped, until), until)
+    parts |= seen & lost & ((others.across[at] * side >= _AWAY_MPS) | swings_out)
+    found: Flags = parts[places]
+    return found
 
 
-def _in_junctions(context: DriveContext, others: RoadExtents) -> Flags:
+def _in_junctions(context: DriveContext, pairs: PairStates) -> Flags:
     """Flags of bodies in the junctions of ego's road."""
-    inside = np.zeros(others.s_min.shape, dtype=bool)
+    inside, at = np.zeros(len(pairs.rows), dtype=bool), (pairs.rows, pairs.columns)
     for start, end in context.road.junctions:
-        inside |= (others.s_max >= start) & (others.s_min < end)
+        inside |= (context.extents.s_max[at] >= start) & (context.extents.s_min[at] < end)
     return inside
 
 
-def _would_stand(context: DriveContext, rows: NDArray[intp]) -> NDArray[intp]:
-    """The state in which these rows get to where they would stop, did they brake from now on.
+def _would_stand(context: DriveContext, pairs: PairStates) -> NDArray[intp]:
+    """The state in which they get to where they would stop, did they brake from now on.
 
     One past the last where they do not get there while they are seen.
     """
-    tracks, spans = context.tracks.part(rows, slice(0, None)), context.spans
-    fastest = np.nan_to_num(tracks.speed + tracks.speed_error)
+    tracks, at, spans = context.tracks, (pairs.rows, pairs.columns), pairs.spans
+    x, y = tracks.x[at], tracks.y[at]
+    fastest = np.nan_to_num(tracks.speed[at] + tracks.speed_error[at])
     braking = fastest**2 / (2 * context.thresholds.braking_mps2)
 
-    def of_drive(columns: slice) -> NDArray[intp]:
-        x, y = tracks.x[:, columns], tracks.y[:, columns]
-        steps = np.nan_to_num(np.hypot(np.diff(x), np.diff(y)))
-        ways = np.append(np.zeros((len(rows), 1)), steps.cumsum(axis=1), axis=1)
-        stops = ways + braking[:, columns]
-        found = [np.searchsorted(*one) for one in zip(ways, stops, strict=True)]
-        places: NDArray[intp] = np.array(found, dtype=intp).reshape(stops.shape) + columns.start
-        return places
+    def of_pair(own: slice) -> NDArray[intp]:
+        steps = np.nan_to_num(np.hypot(np.diff(x[own]), np.diff(y[own])))
+        ways = np.append(0.0, steps.cumsum())
+        states: NDArray[intp] = np.searchsorted(ways, ways + braking[own]) + own.start
+        return states
 
-    stands: NDArray[intp] = np.maximum(spans.each(of_drive), spans.columns)
+    stands: NDArray[intp] = np.maximum(spans.each(of_pair), spans.columns)
     return stands
 
 

@@ -137,7 +137,7 @@ def _safe_gap(context: DriveContext) -> SignalColumns:
     aside = relations.way_across(context)[cells] - limits.touching_m
     room = np.where(stands, aside, -np.inf)
     may_pass_by, follows = np.abs(room) < place, room <= 0
-    moot = may_pass_by | (follows & parts_soon(context, cells[0])[cells])
+    moot = may_pass_by | (follows & parts_soon(context, cells))
     speed = np.maximum(context.ego_extents.along[0], 0.0)
     react_m = speed[cells[1]] * limits.reaction_s
     stops = _stood_before(context)[cells] & (short - react_m <= 0)

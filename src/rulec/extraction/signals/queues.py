@@ -174,7 +174,10 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Floats]:
     behind, place = around.part(next_to), place[next_to]
     longest = longest_gaps(context, behind.speed, behind.speed_error)
     short = around.s_min[next_to + 1] - behind.s_max <= longest
-    gaps = np.bincount(place, minlength=context.states * lanes)
-    n_short = [np.bincount(place[flags], minlength=context.states * lanes) for flags in short]
-    queues = np.stack(n_short) > _MOST * gaps
+    queues = np.zeros((len(READINGS), context.states * lanes), dtype=bool)
+    if len(place):
+        # All of a lane and state stand together
+        begins = np.flatnonzero(np.diff(place, prepend=-1))
+        n_short = np.add.reduceat(short, begins, axis=1, dtype=np.intp)
+        queues[:, place[begins]] = n_short > _MOST * np.diff(begins, append=len(place))
     return queues.reshape(len(READINGS), *shape), middle.reshape(shape) * KMH

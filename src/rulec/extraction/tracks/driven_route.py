@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.map_matching import MatchedStretch
@@ -88,6 +89,10 @@ def route_stretches(
     pieces = pieces_of(recording, matched.chain, graph.beside)
     piece_of = [k for k, piece in enumerate(pieces) for _ in piece]
     at = [piece_of[place] for place in matched.places]
+    if len(set(at)) == len(pieces) and _leads_on(recording, pieces):
+        # Who is in each of them, and changes no lanes, has driven nowhere else
+        yield RouteStretch(matched.columns, matched.chain, tuple(at))
+        return
     counts = Counter((piece_of[place], matched.chain[place]) for place in matched.places)
     rows = []
     for number, piece in enumerate(pieces):
@@ -102,6 +107,14 @@ def route_stretches(
             columns = tuple(matched.columns[k] for k in own)
             yield RouteStretch(columns, route, tuple(at[k] - start for k in own))
         start = stop
+
+
+def _leads_on(recording: Recording, pieces: Sequence[Sequence[str]]) -> bool:
+    """True if no piece changes lanes, and each leads to the next one."""
+    if any(len(piece) > 1 for piece in pieces):
+        return False
+    lanelets = recording.lanelets
+    return all(end[0] in lanelets[start[0]].successors for start, end in pairwise(pieces))
 
 
 def _cheapest(

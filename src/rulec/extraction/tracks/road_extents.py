@@ -164,7 +164,7 @@ def at_columns(values: NDArray[Any], rows: NDArray[intp], columns: NDArray[intp]
     """Some columns of rows, or of one row for each; a third axis stays the first in memory."""
     if values.ndim == 2:
         return values[rows, columns]
-    return np.moveaxis(np.moveaxis(values, -1, 0)[:, rows, columns], 0, -1)
+    return np.moveaxis(np.stack([own[rows, columns] for own in np.moveaxis(values, -1, 0)]), 0, -1)
 
 
 def and_row(values: NDArray[Any], others: NDArray[Any], row: int) -> NDArray[Any]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,19 @@ from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, PartialValue
 
 MOST_KINDS = 1 << 7
 """Where more different things are said of objects, states are looked at one by one."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _AlikeStates:
+    """The group of each state, and the place of the first state of each.
+
+    ``often`` says how often there is each kind of object in a state, ``examples`` are cells of it.
+    """
+
+    firsts: Places
+    groups: Places
+    often: NDArray[np.intp]
+    examples: Places
 
 
 class CrowdedStates:
@@ -46,6 +60,7 @@ class CrowdedStates:
         self._world = [name for name in names if not declared[name].parameters]
         self._about = [name for name in names if declared[name].parameters]
         self._counted = sorted({count.type for count in map(count_in, reads) if count is not None})
+        self._known: tuple[Places, _AlikeStates | None] | None = None
 
     def are_entangled(self) -> Flags:
         """The states of the stack in which unknown values may have to do with each other."""
@@ -73,6 +88,20 @@ class CrowdedStates:
 
         States are in ascending order. None if one has to look at each by itself.
         """
+        alike = self._alike(states)
+        if alike is None:
+            return None
+        firsts = alike.firsts
+        reads, found = self._found(states[firsts], alike.often[firsts], alike.examples, supposed)
+        return reads, np.array(found, dtype=np.intp)[alike.groups].tolist()
+
+    def _alike(self, states: Places) -> _AlikeStates | None:
+        """States in groups that are alike; the same ones are mostly asked about again."""
+        if self._known is None or not np.array_equal(self._known[0], states):
+            self._known = states, self._grouped(states)
+        return self._known[1]
+
+    def _grouped(self, states: Places) -> _AlikeStates | None:
         stack = self._stack
         is_meant = np.zeros(stack.n_states, dtype=bool)
         is_meant[states] = True
@@ -85,18 +114,14 @@ class CrowdedStates:
         often = np.bincount(owners * n_kinds + kinds, minlength=len(states) * n_kinds)
         often = np.minimum(often, self._enough).reshape(len(states), n_kinds)
         said = [codes for name in self._world for codes in _codes(stack.column(name), states)]
-        alike: dict[bytes, int] = {}
-        firsts: list[int] = []
-        groups: list[int] = []
-        for place, row in enumerate(np.column_stack([often, *said])):
-            group = alike.setdefault(row.tobytes(), len(firsts))
-            if group == len(firsts):
-                firsts.append(place)
-            groups.append(group)
+        groups = np.zeros(len(states), dtype=np.intp)
+        for codes in (*often.T, *said):
+            groups = _places(groups * (int(codes.max(initial=0)) + 1) + codes)
+        firsts = np.empty(int(groups.max(initial=-1)) + 1, dtype=np.intp)
+        firsts[groups[::-1]] = np.arange(len(states))[::-1]
         examples = np.empty(n_kinds, dtype=np.intp)
         examples[kinds[::-1]] = cells[::-1]
-        reads, found = self._found(states[firsts], often[firsts], examples, supposed)
-        return reads, [found[group] for group in groups]
+        return _AlikeStates(firsts, groups, often, examples)
 
     def _cells(self, states: Flags) -> Places:
         """The cells, in some states, of those who may count."""

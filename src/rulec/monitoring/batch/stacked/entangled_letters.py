@@ -51,11 +51,12 @@ def entangled_letters(
     about: tuple[Spots, Flags],
     numbers: Sequence[Numbers],
     supposed: Mapping[Subject, Value],
+    crowd: CrowdedStates,
 ) -> EntangledLetters | None:
     """The letters where some related reads are ``partial``, and what they read is entangled.
 
     ``about`` are the spots, and where reads are partial. None if these are to be looked at one by
-    one.
+    one. The ``crowd`` are the states for rules that count everybody.
     """
     spots, partial = about
     found: Sequence[int]
@@ -64,7 +65,6 @@ def entangled_letters(
         places = np.flatnonzero(partial & _are_entangled(reads, reader, spots))
         found = list(map(reads.number, _rows(reads, reader, spots.part(places), supposed)))
     else:
-        crowd = CrowdedStates(rule, reader)
         if not crowd.is_known:
             return None
         places = np.flatnonzero(partial & crowd.are_entangled()[spots.states])

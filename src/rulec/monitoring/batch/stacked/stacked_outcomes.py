@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.outcome_machine import KEPT
+from rulec.monitoring.batch.stacked.crowded_states import CrowdedStates
 from rulec.monitoring.batch.stacked.entangled_letters import EntangledLetters, entangled_letters
 from rulec.monitoring.batch.stacked.instances import Instances, doubtful_instances, numbers_at
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
@@ -21,7 +22,11 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import Answer
 from rulec.trace import Value
+from rulec.trace.plain_arrays import distinct
 from rulec.vocabulary.partial_values import UNKNOWN
+
+_ODD = np.uint64(0x9E3779B97F4A7C15)
+"""Of the golden ratio's digits."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,17 +67,52 @@ def outcomes(
     if not len(instances.traces):
         return
     for words in _words(rule, reader, instances, rulebook):
-        is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1]).tolist()
+        is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1])
         alternatives = [_stretches(letters, words.bounds) for letters in words.letters]
-        for place, odd in enumerate(is_odd):
-            if odd:
-                yield StackedOutcome(words, place, None)
-                continue
+        first_alike = _first_alike(words.letters, words.bounds)
+        # What is odd has a word of its own
+        first_alike = np.where(is_odd[first_alike], np.arange(len(is_odd)), first_alike)
+        answers: dict[int, Answer | None] = dict.fromkeys(np.flatnonzero(is_odd).tolist())
+        is_told = is_odd.copy()
+        for place in distinct(first_alike[~is_odd]).tolist():
             answer = _joined(
                 [rule.answer(rows[ends[place] : ends[place + 1]]) for rows, ends in alternatives]
             )
-            if answer.worst != KEPT:
-                yield StackedOutcome(words, place, answer)
+            answers[place] = answer
+            is_told[place] = answer.worst != KEPT
+        for place in np.flatnonzero(is_told[first_alike] | is_odd).tolist():
+            found = None if is_odd[place] else answers[int(first_alike[place])]
+            yield StackedOutcome(words, place, found)
+
+
+def _first_alike(
+    alternatives: Sequence[NDArray[np.intp]], bounds: NDArray[np.intp]
+) -> NDArray[np.intp]:
+    """For each word the place of the first one that is the same.
+
+    Words of the letters of all alternatives, which begin and end at ``bounds``. They are told apart
+    by sums of letters with weights, and compared then.
+    """
+    begins, lengths = bounds[:-1], np.diff(bounds)
+    states = np.arange(bounds[-1]) - np.repeat(begins, lengths)
+    weights = _weights(int(lengths.max(initial=0)) + 1)
+    sums = weights[lengths]
+    for letters in alternatives:
+        own = np.add.reduceat((letters + 1).astype(np.uint64) * weights[states], begins)
+        sums = sums * _ODD + own
+    _, firsts, groups = np.unique(sums, return_index=True, return_inverse=True)
+    like: NDArray[np.intp] = firsts[groups]
+    if (lengths == lengths[like]).all():
+        at = np.repeat(begins[like], lengths) + states
+        if all((letters == letters[at]).all() for letters in alternatives):
+            return like
+    return np.arange(len(begins))
+
+
+def _weights(count: int) -> NDArray[np.uint64]:
+    """Odd numbers without a pattern, the powers of one."""
+    weights: NDArray[np.uint64] = np.cumprod(np.full(count, _ODD), dtype=np.uint64)
+    return weights
 
 
 def _stretches(
@@ -165,6 +205,7 @@ def _of_group(
         if len(given) > 1 and supposed == [{}]:
             odd[:] = True
     every_numbers, every_letters, every_entangled = [], [], []
+    crowd: CrowdedStates | None = None
     for values in supposed:
         own = list(numbers)
         for place in unknown:
@@ -179,7 +220,8 @@ def _of_group(
             partial = np.broadcast_to(partial, (n_spots,))
             if partial.any():
                 about = spots, partial
-                entangled = entangled_letters(rule, reader, about, own, values)
+                crowd = crowd or CrowdedStates(rule, reader)
+                entangled = entangled_letters(rule, reader, about, own, values, crowd)
                 if entangled is None:
                     odd |= partial
                 else:
