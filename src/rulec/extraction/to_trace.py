@@ -292,8 +292,15 @@ def _decided_by(
     found = []
     for own, columns in zip(present, context.spans.slices, strict=True):
         rows = {presence.name: presence.row for presence in own}
-        values, limits = gap[:, columns], safe[:, columns]
-        numbers = DecidedBy("gap", "m", rows, values, limits, place, error[:, columns])
+        numbers = DecidedBy(
+            "gap",
+            "m",
+            rows,
+            values=gap[:, columns],
+            limits=safe[:, columns],
+            value_error=place,
+            limit_errors=error[:, columns],
+        )
         found.append({"safe_gap": numbers})
     return found
 

@@ -75,7 +75,8 @@ def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
         ]
     }
     world, about, unknown = map(joined, ("world", "about", "unknown"))
-    return SignalColumns(world, about, unknown, parts[0].only, bounds, parts[0].texts)
+    only, texts = parts[0].only, parts[0].texts
+    return SignalColumns(world, about, unknown, only=only, bounds=bounds, texts=texts)
 
 
 def rounded(values: SignalColumn) -> SignalColumn:

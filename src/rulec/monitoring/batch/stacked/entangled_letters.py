@@ -51,6 +51,7 @@ def entangled_letters(
     about: tuple[Spots, Flags],
     numbers: Sequence[Numbers],
     supposed: Mapping[Subject, Value],
+    *,
     crowd: CrowdedStates,
 ) -> EntangledLetters | None:
     """The letters where some related reads are ``partial``, and what they read is entangled.

@@ -221,7 +221,7 @@ def _of_group(
             if partial.any():
                 about = spots, partial
                 crowd = crowd or CrowdedStates(rule, reader)
-                entangled = entangled_letters(rule, reader, about, own, values, crowd)
+                entangled = entangled_letters(rule, reader, about, own, values, crowd=crowd)
                 if entangled is None:
                     odd |= partial
                 else:
