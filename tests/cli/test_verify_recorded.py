@@ -139,8 +139,9 @@ def test_what_is_not_told_is_not_taken_for_its_default(verify):
     # Nothing says whether the road is in a town, so nobody can be known to be too fast
     status, out, _ = verify("--explain", "0")
     assert status == 0
-    rules = "rules       2 rules: 1 judged, 1 cannot be judged from this recording (built_up)"
+    rules = "rules       2 rules: 1 judged, 1 cannot be judged from this recording"
     assert rules in out.splitlines()
+    assert "no verdict  hard: slow (built_up)" in out.splitlines()
     assert out.splitlines()[-1] == "3 drives: 0 satisfied, 0 violated, 3 open"
     _, out, _ = verify("--json", "--ego", "4")
     (line,) = map(json.loads, out.splitlines())
@@ -161,3 +162,48 @@ def test_strictly_what_is_open_counts_as_violated(verify, tmp_path):
     assert (status, out.splitlines()[0]) == (0, "t: open")
     assert "depends on built_up: violated if not built_up, kept if built_up" in out
     assert verify("--strict", files=(str(traces),))[0] == 1
+
+
+UNTOLD = """\
+rulebook untold
+use road
+
+soft rule comfort {
+  says "In fog, slowly."
+  require always (visibility < 50 m implies speed <= 50 km/h)
+}
+
+hard rule fog {
+  says "In fog, more slowly."
+  require always (visibility < 50 m implies speed <= 45 km/h)
+}
+
+hard rule loaded {
+  says "With a load, slowly."
+  require always (ego_mass > 3.5 t implies speed <= 45 km/h)
+}
+
+hard rule thick_fog {
+  says "In thick fog, very slowly."
+  require always (visibility < 20 m implies speed <= 20 km/h)
+}
+"""
+
+
+def test_rules_without_a_verdict_are_named_hard_ones_first(tmp_path, capsys, monkeypatch):
+    book = tmp_path / "untold.rules"
+    book.write_text(UNTOLD)
+    assert main(["verify", three_cars(tmp_path), "-r", str(book), "--explain", "0"]) == 2
+    lines = capsys.readouterr().out.splitlines()
+    at = lines.index("rules       4 rules: 0 judged, 4 cannot be judged from this recording")
+    assert lines[at + 1 : at + 4] == [
+        "no verdict  hard: fog, thick_fog (visibility); loaded (ego_mass)",
+        "no verdict  soft: comfort (visibility)",
+        "            docs/recordings.md, Words: what tells the words in brackets",
+    ]
+    monkeypatch.setattr("rulec.cli.commands.verify.page_width", lambda: 40)
+    main(["verify", three_cars(tmp_path), "-r", str(book), "--explain", "0"])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[lines.index("no verdict  hard: fog, thick_fog") + 1] == (
+        " " * 12 + "(visibility); loaded"
+    )

@@ -242,7 +242,9 @@ class _RecordingJudge:
 
     def _whole(self) -> JudgedRecording:
         verdicts, judged = self._verdicts, self._judged
-        table = recording_table.as_text(verdicts, judged.tally) if self._settings.text else ""
+        table = ""
+        if self._settings.text:
+            table = recording_table.as_text(verdicts, judged.tally, self._settings.width)
         found = None
         if self._findings is not None:
             found = replace(self._findings.whole(), rows=tuple(judged.rows))

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from textwrap import shorten
+from textwrap import shorten, wrap
 
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
 from rulec.report.text.terminal_text import first_of, table_lines, visible
@@ -17,8 +18,14 @@ MOST_VEHICLES = 6
 MOST_CAUSES = 3
 LONGEST_RULE = 48
 
+MOST_UNJUDGED = 100
+"""So many rules that could not be judged are named; JSON has them all."""
 
-def as_text(verdicts: RecordingVerdicts, tally: ViolationTally) -> str:
+LABEL = 12
+"""The columns of what a line is about."""
+
+
+def as_text(verdicts: RecordingVerdicts, tally: ViolationTally, width: int) -> str:
     """The recording in a few lines, and the table of violations."""
     recording = verdicts.recording
     drives = f"{tally.judged:,} {'drive' if tally.judged == 1 else 'drives'}"
@@ -37,30 +44,56 @@ def as_text(verdicts: RecordingVerdicts, tally: ViolationTally) -> str:
         lines.append(f"by default  {first_of(defaults, MOST_DEFAULTS)}: the recording does not say")
     if verdicts.defaults:
         lines.append("assumed     defaults, and that nothing comes after the recording's end")
-    lines += _rule_counts(verdicts, tally)
+    lines += _rule_counts(verdicts, tally, width)
     lines += [f"note        {remark}" for remark in recording.remarks]
     lines += _table(verdicts, tally)
     return "\n".join(visible(line) for line in lines)
 
 
-def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
-    """How many rules were judged, open, and not judgeable from this recording, and why."""
+def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int) -> Iterator[str]:
+    """How many rules were judged, which are open or cannot be judged, and for want of what."""
     if not tally.judged:
         return
-    names = [rule.name for rule in verdicts.rules.rules]
+    rules = verdicts.rules.rules
     order = list(verdicts.rules.vocabulary.declarations)
-    never = [name for name in names if not tally.judged_in[name] and name not in tally.open_rules]
-    some_open = [name for name in names if name in tally.open_rules and name not in never]
-    parts = [f"{len(names) - len(never) - len(some_open):,} judged"]
-    for rules, what, reasons in (
-        (some_open, "open in some drive", tally.open_rules),
-        (never, "cannot be judged from this recording", tally.untold),
-    ):
-        if rules:
-            about = {word for rule in rules for word in reasons.get(rule, ())}
-            words = first_of(sorted(about, key=order.index), MOST_DEFAULTS)
-            parts.append(f"{len(rules):,} {what}" + (f" ({words})" if words else ""))
-    yield f"rules       {len(names):,} rules: {', '.join(parts)}"
+    judged = [rule for rule in rules if tally.judged_in[rule.name]]
+    never = [rule for rule in rules if rule not in judged and rule.name not in tally.open_rules]
+    some_open = [rule for rule in rules if rule.name in tally.open_rules]
+    parts = [f"{len(rules) - len(never) - len(some_open):,} judged"]
+    if some_open:
+        about = {word for rule in some_open for word in tally.open_rules[rule.name]}
+        words = first_of(sorted(about, key=order.index), MOST_DEFAULTS)
+        parts.append(f"{len(some_open):,} open in some drive" + (f" ({words})" if words else ""))
+    if never:
+        parts.append(f"{len(never):,} cannot be judged from this recording")
+    yield f"rules       {len(rules):,} rules: {', '.join(parts)}"
+    yield from _unjudged(never, tally, width)
+
+
+def _unjudged(rules: Sequence[CompiledRule], tally: ViolationTally, width: int) -> Iterator[str]:
+    """The rules that cannot be judged, hard ones first, by the words that they lack."""
+    by_words: dict[tuple[str, tuple[str, ...]], list[str]] = {}
+    for rule in sorted(rules, key=lambda one: one.strength != "hard")[:MOST_UNJUDGED]:
+        words = tuple(tally.untold.get(rule.name, ()))
+        by_words.setdefault((rule.strength, words), []).append(rule.name)
+    for strength in ("hard", "soft"):
+        lacking = [
+            f"{', '.join(names)} ({', '.join(words)})" if words else ", ".join(names)
+            for (of, words), names in by_words.items()
+            if of == strength
+        ]
+        if lacking:
+            yield from _folded("no verdict", f"{strength}: {'; '.join(lacking)}", width)
+    if len(rules) > MOST_UNJUDGED:
+        yield from _folded("", f"and {len(rules) - MOST_UNJUDGED:,} more", width)
+    if by_words:
+        yield from _folded("", "docs/recordings.md, Words: what tells the words in brackets", width)
+
+
+def _folded(label: str, text: str, width: int) -> list[str]:
+    """A text behind what it is about, in lines of a width."""
+    first, later = label.ljust(LABEL), " " * LABEL
+    return wrap(text, width, initial_indent=first, subsequent_indent=later, break_on_hyphens=False)
 
 
 def _not_judged(no_drives: Sequence[NoDrive]) -> Iterator[str]:
