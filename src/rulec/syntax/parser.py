@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from itertools import takewhile
 from types import ModuleType
 from typing import TypeVar, cast
 
@@ -65,17 +66,18 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
 
 
 def parse_head(source: Source) -> tree.File:
-    """The tree of a file's header lines; rules and declarations are passed over.
+    """The tree of a file's header lines, which stand before its rules and declarations.
 
     Raises RulecError: the file is no text.
     """
     tokens = scan(checked(source))
     reader = PieceReader(source, tokens)
-    lines = [
-        reader.item(piece)
-        for piece in FileSplitter(source, tokens).split()
-        if isinstance(piece, Piece) and tokens[piece.first].text in HEADER_WORDS
-    ]
+
+    def is_header_line(piece: Piece | RulePieces) -> bool:
+        return isinstance(piece, Piece) and tokens[piece.first].text in HEADER_WORDS
+
+    pieces = takewhile(is_header_line, FileSplitter(source, tokens).split())
+    lines = [reader.item(cast("Piece", piece)) for piece in pieces]
     return assemble_file(source, lines)[0] if lines else NOTHING_READ
 
 
