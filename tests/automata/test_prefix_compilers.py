@@ -7,9 +7,11 @@ import pytest
 from rulec.automata import prefix_machines
 from rulec.automata.compiler_jobs import Failed
 from rulec.automata.decision_diagrams import diagram_compiler
+from rulec.automata.step_compilation import StepCompiler
 from rulec.automata.worker import compiler_choice
 from rulec.automata.worker.job_answers import answer_to
-from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.files.search_path import available_rulebooks
+from rulec.rulebook.loader import load_rulebook, parse_rulebook
 from support.builders.rulebooks import compile_here
 
 
@@ -65,3 +67,17 @@ def test_who_asks_for_a_compiler_gets_it(asked, monkeypatch):
     monkeypatch.setenv(compiler_choice.VARIABLE, compiler_choice.SPOT)
     assert None not in prefix_machines.prefix_machines(compiled("2.13")).values()
     assert asked == [(None, FIRST)]
+
+
+@pytest.mark.long
+@pytest.mark.spot
+@pytest.mark.parametrize("name", available_rulebooks(()))
+def test_spots_tables_of_cut_words_are_the_same(name):
+    spot_bridge = pytest.importorskip("rulec.automata.spot_bridge")
+    book = StepCompiler(load_rulebook(name)).at_own_steps()
+    jobs = [job for rule in book.rules for job in prefix_machines._jobs(rule, book)]
+    assert jobs
+    for job in jobs:
+        own = answer_to(job, diagram_compiler.COMPILER)
+        other = answer_to(job, spot_bridge.COMPILER)
+        assert own.machine == other.machine, job.name
