@@ -11,6 +11,7 @@ from rulec.batch import worker_pool
 from rulec.batch.batch_messages import process_lost
 from rulec.batch.jobs import Jobs, available_processors, chosen_jobs
 from rulec.batch.worker_pool import LostTask, in_order
+from rulec.cache.keeping import is_keeping, keeping
 
 
 def squares(most, number):
@@ -134,3 +135,14 @@ def test_a_lost_process_is_said_of_its_file():
     (found,) = process_lost("long.xml", signal.SIGKILL).diagnostics
     assert (found.code, found.place.file) == ("R0708", "long.xml")
     assert "by signal 9" in found.message
+
+
+def _keeps(_):
+    yield is_keeping()
+
+
+@pytest.mark.parametrize("on", [True, False])
+def test_what_is_kept_here_is_kept_there(on):
+    with keeping(on=on):
+        results = [result for _, result in in_order(_keeps, range(2), Jobs(2))]
+    assert results == [on, on]

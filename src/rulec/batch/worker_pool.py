@@ -6,7 +6,7 @@ import multiprocessing
 import signal
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
@@ -15,6 +15,7 @@ from time import monotonic
 from typing import Generic, NoReturn, TypeVar
 
 from rulec.batch.jobs import Jobs
+from rulec.cache.keeping import is_keeping, keeping
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -109,7 +110,8 @@ class _Worker(Generic[Task, Result]):
         # A forked process would have locks of threads that are not in it.
         context = multiprocessing.get_context("spawn")
         self.connection, theirs = context.Pipe()
-        self.process: BaseProcess = context.Process(target=_serve, args=(work, theirs), daemon=True)
+        given = work, theirs, is_keeping()
+        self.process: BaseProcess = context.Process(target=_serve, args=given, daemon=True)
         self.process.start()
         theirs.close()
         self.number: int | None = None
@@ -227,11 +229,15 @@ class _Pool(Generic[Task, Result]):
         self._lost(self._tasks[number], killed)
 
 
-def _serve(work: Callable[[Task], Iterator[Result]], connection: Connection) -> None:
-    """Do tasks until nobody is there to give any."""
+def _serve(
+    work: Callable[[Task], Iterator[Result]],
+    connection: Connection,
+    keeps: bool,
+) -> None:
+    """Do tasks until nobody is there to give any; what it ``keeps`` is as where it was started."""
     # What a task has begun, such as processes of its own, is ended with it.
     signal.signal(signal.SIGTERM, _leave)
-    try:
+    with suppress(EOFError, OSError), keeping(on=keeps):
         while True:
             task = connection.recv()
             try:
@@ -242,8 +248,6 @@ def _serve(work: Callable[[Task], Iterator[Result]], connection: Connection) -> 
             except Exception as error:
                 connection.send(_Raised(error))
             connection.send(_Done())
-    except (EOFError, OSError):
-        return
 
 
 def _leave(number: int, _: object) -> NoReturn:
