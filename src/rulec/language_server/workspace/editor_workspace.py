@@ -64,14 +64,19 @@ class Document:
     @property
     def name(self) -> str:
         """What messages call it."""
-        return str(self.path or self.uri)
+        # No path is looked up by half a character, which an address may have.
+        return str(self.path or self.uri.encode("utf-8", "backslashreplace").decode())
 
 
 def path_of(uri: str) -> Path | None:
     """The file of an address; None if it has none."""
     if not uri.startswith("file:"):
         return None
-    found = uris.to_fs_path(uri)
+    try:
+        found = uris.to_fs_path(uri) or ""
+        os.fsencode(found)
+    except ValueError:  # the address is none, or has half a character in it
+        return None
     return Path(found) if found and "\0" not in found else None
 
 
