@@ -78,6 +78,13 @@ STEPS: Final = ResourceLimit(
     "--step`, or compile the rulebook for the steps that count, with `rulec compile --step`",
 )
 
+COMPILING: Final = ResourceLimit(
+    "compiling",
+    60,
+    "seconds of processor time for the automata of a rulebook",
+    "say large rules in several, or give bounds and steps of which one is fewer of the other",
+)
+
 CUBES: Final = ResourceLimit(
     "cubes",
     500,
@@ -141,6 +148,7 @@ LIMITS: Final = {
         STEPS,
         STATES,
         REFUSED,
+        COMPILING,
         CUBES,
         PAIRS,
         TYPE_DEPTH,

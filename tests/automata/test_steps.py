@@ -14,11 +14,12 @@ from rulec.logic.formula import Bound, Unary, UnaryOperator
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.planning.product.graph_instances import instances
-from rulec.resource_limits import in_force
+from rulec.resource_limits import COMPILING, in_force
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Signal, Vocabulary
 from support.builders.rulebooks import P, Q, always, book, implies, rule
+from support.remembered_machines import ASKED
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
 
@@ -212,6 +213,25 @@ def test_a_step_that_fits_no_bound_starts_no_process(monkeypatch):
     for number in range(1, 40):
         with pytest.raises(RulecError, match="R0407"):
             every(Fraction(3, 10) + Fraction(1, 10**5 * number))
+
+
+def test_there_is_a_limit_on_the_time_that_all_rules_take(monkeypatch, tmp_path):
+    asked, ask = [], compiler._ask
+
+    def slowly(process, job):
+        asked.append(job.name)
+        return ask(process, job)[0], 0.6 * COMPILING.usual
+
+    monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(compiler, "answers_to", ASKED)
+    monkeypatch.setattr(compiler, "_ask", slowly)
+    every = StepCompiler(book(ANSWERED))
+    every(ONE)
+    every(HALF)
+    for rounded in (every, every.rounded):
+        with pytest.raises(RulecError, match=r"60 seconds.*R0718"):
+            rounded(Fraction(1, 4))
+    assert len(asked) == 2
 
 
 def test_steps_that_hardly_differ_are_compiled_together_where_bounds_are_rounded(compiled):

@@ -4,8 +4,10 @@ import json
 
 import pytest
 
+from rulec.automata import compiler
 from rulec.cli.main import main
 from rulec.resource_limits import LIMITS
+from support import remembered_machines
 
 BOOK = """rulebook small
 type car
@@ -35,6 +37,7 @@ ASKED = {
     "steps": (1, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:3"),
     "states": (1, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:1"),
     "refused": (1, ["verify", "refused.jsonl", "-r", "./small.rules"], "refused.jsonl:2"),
+    "compiling": (0, ["compile", "small.rules", "--step", "1", "-o", "out"], "small.rules:10"),
     "cubes": (1, ["show", "./small.rules", "odd"], "small.rules:11"),
     "pairs": (0, ["analyze", "./small.rules"], OF_A_RULE),
     "type_depth": (1, ["check", "./small.rules"], "small.rules:3"),
@@ -55,6 +58,9 @@ def test_each_limit_is_asked_for():
 @pytest.mark.parametrize("limit", ASKED)
 def test_the_place_is_told(limit, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    if limit == "compiling":  # what is remembered takes no time
+        monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "cache"))
+        monkeypatch.setattr(compiler, "answers_to", remembered_machines.ASKED)
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
     number, words, place = ASKED[limit]

@@ -46,7 +46,7 @@ def test_odd_addresses_are_of_documents_without_a_file(editor):
         editor.client.text_document_did_open(lsp.DidOpenTextDocumentParams(document))
     assert editor.open("sound.rules", SOUND) == []
     assert {uri: symbols(editor, uri) for uri in ODD} == {
-        **dict.fromkeys(ODD, ["p", "r"]),
+        **{uri: ["p", "r"] for uri in ODD},
         NONE: [],
     }
     # Of those that are open, too, once nobody types

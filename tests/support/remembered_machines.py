@@ -30,18 +30,22 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
         return folder / sha256(compiler_asked.encode() + pickle.dumps(job)).hexdigest()
 
     def answers_to(
-        jobs: Sequence[Job], *, more_will_come: bool = False, choice: str | None = None
+        jobs: Sequence[Job],
+        *,
+        more_will_come: bool = False,
+        choice: str | None = None,
+        time: compiler.CompilerTime | None = None,
     ) -> Answers:
         is_usual = compiler._WORKER is _SCRIPT and compiler._worker is _WORKER
         if not is_usual or compiler._REQUIRE_CONFINED in os.environ or not jobs:
-            return ASKED(jobs, more_will_come=more_will_come, choice=choice)
+            return ASKED(jobs, more_will_come=more_will_come, choice=choice, time=time)
         files = [kept(job, choice) for job in jobs]
         known = [file.read_bytes() if file.exists() else b"" for file in files]
         unknown = [job for job, found in zip(jobs, known, strict=True) if not found]
         if choice == compiler_choice.DIAGRAMS:
             asked, spot = [answer_to(job, diagram_compiler.COMPILER) for job in unknown], ""
         else:
-            asked, spot = ASKED(unknown) if unknown else ([], "")
+            asked, spot = ASKED(unknown, time=time) if unknown else ([], "")
         for job, answer in zip(unknown, asked, strict=True):
             if isinstance(answer, Done):
                 file = kept(job, choice)

@@ -13,7 +13,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -36,6 +36,7 @@ from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_steps
 from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
+from rulec.resource_limits import COMPILING
 from rulec.rulebook.elaborate.rule_messages import no_multiple
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, parts_of
 from rulec.rulebook.rules.exemptions import rule_trigger
@@ -115,6 +116,7 @@ def build_all(
     cpu_limit_s: int = CPU_LIMIT_S,
     *,
     more_will_come: bool = False,
+    time: CompilerTime | None = None,
 ) -> CompiledRulebook:
     """Build the automaton of every formula, in the order of the rules.
 
@@ -122,19 +124,22 @@ def build_all(
     which ``more_will_come`` waits for the next call, for to start it takes a quarter second. Raises
     RulecError with the formulas' problems; R0401 for each rule whose automaton is too large, R0402
     for each whose automaton failed its check, R0403 for each that takes Spot, if that is not there,
-    R0409 for axioms that contradict each other.
+    R0409 for axioms that contradict each other, R0718 for the first rule for
+    which no ``time`` is left.
     """
     compiled: list[CompiledRule] = []
     problems = list(formulas.problems)
     if problems and not formulas.rules:
         raise RulecError(problems)  # there is nothing to compile, so no process is started
     jobs = [_job(rulebook, rule, cpu_limit_s) for rule in formulas.rules]
-    answers, spot = answers_to(jobs, more_will_come=more_will_come)
+    answers, spot = answers_to(jobs, more_will_come=more_will_come, time=time)
     for lowered, answer in zip(formulas.rules, answers, strict=True):
         if isinstance(answer, Done):
             compiled.append(_compiled(lowered.rule, lowered.step_s, answer))
         else:
             problems.append(no_machine(lowered.rule, answer, cpu_limit_s))
+            if isinstance(answer, Failed) and answer.why == "time":
+                break  # nor is any left for those behind it
     if problems:
         # Facts that contradict each other do so in every rule.
         raise RulecError(dict.fromkeys(problems))
@@ -170,10 +175,29 @@ def job_of(rule: CompiledRule, rulebook: CompiledRulebook) -> Job:
     )
 
 
+@dataclass(slots=True)
+class CompilerTime:
+    """Processor time (s) that compilers have taken for a rulebook, and may take."""
+
+    most_s: float = field(default_factory=COMPILING.value)
+    taken_s: float = 0.0
+
+    @property
+    def is_over(self) -> bool:
+        """Tell whether nothing is left."""
+        return self.taken_s > self.most_s
+
+
 def answers_to(
-    jobs: Sequence[Job], *, more_will_come: bool = False, choice: str | None = None
+    jobs: Sequence[Job],
+    *,
+    more_will_come: bool = False,
+    choice: str | None = None,
+    time: CompilerTime | None = None,
 ) -> tuple[list[Done | Failed | None], str]:
     """The worker's answers, None to a job that was its end; and Spot's version, empty without it.
+
+    What they take is added to the ``time``; when that is over, none is asked for.
 
     ``choice`` is the compiler, None for the one that the environment chooses. Raises RulecError
     R0403 if Spot is asked for and not installed.
@@ -184,6 +208,7 @@ def answers_to(
         choice = compiler_choice.choice()
     # A command ends soon, and before that asks for another rulebook, step, or words that are cut.
     more_will_come = more_will_come or is_keeping()
+    time = time or CompilerTime()
     cache = MachineCache(choice)
     known, spot = cache.recalled(jobs)
     missing = [job for job, answer in zip(jobs, known, strict=True) if answer is None]
@@ -192,8 +217,13 @@ def answers_to(
         # A worker lives until it is done or a job has killed it; the next one takes the rest.
         with _worker(choice, more_will_come=more_will_come) as (process, spot):
             for job in missing[len(answers) :]:
-                answers.append(_ask(process, job))
-                if answers[-1] is None:
+                if time.is_over:
+                    answers.append(Failed("time"))
+                    continue
+                answer, seconds = _ask(process, job)
+                answers.append(answer)
+                time.taken_s += seconds
+                if answer is None:
                     _end(process)
                     break
     cache.keep(missing, answers, spot)
@@ -261,16 +291,16 @@ def _started(choice: str) -> _Started:
     return process, ready.spot
 
 
-def _ask(process: subprocess.Popen[bytes], job: Job) -> Done | Failed | None:
-    """The worker's answer; None if the job was the end of it."""
+def _ask(process: subprocess.Popen[bytes], job: Job) -> tuple[Done | Failed | None, float]:
+    """The worker's answer, None if the job was the end of it, and what it took (s)."""
     assert process.stdin is not None
     assert process.stdout is not None
     try:
         pickle.dump(job, process.stdin)
         process.stdin.flush()
-        answer: Done | Failed = pickle.load(process.stdout)
+        answer: tuple[Done | Failed, float] = pickle.load(process.stdout)
     except (EOFError, BrokenPipeError, pickle.UnpicklingError):
-        return None
+        return None, job.cpu_s
     return answer
 
 

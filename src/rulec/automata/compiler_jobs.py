@@ -55,10 +55,11 @@ class Failed:
 
     ``letters``, ``steps`` or ``memory``: there would be too many, or too much. ``check``: it was
     wrong. ``facts``: those of ``contradiction`` cannot hold together. ``reach``: it takes Spot.
+    ``time``: those before it took all that a rulebook has.
     ``bug`` is anything that nobody thought of, with the traceback.
     """
 
-    why: Literal["letters", "steps", "memory", "check", "facts", "reach", "bug"]
+    why: Literal["letters", "steps", "memory", "check", "facts", "reach", "time", "bug"]
     traceback: str = ""
     contradiction: tuple[AxiomInstance, ...] = ()
 

@@ -7,8 +7,10 @@ from rulec.automata.compiler_jobs import Failed
 from rulec.automata.worker.confinement import Confinement
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import operations_of
 from rulec.logic.printing import formula_text
+from rulec.resource_limits import COMPILING
 from rulec.rulebook.rulebook_model import Rule, provision_note
 
 _SIGNALS = ", ".join(f"s{number}" for number in range(1, 18))
@@ -114,6 +116,9 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
                 help=_GET_SPOT,
                 notes=_provision(rule),
             )
+        case Failed("time"):
+            whose = f"before rule `{rule.name}`"
+            return COMPILING.exceeded(at(rule.span), whose).diagnostics[0]
         case Failed("letters"):
             why = "it reads too many signals, enumerations and numbers at once"
         case Failed("steps"):

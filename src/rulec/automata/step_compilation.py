@@ -9,7 +9,7 @@ from math import ceil, floor
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.compiler import RulebookFormulas, build_all, lower
+from rulec.automata.compiler import CompilerTime, RulebookFormulas, build_all, lower
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import Rounding, has_seconds, in_steps
 from rulec.logic.formula import Formula
@@ -30,13 +30,14 @@ class StepCompiler:
     that has none is compiled once. Pickled, it is the rulebook alone.
     """
 
-    def __init__(self, rulebook: Rulebook) -> None:
+    def __init__(self, rulebook: Rulebook, time: CompilerTime | None = None) -> None:
         self.rulebook = rulebook
         self._machines: dict[tuple[str, Fraction | None], CompiledRule] = {}
         self._answers: dict[Fraction, CompiledRulebook | RulecError] = {}
         self._header: CompiledRulebook | None = None
         self._roundings: dict[tuple[Formula, ...], StepCompiler] = {}
         self._built = 0
+        self._time = time or CompilerTime()
 
     def __reduce__(self) -> tuple[Callable[[Rulebook], StepCompiler], tuple[Rulebook]]:
         return StepCompiler, (self.rulebook,)
@@ -75,7 +76,9 @@ class StepCompiler:
             _check_steps(len(self._roundings), self.rulebook)
             rules = zip(self.rulebook.rules, formulas, strict=True)
             rounded = tuple([replace(rule, formula=formula) for rule, formula in rules])
-            self._roundings[formulas] = StepCompiler(replace(self.rulebook, rules=rounded))
+            self._roundings[formulas] = StepCompiler(
+                replace(self.rulebook, rules=rounded), self._time
+            )
         return self._roundings[formulas](step_s)
 
     def at_own_steps(self, rules: Sequence[Rule] | None = None) -> CompiledRulebook:
@@ -95,7 +98,9 @@ class StepCompiler:
             # Whoever has met a second step will meet more.
             more_will_come = self._header is not None
             lacking = replace(formulas, rules=missing)
-            built = build_all(self.rulebook, lacking, more_will_come=more_will_come)
+            built = build_all(
+                self.rulebook, lacking, more_will_come=more_will_come, time=self._time
+            )
             self._header = replace(built, source=self.rulebook, recompile=self, prefixes=_prefixes)
             machines.update({(rule.name, rule.step_s): rule for rule in built.rules})
         return replace(self._header, rules=tuple(machines[key] for key in keys))

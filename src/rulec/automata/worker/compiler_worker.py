@@ -37,8 +37,10 @@ def main(confined: Confinement, choice: str) -> None:
             job: Job = pickle.load(sys.stdin.buffer)
         except EOFError:
             return
-        _limit(resource.RLIMIT_CPU, int(time.process_time()) + 1 + job.cpu_s)
-        pickle.dump(answered(job, compiler), answers)
+        began = time.process_time()
+        _limit(resource.RLIMIT_CPU, int(began) + 1 + job.cpu_s)
+        answer = answered(job, compiler)
+        pickle.dump((answer, time.process_time() - began), answers)
         answers.flush()
 
 
