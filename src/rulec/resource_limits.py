@@ -78,9 +78,23 @@ STEPS: Final = ResourceLimit(
     "--step`, or compile the rulebook for the steps that count, with `rulec compile --step`",
 )
 
+OBJECTS: Final = ResourceLimit(
+    "objects",
+    20_000,
+    "objects in one trace",
+    "cut the drive into several traces, each with those that are there",
+)
+
+PLACES: Final = ResourceLimit(
+    "places",
+    20_000,
+    "obstacles of a scenario, times layers of its graph",
+    "take a longer step, a shorter horizon, or obstacles that ego may come near to",
+)
+
 COMPILING: Final = ResourceLimit(
     "compiling",
-    60,
+    30,
     "seconds of processor time for the automata of a rulebook",
     "say large rules in several, or give bounds and steps of which one is fewer of the other",
 )
@@ -148,6 +162,8 @@ LIMITS: Final = {
         STEPS,
         STATES,
         REFUSED,
+        OBJECTS,
+        PLACES,
         COMPILING,
         CUBES,
         PAIRS,

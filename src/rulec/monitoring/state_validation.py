@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
 from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALUE
+from rulec.resource_limits import OBJECTS
 from rulec.trace import State
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
@@ -96,7 +97,11 @@ def _passes(state: Any, looks: _Looks) -> bool:
 def check_objects(
     objects: Mapping[str, str], vocabulary: Vocabulary, place: SourceLocation | None = None
 ) -> None:
-    """Check that the vocabulary knows all objects' types. Raises RulecError R0505."""
+    """Check that the vocabulary knows all objects' types, and that they are not too many.
+
+    Raises RulecError R0505, R0718.
+    """
+    OBJECTS.within(len(objects), place)
     for name, kind in objects.items():
         if kind not in vocabulary.types:
             raise UNKNOWN_OBJECT.error(

@@ -18,7 +18,7 @@ from fractions import Fraction
 from itertools import pairwise, product
 from typing import TypedDict, get_args
 
-from rulec.diagnostics import did_you_mean, named
+from rulec.diagnostics import SourceLocation, did_you_mean, named
 from rulec.partition.cell_graph import Edges, Margins, NavigationGraph
 from rulec.partition.cells import cell_links
 from rulec.partition.cells.cell_model import Layer
@@ -28,6 +28,7 @@ from rulec.partition.cells.regions import ExtentName, PartitionName
 from rulec.partition.cells.roadway import snapped
 from rulec.partition.partition_messages import UNKNOWN_PARTITION
 from rulec.partition.start_cell import start_cell, step_that_leaves_room
+from rulec.resource_limits import PLACES
 from rulec.scenario import MotionBounds, Scenario
 from rulec.scenario.motion_bounds import read_bounds
 from rulec.scenario.time_grid import Timing, timing
@@ -76,7 +77,8 @@ def navigation_graph(
     is read as ``read_bounds`` does, and ``none`` keeps everything.
 
     Raises RulecError R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
-    R0608 for an unknown partition, adjacency or extent, R0770 for bounds that make no sense.
+    R0608 for an unknown partition, adjacency or extent, R0770 for bounds that make no sense, R0718
+    for too many obstacles and layers.
     """
     own = scenario.ego.bounds
     bounds = read_bounds(bounds, own) if isinstance(bounds, str) else bounds or own
@@ -146,6 +148,8 @@ def _in_steps_of(step: Fraction, times: Timing) -> Timing:
 
 def _cut(plan: _Plan, times: Timing) -> NavigationGraph:
     scenario, partition, extent = plan.scenario, plan.partition, plan.extent
+    taken = len(scenario.obstacles) * times.layers
+    PLACES.within(taken, SourceLocation(scenario.name))
     places = scene(scenario, times, partition, extent)
     planes = [
         plane(places.roadway, regions, partition, names)
