@@ -25,8 +25,13 @@ TRACES = "\n".join(
     json.dumps({"step_s": step, "objects": {"a": "car", "b": "car"}, "states": [{}, {}]})
     for step in (1, 0.5, 0.25)
 )
+OWN = "rulebook own\nsignal p, q default false\n" + "".join(
+    f"hard rule r{n} {{ require always (p implies eventually[<= {n} s] q) }}\n"
+    for n in (31, 32, 33)
+)
 FILES = {
     "small.rules": BOOK,
+    "own.rules": OWN,
     "t.jsonl": TRACES,
     "refused.jsonl": "{}\n" * 3,
     "law.md": "# Act\n\n## Article 1\n\nDrive.\n",
@@ -37,7 +42,7 @@ ASKED = {
     "steps": (1, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:3"),
     "states": (1, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:1"),
     "refused": (1, ["verify", "refused.jsonl", "-r", "./small.rules"], "refused.jsonl:2"),
-    "compiling": (0, ["compile", "small.rules", "--step", "1", "-o", "out"], "small.rules:1"),
+    "compiling": (0, ["compile", "own.rules", "--step", "1", "-o", "out"], "own.rules:"),
     "objects": (1, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:1"),
     "places": (3, ["maneuvers", "s1", "-r", "esterle2019"], "s1"),
     "cubes": (1, ["show", "./small.rules", "odd"], "small.rules:11"),

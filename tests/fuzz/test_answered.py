@@ -30,6 +30,14 @@ ANSWERED = {
         "vocabulary/test_number_of_choices.py::test_more_choices_than_the_limit_are_refused_before_the_first_is_made",
         "programs/bad/many_choices.rules",
     ),
+    "objects of one trace": (MEASURED, "cli/test_limit_places.py::test_the_place_is_told"),
+    "obstacles and layers of a scenario": (MEASURED,),
+    "time of all rules and steps that are compiled": (
+        "automata/test_steps.py::test_there_is_a_limit_on_the_time_that_all_rules_take",
+    ),
+    "what a link to the playground is unpacked to": (
+        "playground/test_links.py::test_a_link_is_unpacked_within_bounds",
+    ),
     "steps of the traces of one file": (
         MEASURED,
         "automata/test_steps.py::test_there_is_a_limit_on_the_steps_that_are_compiled_for",
@@ -48,6 +56,7 @@ ANSWERED = {
         "trace/test_large_traces.py::test_many_columns_are_few_enough",
     ),
     "rows that are each refused": (
+        "cli/test_limit_places.py::test_the_place_is_told",
         "monitoring/test_verify.py::test_a_refusal_keeps_nothing_of_what_was_at_hand",
     ),
     "explanation of a long trace": (
@@ -120,6 +129,14 @@ ANSWERED = {
     "all engines and the checker against the second reading": (
         "engines/test_random.py::test_all_engines_agree",
         "engines/test_many_cases.py::test_engines_and_the_checker_agree",
+    ),
+    "refusals that do not say where": (
+        "diagnostics/test_places.py::test_what_has_no_place_is_known",
+        "diagnostics/test_places.py::test_where_it_is_known_it_is_told",
+    ),
+    "addresses that no path can be made of, in an editor": (
+        "language_server/test_hostile_addresses.py::test_odd_addresses_are_of_documents_without_a_file",
+        "language_server/test_hostile_addresses.py::test_what_is_no_source_is_not_read",
     ),
     # Nothing lost
     "an answer in the place of what is read": (

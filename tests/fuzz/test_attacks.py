@@ -107,6 +107,7 @@ def parquet_of_refused(n_rows):
 
 THIRTY = {f"o{number}": "car" for number in range(30)}
 FEW = {"beside": {"o1": True, "o2": True, "o3": True}}
+FEW_OF = ("beside", "stopped")
 PARITY = " xor ".join(f"p{number}" for number in range(14))
 SIGNALS = ", ".join(f"p{number}" for number in range(14))
 CHAIN = "type t0\n" + "".join(f"type t{n} is t{n - 1}\n" for n in range(1, 5000))
@@ -114,6 +115,10 @@ SURFACES = "".join(
     f'[[road.surface]]\ntype = "crossing"\ns = [{n}.0, {n}.5]\n' for n in range(30_000)
 )
 ROAD = "[road]\ns = [0.0, 90000.0]\nlanes = [-1.75, 1.75]\n[ego]\ns = 0.0\nd = 0.0\n"
+OBSTACLES = "".join(
+    f"[[obstacle]]\nid = 'a{n}'\ntype = 'vehicle'\nlength = 1\nwidth = 1\ns = {30 + n}\nd = 0\n"
+    for n in range(500)
+)
 CITES = "rulebook cites\nsignal p default false\n" + "".join(
     f'hard rule r{n} {{ cite "Article 1({n}) no. {n}" require always p }}\n' for n in range(1, 100)
 )
@@ -162,6 +167,28 @@ COSTLY = {
         ["monitor", "./crowd.rules"],
         0,
         "holds so far",
+    ),
+    "30 objects of which everything is true, for six variables": (
+        {
+            "t.jsonl": lambda: traces(
+                of_states([{name: dict.fromkeys(THIRTY, True) for name in FEW_OF}], objects=THIRTY)
+            )
+        },
+        ["verify", "t.jsonl", "-r", "./crowd.rules"],
+        2,
+        "R0718",
+    ),
+    "100,000 objects in a state": (
+        {"-": lambda: traces({"objects": {f"o{n}": "car" for n in range(100_000)}, "state": {}})},
+        ["monitor", "./crowd.rules"],
+        2,
+        "--limit objects=",
+    ),
+    "500 obstacles for 9,990 layers": (
+        {"s.toml": lambda: f"horizon_s = 9990\nstep_s = 1\n{ROAD}{OBSTACLES}"},
+        ["maneuvers", "s.toml", "-r", "esterle2019"],
+        2,
+        "--limit places=",
     ),
     "200 traces of as many steps": (
         {

@@ -8,7 +8,7 @@ async function through(stream, bytes) {
   let size = 0;
   for await (const part of new Blob([bytes]).stream().pipeThrough(stream)) {
     size += part.length;
-    if (size > MOST) throw new Error("it has too much in it");
+    if (size > MOST) throw new Error(`there are more than ${MOST.toLocaleString("en")} bytes in it`);
     parts.push(part);
   }
   return new Uint8Array(await new Blob(parts).arrayBuffer());
@@ -29,6 +29,7 @@ export async function unpacked(fragment) {
   const small = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
   const bytes = await through(new DecompressionStream("deflate-raw"), small);
   const content = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes));
+  if (content === null || typeof content !== "object") throw new Error("there are no texts in it");
   const texts = Object.entries(content).filter(([, value]) => typeof value === "string");
   return Object.fromEntries(texts);
 }
