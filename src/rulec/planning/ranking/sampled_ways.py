@@ -61,7 +61,7 @@ def sampled_ways(
     motions = _Motions(np.array([row]), [(starts[0][0],)], [starts[0]], [0])
     for p in range(len(graph.layers) - 1):
         followed = _followed(motions, p, graph, bounds, search)
-        motions = _kept(followed, motions, p, graph, product, to_come[p + 1])
+        motions = _kept(followed, motions, p, graph, product, alive=to_come[p + 1])
         if not len(motions.rows):
             return
     known = set[tuple[int, ...]]()
@@ -120,6 +120,7 @@ def _kept(
     p: int,
     graph: NavigationGraph,
     product: Product[Memory],
+    *,
     alive: dict[ProductNode[Memory], int],
 ) -> _Motions[Memory]:
     """Those in a cell that follows, of those alike the cheapest."""
