@@ -58,7 +58,7 @@ class PartialState(Protocol):
         """The value of a quantity."""
 
 
-_Evaluator: TypeAlias = Callable[[ObjectBinding, PartialState], bool | Unknown]
+Evaluator: TypeAlias = Callable[[ObjectBinding, PartialState], bool | Unknown]
 
 
 def weighted_sum(
@@ -99,7 +99,7 @@ def objects_counted(
     fitting: dict[str, bool] = {}
     inner = dict(binding)
     present = state.objects
-    alias, evaluate = alias_of(count.variable, count.body), _evaluator_of(count.body)
+    alias, evaluate = alias_of(count.variable, count.body), evaluator_of(count.body)
     candidates = present if alias is None else [binding[alias]] if binding[alias] in present else []
     for name in candidates:
         type_name = present[name]
@@ -130,11 +130,11 @@ def holds(formula: ltl.Formula, binding: ObjectBinding, state: PartialState) -> 
 
     Raises TypeError if it has a temporal operator.
     """
-    return _evaluator_of(formula)(binding, state)
+    return evaluator_of(formula)(binding, state)
 
 
 @lru_cache(maxsize=_MOST)
-def _evaluator_of(formula: ltl.Formula) -> _Evaluator:
+def evaluator_of(formula: ltl.Formula) -> Evaluator:
     """The formula as a function of binding and state.
 
     It is cached because it is asked of every object in every state.
@@ -142,13 +142,13 @@ def _evaluator_of(formula: ltl.Formula) -> _Evaluator:
     return fold(formula, _KLEENE)
 
 
-def _proposition(proposition: ltl.Proposition) -> _Evaluator:
+def _proposition(proposition: ltl.Proposition) -> Evaluator:
     if isinstance(proposition, ltl.Comparison):
         return _comparison(proposition)
     return _atom(proposition.name, proposition.arguments, proposition.value or True)
 
 
-def _atom(name: str, arguments: tuple[str, ...], expected: bool | str) -> _Evaluator:
+def _atom(name: str, arguments: tuple[str, ...], expected: bool | str) -> Evaluator:
     if len(arguments) == 1:
         return _atom_of_one(name, arguments[0], expected)
 
@@ -159,7 +159,7 @@ def _atom(name: str, arguments: tuple[str, ...], expected: bool | str) -> _Evalu
     return evaluate
 
 
-def _atom_of_one(name: str, argument: str, expected: bool | str) -> _Evaluator:
+def _atom_of_one(name: str, argument: str, expected: bool | str) -> Evaluator:
     def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
         value = state.value(name, (binding[argument],))
         return value if isinstance(value, Unknown) else value == expected
@@ -167,7 +167,7 @@ def _atom_of_one(name: str, argument: str, expected: bool | str) -> _Evaluator:
     return evaluate
 
 
-def _comparison(comparison: ltl.Comparison) -> _Evaluator:
+def _comparison(comparison: ltl.Comparison) -> Evaluator:
     terms, relation, limit = comparison.terms, comparison.relation, comparison.limit
 
     def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
@@ -182,7 +182,7 @@ def _comparison(comparison: ltl.Comparison) -> _Evaluator:
     return evaluate
 
 
-def _settled(left: _Evaluator, right: _Evaluator, *, by: bool) -> _Evaluator:
+def _settled(left: Evaluator, right: Evaluator, *, by: bool) -> Evaluator:
     """Conjunction settled by a false operand, or disjunction by a true."""
 
     def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
@@ -196,16 +196,16 @@ def _settled(left: _Evaluator, right: _Evaluator, *, by: bool) -> _Evaluator:
     return evaluate
 
 
-def _constant(value: bool) -> _Evaluator:
+def _constant(value: bool) -> Evaluator:
     return lambda _, __: value
 
 
-def _identity(same: ltl.Same) -> _Evaluator:
+def _identity(same: ltl.Same) -> Evaluator:
     left, right = same.left, same.right
     return lambda binding, _: binding[left] == binding[right]
 
 
-def _negation(operand: _Evaluator) -> _Evaluator:
+def _negation(operand: Evaluator) -> Evaluator:
     def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
         value = operand(binding, state)
         return value if isinstance(value, Unknown) else not value
@@ -213,7 +213,7 @@ def _negation(operand: _Evaluator) -> _Evaluator:
     return evaluate
 
 
-def _equivalence(left: _Evaluator, right: _Evaluator) -> _Evaluator:
+def _equivalence(left: Evaluator, right: Evaluator) -> Evaluator:
     def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
         first, second = left(binding, state), right(binding, state)
         if isinstance(first, Unknown):
@@ -223,7 +223,7 @@ def _equivalence(left: _Evaluator, right: _Evaluator) -> _Evaluator:
     return evaluate
 
 
-_KLEENE: Algebra[_Evaluator] = Algebra(
+_KLEENE: Algebra[Evaluator] = Algebra(
     proposition=_proposition,
     constant=_constant,
     identity=_identity,

@@ -19,7 +19,9 @@ from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import (
     Between,
+    Evaluator,
     Unknown,
+    evaluator_of,
     holds,
     number_of,
     weighted_sum,
@@ -220,6 +222,11 @@ def _completed(
     if points is None or n_discrete * len(points) > MOST_COMPLETIONS:
         return None
     possible = set()
+    # To look them up is to hash whole formulas
+    links = [
+        (link, None if link.formula is None else evaluator_of(link.formula))
+        for link in cluster.links
+    ]
     for chosen in product(*values.values()):
         for point in points:
             supposed: dict[Subject, Value | Fraction] = dict(zip(values, chosen, strict=True))
@@ -227,24 +234,26 @@ def _completed(
                 assert isinstance(term, ltl.QuantityTerm)
                 supposed[term.name, term.arguments] = value
             completed = CompletedView(view, supposed)
-            result = _result(cluster.links, reads, completed)
+            result = _result(links, reads, completed)
             if result is not None:
                 possible.add(result)
     return possible
 
 
 def _result(
-    links: Sequence[_Link], reads: Sequence[Read | NumberRead], view: CompletedView
+    links: Sequence[tuple[_Link, Evaluator | None]],
+    reads: Sequence[Read | NumberRead],
+    view: CompletedView,
 ) -> _Possible | None:
     """What a completion comes to; None if it contradicts an axiom."""
     digits: dict[int, int] = {}
     more: dict[int, int] = {}
-    for link in links:
-        if link.formula is None:
+    for link, evaluate in links:
+        if evaluate is None:
             assert link.read is not None
             digits[link.read] = _digit(reads[link.read], link.environment, view)
             continue
-        truth = holds(link.formula, link.environment, view)
+        truth = evaluate(link.environment, view)
         if link.read is None:
             if truth is False:
                 return None
