@@ -138,7 +138,18 @@ def test_the_same_cells_hold_it():
     assert first.nodes[4] in cells_of(found.graph.layers[4], s, d)
 
 
-def test_an_emergency_is_called_one(capsys):
+def test_it_ends_so_that_it_can_still_stop_with_ease():
+    # After 4 s at 10 m/s its front would be 4 m behind the rear of one that stands, at 46 m
+    road = Road((-50.0, 500.0), (-2.0, 2.0))
+    found = find_maneuvers(Scenario("o", road, MOVING, (car("c", 48.0, 0.0),), step_s=0.5), PAPER)
+    (first,) = found.cheapest(1)
+    _, s, speed, _, _ = first.trajectory.states[-1]
+    assert speed**2 / 2 / 4.0 <= 44.0 - s + 0.1
+    assert first.trajectory.greatest_braking < 2.0
+    check_driven(found.graph, first)
+
+
+def test_an_emergency_is_called_one():
     # A point stops before the rear of one that stands, 14 m ahead, with 12² / 2 / 14 = 5.14 m/s²
     road = Road((-50.0, 500.0), (-2.0, 2.0))
     ego = Ego(0.0, 0.0, 4.0, 1.8, speed=12.0, bounds=MotionBounds())

@@ -42,6 +42,9 @@ GAP_M = 0.01
 PER_JERK, PER_LANE, PER_GOAL = 0.25, 0.2, 0.5
 """What a mean jerk of 1 m/s³ costs, a metre beside a lane's middle, the horizon up to the goal."""
 
+EASED, _EASED_ENOUGH = 4.0, 0.5
+"""So hard (m/s²) ego may have to brake after the end; in terms of squares of speeds."""
+
 _Side = str
 """Where ego is of an obstacle: behind, in_front, right, left."""
 
@@ -191,24 +194,61 @@ class WitnessSearch:
         return free
 
     def of(self, path: Sequence[int]) -> WitnessTrajectory | None:
-        """The trajectory of least cost that was found for a path; None if none was."""
+        """The trajectory of least cost that was found for a path; None if none was.
+
+        If one is found so, it ends no faster than it can become as slow as who is ahead.
+        """
+        found, tried = self._found(path, eased=True)
+        return self._found(path, eased=False)[0] if found is None and tried else found
+
+    def _found(self, path: Sequence[int], *, eased: bool) -> tuple[WitnessTrajectory | None, bool]:
+        """A trajectory, and whether it had to be eased at the end."""
         cells = [layer.cells[i] for layer, i in zip(self._graph.layers, path, strict=True)]
         program = self._program(cells)
         known: set[tuple[object, ...]] = set()
+        tried = False
         for _ in range(MOST_ROUNDS):
             solution = program.solved()
             if solution is None:
-                return None
+                return None, tried
             cuts = [cut for cut in self._broken(solution, cells, path) if cut[0] not in known]
+            if eased and not cuts:
+                cuts = list(self._too_fast(solution, path))
+                tried |= bool(cuts)
             if not cuts:
-                return self._trajectory(solution, cells, path)
+                return self._trajectory(solution, cells, path), tried
             known.update(name for name, *_ in cuts)
             program.add(
                 np.array([row for _, row, _, _ in cuts]),
                 np.array([low for _, _, low, _ in cuts]),
                 np.array([high for _, _, _, high in cuts]),
             )
-        return None
+        return None, tried
+
+    def _too_fast(
+        self, solution: Solution, path: Sequence[int]
+    ) -> Iterator[tuple[tuple[object, ...], Row, float, float]]:
+        """Rows that keep ego from ending too fast for who is ahead of it then.
+
+        With ``EASED`` it is not too fast at v, so far behind one at u, if v² <= u² + 2 EASED way,
+        of which a row is a tangent.
+        """
+        ends = self._times[-1:]
+        along, speeds = self._along(ends), self._speeds(0)
+        (s,), (d,) = along.of(solution), self._across(ends).of(solution)
+        v = float(speeds.of(solution)[-1])
+        length, width = self._body
+        for name, (there, boxes) in self._others.items():
+            if not there[-2:].all() or "behind" not in self._sides(name, float(ends[0]), path):
+                continue
+            rear, _, right, left = boxes[-1].tolist()
+            speed = float(boxes[-1, 0] - boxes[-2, 0]) / float(self._times[-1] - self._times[-2])
+            in_way = right - width < d < left + width and speed >= 0
+            most = speed**2 + 2 * EASED * (rear - length)
+            if in_way and v > speed and v**2 + 2 * EASED * s > most + _EASED_ENOUGH:
+                row = 2 * v * speeds.rows[-1] + 2 * EASED * along.rows[0]
+                fixed = 2 * v * speeds.fixed[-1] + 2 * EASED * along.fixed[0]
+                yield (name, "end", round(v, 2)), row, -np.inf, most + v**2 - float(fixed)
 
     def _program(self, cells: Sequence[Cell]) -> LinearProgram:
         at, n, motion = self._at, self._count, self._motion

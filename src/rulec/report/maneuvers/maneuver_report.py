@@ -109,10 +109,10 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     ]
     if answers.classes is not None:
         lines += _class_counts(maneuvers, answers.classes[0])
-    lines.append(f"computed in {seconds:.3f} s")
     least = least_braking(maneuvers, answers)
     if least is not None:
         lines.append(f"emergency   every maneuver brakes by more than {least:.1f} m/s²")
+    lines.append(f"computed in {seconds:.3f} s")
     if answers.listed is not None and not answers.listed and maneuvers.satisfying:
         lines.append("listed      none: no trajectory was found along those that cost least")
     for number, maneuver in enumerate(answers.listed or (), 1):
