@@ -49,15 +49,19 @@ def check(found, most):
     )
 
 
-def compared(found, pairs):
-    """Compare maneuvers with drives through them: how many were drives."""
+def compared(found, pairs, *, words=True):
+    """Compare maneuvers with drives through them, their verdicts and words: how many were drives.
+
+    Random motions weave about, and where lanes overlap are on another one now and then; so of these
+    only verdicts are compared.
+    """
     number = 0
     drives = drives_of(found, [motion for _, motion in pairs]) if pairs else ()
     for (nodes, motion), drive in zip(pairs, drives, strict=True):
         trace = None if drive is None else in_layers(found, drive)
         if trace is None or on_an_edge(found, nodes, motion):
             continue
-        assert list(contradicting(found, nodes, trace)) == []
+        assert not words or list(contradicting(found, nodes, trace)) == []
         assert list(disagreeing(found, nodes, trace)) == []
         number += 1
     return number
@@ -74,7 +78,7 @@ def check_sampled(found, number, chance):
         if path is not None and all(len(cells) == 1 for cells in path):
             pairs.append((tuple(next(iter(cells)) for cells in path), motion))
         if len(pairs) == AT_ONCE or not left:
-            compared_so_far += compared(found, pairs)
+            compared_so_far += compared(found, pairs, words=False)
             pairs = []
     return compared_so_far
 

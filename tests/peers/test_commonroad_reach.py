@@ -36,9 +36,9 @@ def reach(tmp_path_factory):
     subprocess.run([python, "-m", "pip", "install", "--quiet", *NEEDED], check=True)
 
     def run(files):
-        done = subprocess.run(
-            [python, PROGRAM, *map(str, files)], capture_output=True, text=True, check=True
-        )
+        # It writes what it was configured by into the folder that it runs in
+        call = [python, PROGRAM, *map(str, files)]
+        done = subprocess.run(call, capture_output=True, text=True, check=True, cwd=folder)
         return [json.loads(line) for line in done.stdout.splitlines()]
 
     return run

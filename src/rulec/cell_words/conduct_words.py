@@ -125,14 +125,9 @@ class ConductWords:
         return _nobody(slower & (self._relations.gaps[0] <= reach))
 
     def _meets_nobody(self) -> Flags:
-        """Nobody comes, or so far away that both would meet too late."""
-        others = self._others
-        closing = column(self._boxes.mean_speed[1]) - others.along[0]
-        against = (others.along[0] * KMH < -USUAL.standing_kmh) & others.may_count
-        comes = against & (self._relations.stations & (BEHIND | BESIDE) > 0)
-        # Both may become faster until then
-        comes &= self._relations.gaps[0] < 3 * USUAL.overtaking_s * closing
-        return _nobody(comes)
+        """Nobody comes towards ego from now on: who is not there yet may meet it in time."""
+        found: Flags = np.full(len(self._boxes.sideways), not self._others.some_come)
+        return found
 
     def _room(self, aside: Floats) -> Flags:
         """Whether so much room (m) is left to both bounds of ego's lane, wherever in the cell."""

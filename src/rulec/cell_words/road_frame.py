@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.cell_words.ego_boxes import Floats
 from rulec.cell_words.probe_drives import ProbeDrives
+from rulec.extraction.drive_context import KMH
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.traffic_thresholds import USUAL
@@ -33,7 +35,7 @@ class OthersNow:
     road, wrong as they may be (m/s). ``counts``: is it one who counts for ego, if it is near,
     ``may_count``: may it be? ``is_there``: is it, or was it and will it be, so soon that it was
     there all the time? ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along``
-    those that may.
+    those that may. ``some_come``: does somebody move against ego's direction then, or later?
     """
 
     s: tuple[Floats, Floats]
@@ -46,6 +48,7 @@ class OthersNow:
     is_there: Flags
     goes_along: Flags
     may_go_along: Flags
+    some_come: bool
 
 
 class RoadFrame:
@@ -91,6 +94,13 @@ class RoadFrame:
         turned = float(np.abs(np.diff(headings)).sum())
         self.apart_s = _HAIR_M + min(turned * across / 2, across)
         self.loose_s = self.place_m + self.apart_s
+
+    @cached_property
+    def _come(self) -> Flags:
+        """Flags of who counts and moves against ego's direction."""
+        slowest = self.places.extents.along - self.places.tracks.speed_error
+        come: Flags = self.places.counts & (slowest * KMH < -USUAL.standing_kmh)
+        return come
 
     def _in_scene(
         self, road: DrivenRoad, stretches: Sequence[tuple[float, float]]
@@ -150,6 +160,7 @@ class RoadFrame:
             is_there=(was & will)[:, 0],
             goes_along=vehicles & np.all(goes[:, columns], axis=1),
             may_go_along=vehicles & np.any(goes[:, columns], axis=1),
+            some_come=bool(self._come[:, int(columns[0]) :].any()),
         )
 
     def _straightened(self, left_of: Floats) -> Floats:

@@ -71,7 +71,7 @@ def states_of(found):
 def drives_of(found, motions):
     """The drive of each motion, given by place and speed along and across in each state.
 
-    None in place of one that leaves the map.
+    None in place of one that leaves the map, or the scene's road: its words are about another one.
     """
     graph, origin = found.graph, found.graph.scenario.account.origin
     step_s, count = states_of(found)
@@ -84,10 +84,15 @@ def drives_of(found, motions):
         bodies.append(body_along(graph, origin, row, np.hypot(v, w)))
     among = world_of(origin, bodies[0], found.rules.traffic or "right", count + after)
     writer = TraceWriter(found.rules.vocabulary, names_read(found.rules))
+    road = among.map.road(origin.way)
+    rows = () if isinstance(road, str) else road[0].rows
+    lanelets = {lanelet.id for row in rows for lanelet in row if lanelet is not None}
     for drives in among.of(bodies, writer):
         own = [drive for drive in drives if isinstance(drive, Drive)]
         # One that leaves the map in between has several
-        yield own[0] if len(own) == 1 and own[0].first_step == origin.start.step else None
+        there = len(own) == 1 and own[0].first_step == origin.start.step
+        stays = there and all(place.lanelet in lanelets for place in own[0].places)
+        yield own[0] if stays else None
 
 
 def in_layers(found, drive):
