@@ -156,6 +156,14 @@ def test_some_rules_only(capsys):
     assert capsys.readouterr().out.endswith("1 shared rule: 1 equal\n")
 
 
+@pytest.mark.parametrize("books", [["de", "nl"], ["--all", "de", "nl"]])
+def test_a_rule_that_no_rulebook_has_is_no_agreement(books, capsys):
+    assert main(["diff", *books, "--rule", "spead_limit"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "did you mean `speed_limit`?" in captured.err
+
+
 def test_strength_is_a_difference(tmp_path, capsys):
     text = 'rulebook mild\nextends old\nsoften rule no_passing because "why not"\n'
     (tmp_path / "mild.rules").write_text(text)

@@ -161,6 +161,29 @@ def test_what_there_can_be_no_monitor_of(esterle, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_types_that_are_not_named_keep_their_seats(esterle):
+    seats = monitor_layout(esterle, {"vehicle": 3}).seats
+    (first, end), (others, last) = seats["vehicle"], seats["pedestrian"]
+    assert (end - first, last - others) == (3, 16)
+    assert not set(range(first, end)) & set(range(others, last))
+    with pytest.raises(RulecError, match="R0750") as caught:
+        monitor_layout(esterle, {"vehicles": 3})
+    assert caught.value.diagnostics[0].help == "did you mean `vehicle`?"
+
+
+@pytest.mark.parametrize("given", [[], ["--step", "0.5"]])
+def test_a_step_that_nobody_asked_for_is_said(given, tmp_path, capsys):
+    (tmp_path / "two.rules").write_text(
+        "rulebook two\nsignal a, b\n"
+        "hard rule quick { require always (a implies eventually[<= 2 s] b) }\n"
+        "hard rule plain { require always not (a and b) }\n"
+    )
+    words = ["compile", str(tmp_path / "two.rules"), "--emit", "c", "-o", str(tmp_path)]
+    assert main([*words, *given]) == 0
+    said = "for states 1 s apart, as 1 rule has bounds in seconds"
+    assert (said in capsys.readouterr().err) == (not given)
+
+
 @pytest.mark.parametrize(
     "options", [["--objects", "vehicle=2"], ["--emit", "c", "--objects", "vehicle"]]
 )

@@ -16,6 +16,7 @@ from rulec.code_generation.code_messages import too_large
 from rulec.code_generation.input_fields import InputFields, input_fields
 from rulec.code_generation.letter_cells import LEAF, letter_cells
 from rulec.code_generation.reading_code import ReadingCode
+from rulec.diagnostics import did_you_mean
 from rulec.logic.free_names import variables_of
 from rulec.monitoring.online.four_valued import WORST_FIRST, four_valued
 from rulec.vocabulary import Vocabulary
@@ -169,12 +170,12 @@ def _seats(fields: InputFields, bounds: Mapping[str, int]) -> dict[str, tuple[in
         raise too_large(
             f"`--objects` names the type `{unknown[0]}`, which vocabulary `{vocabulary.name}` "
             f"does not know",
-            f"known: {', '.join(kinds)}",
+            did_you_mean(unknown[0], kinds) or f"known: {', '.join(kinds)}",
         )
-    if not bounds:
-        bounds = {kind: USUAL_SEATS for kind in kinds if _parent(kind, vocabulary) is None}
     if any(not 0 < bound <= MOST_SEATS for bound in bounds.values()):
         raise too_large(f"a bound on objects is from 1 to {MOST_SEATS}", "change `--objects`")
+    usual = {kind: USUAL_SEATS for kind in kinds if _parent(kind, vocabulary) is None}
+    bounds = usual | dict(bounds)
     found: dict[str, tuple[int, int]] = {}
     end = 0
     # A type's seats are followed by those of types below it, so that each has a stretch.

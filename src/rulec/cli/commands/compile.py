@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -15,7 +15,10 @@ from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, rulebooks_named, told_apart
 from rulec.diagnostics import SourceLocation, placed_at
-from rulec.report.text.console import print_line
+from rulec.report.text.console import print_line, print_remark
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 
 _WRITTEN = (".hoa", ".json")
 
@@ -124,7 +127,21 @@ def command(
                     paths = session.write_monitor(
                         compiled, folder, objects, prove=prove, language=emit
                     )
+                if step_s is None:
+                    _tell_step(compiled)
             for path in paths:
                 print_line(f"wrote {path}")
             written += 1
     return ExitStatus.after(answered=written == len(folders), failed=False)
+
+
+def _tell_step(compiled: CompiledRulebook) -> None:
+    """Say which step a monitor has that nobody has asked for, where a rule depends on it."""
+    # Rules, 100 ms: not for --help.
+    from rulec.logic.printing import number_in_words
+
+    steps = [rule.step_s for rule in compiled.rules if rule.step_s is not None]
+    if steps:
+        rules = "1 rule has" if len(steps) == 1 else f"{len(steps):,} rules have"
+        step = number_in_words(steps[0])
+        print_remark(f"for states {step} s apart, as {rules} bounds in seconds; `--step` says else")

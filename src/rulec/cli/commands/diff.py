@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Sequence
+from fnmatch import fnmatchcase
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -143,7 +144,10 @@ def _difference(
         print_diagnostics(diagnostics)
         warned.extend(diagnostics)
 
-    named = [load_rulebook(name, search_path(), at) for name in rulebooks] if asked.paired else []
+    named = []
+    if asked.paired or asked.patterns:
+        named = [load_rulebook(name, search_path(), at) for name in rulebooks]
+        _refuse_unmatched(asked.patterns, named)
     with progress("comparing", None) as tell:
         first, second = rulebooks
         return rulec.Session(search_path(), at, warn).diff(
@@ -234,6 +238,7 @@ def _matrix(
         with errors_told():
             read.append(read_rulebook(name, search_path(), asked.at))
     books = [one.rulebook for one in read]
+    _refuse_unmatched(asked.patterns, books)
     # Treaties before those that build upon them, so that theirs is law A.
     books.sort(key=lambda book: len(book.extends))
     alone = []
@@ -249,6 +254,18 @@ def _matrix(
     paths = [path for one in read for path in one.paths]
     text = matrix_report.render(matrix, asked.form)
     return text, alone, is_complete, matrix.is_uniform, paths
+
+
+def _refuse_unmatched(patterns: Sequence[str], books: Sequence[Rulebook]) -> None:
+    """Refuse a pattern like which no rule is called: that nothing differs is no answer to it."""
+    known = {rule.name for book in books for rule in book.rules}
+    for pattern in patterns:
+        if not any(fnmatchcase(name, pattern) for name in known):
+            near = did_you_mean(pattern, known)
+            raise click.BadParameter(
+                f"none of these rulebooks has a rule like `{pattern}`{near and f'; {near}'}",
+                param_hint="--rule",
+            )
 
 
 def _pairs(texts: Sequence[str], books: Sequence[Rulebook]) -> dict[str, str]:

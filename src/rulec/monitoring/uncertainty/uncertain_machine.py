@@ -145,6 +145,9 @@ class UncertainMachine:
         before: tuple[Reason, ...] = ("began before",) if BEFORE in on else ()
         depends_on = tuple([name for name in on if name])
         cases = () if before else tuple(self._outcomes(depends_on, alternatives, unknown))
+        if len({case.outcome for case in cases}) == 1:
+            # It matters when they change: no value that they always have says how it comes out.
+            cases = ()
         return OpenReasons((*told, *before, *pending), depends_on, cases, found is not None)
 
     def _run(self, word: _Stretches) -> tuple[int, int]:
