@@ -7,6 +7,7 @@ import pytest
 from rulec import compile_rulebook
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.margins import number_with_error
+from rulec.monitoring.verdict import ConditionalOutcome, OpenVerdict
 from rulec.monitoring.verify import verify
 from rulec.report.verdicts import verdict_json, violation_table
 from rulec.report.verdicts.verdict_report import open_in_words
@@ -68,6 +69,13 @@ def test_an_open_verdict_says_that_the_limit_is_within_the_tolerance(rules):
         "open, depends on speed and a limit is within the tolerance of what was measured: "
         "violated if speed > 50, kept if speed <= 50"
     )
+
+
+def test_values_that_decide_only_by_changing_are_said_to():
+    """Each of them kept all the time keeps the rule, and yet it is open."""
+    cases = tuple(ConditionalOutcome({"slow": value}, "kept") for value in (True, False))
+    result = OpenVerdict("half", "hard", {}, ("not told",), ("slow",), cases)
+    assert open_in_words(result) == "open, depends on slow: kept if none of them changes"
 
 
 def test_sides_have_errors_and_what_is_sure_is_said(rules):

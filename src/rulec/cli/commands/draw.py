@@ -182,8 +182,8 @@ def drive(
 ) -> None:
     """Draw a drive of the recording FILE from above: the road, everybody on it, the violations.
 
-    FILE is recorded traffic, CommonRoad's (.xml) or SUMO's floating-car data. A picture shows the
-    moment of the first violation; a page (HTML) plays all moments and lists all violations.
+    FILE is recorded traffic, in one of `rulec formats`. A picture shows the moment of the first
+    violation; a page (HTML) plays all moments and lists all violations.
     """
     # Recordings, verdicts and pictures, 400 ms: not for --help.
     from rulec.api.pictures import drive_drawing

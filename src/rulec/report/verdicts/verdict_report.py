@@ -96,14 +96,16 @@ def open_in_words(result: OpenVerdict, most: int = MOST_CASES) -> str:
     if "step" in result.because:
         parts.append("hangs on a bound that is no multiple of the step")
     fewest = fewest_cases(result.outcomes)
-    cases = [
-        f"{case.outcome} if {' and '.join(_condition(*pair) for pair in case.when.items())}"
-        for case in fewest[:most]
-    ]
+    cases = [f"{case.outcome} if {_conditions(case.when)}" for case in fewest[:most]]
     if len(fewest) > most:
         cases.append(f"and {len(fewest) - most} more; --json has them all")
     text = f"open, {' and '.join(parts)}"
     return f"{text}: {', '.join(cases)}" if cases else text
+
+
+def _conditions(when: Mapping[str, bool | str]) -> str:
+    """What has to hold in all states; if all constant values come to the same, that they are."""
+    return " and ".join([_condition(*pair) for pair in when.items()]) or "none of them changes"
 
 
 def _condition(name: str, value: bool | str) -> str:
