@@ -231,6 +231,11 @@ LINES = [
         "car",
         "a variable is written with its type, such as `v: vehicle`",
     ),
+    (
+        "hard rule a (v: car w: car) { require p }",
+        "w",
+        "separate the variables by `,`",
+    ),
     ("hard rule a:", ":", "what a rule says stands between `{` and `}`"),
     ("hard rule a () { require p }", ")", "a rule without variables has no parentheses"),
     (

@@ -170,6 +170,8 @@ def advise_on_rule_head(scene: ParseContext) -> str:
         return "a rule without variables has no parentheses"
     if scene.accepted == {"COLON"}:
         return "a variable is written with its type, such as `v: vehicle`"
+    if scene.accepted >= {"COMMA", "RPAR"} and scene.is_word() and scene.text_behind == ":":
+        return "separate the variables by `,`"
     if text == ":" and "RPAR" not in scene.accepted:
         return "what a rule says stands between `{` and `}`"
     return _HEAD if "RPAR" not in scene.accepted else ""
