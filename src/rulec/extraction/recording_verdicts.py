@@ -109,9 +109,13 @@ class RecordingVerdicts(Rows):
 
 def names_read(rulebook: CompiledRulebook) -> frozenset[str]:
     """The names that rules and facts read."""
-    formulas = [rule.formula for rule in rulebook.rules]
-    formulas += [axiom.formula for axiom in rulebook.axioms]
-    return frozenset(name for formula in formulas for name in names_in(formula))
+    known: frozenset[str] | None = rulebook.prepared.get(names_read)
+    if known is None:
+        formulas = [rule.formula for rule in rulebook.rules]
+        formulas += [axiom.formula for axiom in rulebook.axioms]
+        known = frozenset(name for formula in formulas for name in names_in(formula))
+        rulebook.prepared[names_read] = known
+    return known
 
 
 def verified(
