@@ -28,6 +28,7 @@ NAMES = (
     "world",
     "recordings",
     "drives",
+    "scored",
     "compiling",
     "starting",
     "verbs",

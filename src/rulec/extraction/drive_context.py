@@ -340,7 +340,10 @@ class EgosOnRoad:
 def drives_context(
     surroundings: Surroundings, places: RoadPlaces, side: Side, egos: EgosOnRoad
 ) -> DriveContext:
-    """The parts of a recording that drives of egos who are not among the others are about."""
+    """The parts of a recording that several drives along one road are about.
+
+    Egos with surroundings of their ``own`` are not among the others.
+    """
     lengths = [columns.stop - columns.start for columns in egos.columns]
     spans = EndToEnd((0, *np.cumsum(lengths).tolist()))
     columns = np.concatenate([np.arange(own.start, own.stop) for own in egos.columns])
@@ -348,6 +351,8 @@ def drives_context(
     own = spans.spread(members)[None], columns[None]
     ego = egos.places.extents.at(*own)
     relevant, in_sight = _near(places, columns, ego)
+    if egos.own is surroundings:
+        relevant[own[0], spans.columns] = in_sight[own[0], spans.columns] = False
     are_near = relevant | in_sight
     rows = are_near.any(axis=1).nonzero()[0]
     at, where = np.broadcast_arrays(rows[:, None], columns)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import drive_context
+from rulec.extraction.drive_context import EgosOnRoad, drive_context, drives_context
 from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads, junction_lanelets
@@ -28,8 +30,15 @@ from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.recordings.recording import Recording, Side
+from rulec.trace.end_to_end import UnlikeDrivesError
 
 FEWEST_STATES = 2
+
+MOST_CELLS = 1 << 16
+"""So many states of all participants, in several drives, are looked at by the same calls."""
+
+FEWEST_TOGETHER = 3
+"""Fewer drives are looked at one by one."""
 
 MOST_PLACES = 1 << 17
 """Extents of recordings with more participants times steps are not computed for all of these."""
@@ -91,7 +100,9 @@ class Matching(Protocol):
 class Drives:
     """The drives of a recording, with a shared layout of each road.
 
-    ``prepared`` are its map, who drove where on it and its surroundings, if they are known.
+    ``prepared`` are its map, who drove where on it and its surroundings, if they are known. Of
+    egos that are ``expected``, which will be asked for one after the other, those who drive along
+    one road are looked at together.
     """
 
     def __init__(
@@ -102,6 +113,7 @@ class Drives:
         writer: TraceWriter = ALL_SIGNALS,
         *,
         prepared: tuple[LaidOutMap, Matching, Surroundings] | None = None,
+        expected: Sequence[str] = (),
     ) -> None:
         self.recording = recording
         self._thresholds = thresholds
@@ -116,6 +128,8 @@ class Drives:
         self._first = self._tracks.present.argmax(axis=1)
         self._places: dict[DrivenRoad, RoadPlaces] = {}
         self._parts: dict[DrivenRoad, RoadPlaces] = {}
+        self._expected = expected
+        self._ready: dict[tuple[int, int], Drive] = {}
 
     def egos(self) -> tuple[str, ...]:
         """The participants that move and steer, in the order of the file."""
@@ -134,7 +148,8 @@ class Drives:
         if 2 * len(body.states) < len(body.outlines):
             yield NoDrive(ego, "it has no track: its places are sets that it may be in")
             return
-        yield from self.along(row, self.stretches(row))
+        stretches = self._planned[row] if row in self._planned else self.stretches(row)
+        yield from self.along(row, stretches)
 
     def stretches(self, row: int) -> list[RouteStretch]:
         """The stretches of road that a participant drove."""
@@ -170,6 +185,10 @@ class Drives:
             places = self._places_during(road, columns)
         else:
             places = self._places_in_part(road, columns)
+        if (row, stretch.first) not in self._ready and places is self._places.get(road):
+            self._look_ahead(road, places, row)
+        if (row, stretch.first) in self._ready:
+            return self._ready.pop((row, stretch.first))
         row = int(np.searchsorted(places.tracks.rows, row))
         before = places.tracks.first - self._tracks.first
         columns = slice(columns.start - before, columns.stop - before)
@@ -178,6 +197,50 @@ class Drives:
         context = drive_context(self._surroundings, places, self._side, row, columns)
         (drive,) = to_traces(context, [ego], [name], self._writer)
         return drive
+
+    @cached_property
+    def _planned(self) -> dict[int, list[RouteStretch]]:
+        """The stretches of those who are expected, by row, in their order."""
+        rows = {body.id: row for row, body in enumerate(self._tracks.participants)}
+        return {rows[ego]: self.stretches(rows[ego]) for ego in self._expected}
+
+    @cached_property
+    def _plans(self) -> dict[DrivenRoad, list[tuple[int, str, slice]]]:
+        """The drives of those who are expected, by road: the row, the name and the columns."""
+        plans: dict[DrivenRoad, list[tuple[int, str, slice]]] = defaultdict(list)
+        for row, stretches in self._planned.items():
+            ego = self._tracks.participants[row].id
+            for number, stretch in enumerate(stretches, 1):
+                road = self._map.road(stretch.route)
+                if not isinstance(road, str):
+                    name = ego if number == 1 else f"{ego}#{number}"
+                    columns = slice(stretch.first, stretch.last + 1)
+                    plans[road[0]].append((row, name, columns))
+        return plans
+
+    def _look_ahead(self, road: DrivenRoad, places: RoadPlaces, row: int) -> None:
+        """Make drives of who is expected from a row on, along a road, about ``MOST_CELLS``."""
+        waiting = self._plans.get(road, [])
+        at = next((k for k, (own, _, _) in enumerate(waiting) if own == row), len(waiting))
+        members, cells = [], 0
+        while at < len(waiting) and cells < MOST_CELLS:
+            own, name, columns = waiting[at]
+            at += 1
+            if not np.isnan(places.extents.s[own, columns]).any():
+                members.append((own, name, columns))
+                cells += len(places.tracks.participants) * (columns.stop - columns.start)
+        if len(members) < FEWEST_TOGETHER:
+            return
+        rows, names, columns_of = zip(*members, strict=True)
+        egos = EgosOnRoad(places, rows, columns_of, own=self._surroundings)
+        context = drives_context(self._surroundings, places, self._side, egos)
+        ids = [self._tracks.participants[own].id for own in rows]
+        try:
+            drives = to_traces(context, ids, names, self._writer)
+        except UnlikeDrivesError:
+            return
+        for own, columns, drive in zip(rows, columns_of, drives, strict=True):
+            self._ready[own, columns.start] = drive
 
     def _is_shared(self, road: DrivenRoad, size: int) -> bool:
         """Whether the places of everybody are worth it for a drive, which takes so many of them."""

@@ -55,7 +55,7 @@ class SelectedDrives:
     mirrored: bool
     egos: tuple[str, ...]
     parts: tuple[RecordingPart, ...]
-    _drives_of: Callable[[Recording], Drives]
+    _drives_of: Callable[..., Drives]
     _looked_at: tuple[RecordingPart, Drives] | None = None
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
@@ -68,7 +68,7 @@ class SelectedDrives:
                 seen = self.recording
             else:
                 seen = mirrored_recording(part.recording) if self.mirrored else part.recording
-            self._looked_at = part, self._drives_of(seen)
+            self._looked_at = part, self._drives_of(seen, expected=part.egos)
         return self._looked_at[1].of(ego)
 
     def kinds(self) -> dict[str, type]:
