@@ -1,0 +1,43 @@
+"""Drives along one road that are looked at together: each is the one that it is by itself."""
+
+import pytest
+
+from rulec.extraction.drives import Drives, NoDrive
+from rulec.recordings.recording_files import read_recording
+from rulec.recordings.recording_format import RecordingSource
+from support.builders.drive_contexts import steady
+from support.builders.recordings import RECORDINGS, recording
+from support.generators.random_recordings import lanes
+
+
+def assert_alike(found, egos):
+    together, by_itself = Drives(found, "right", expected=egos), Drives(found, "right")
+    for ego in egos:
+        for one, other in zip(together.of(ego), by_itself.of(ego), strict=True):
+            if isinstance(other, NoDrive):
+                assert one == other
+                continue
+            assert (one.ego, one.start_s, one.kinds) == (other.ego, other.start_s, other.kinds)
+            assert (one.trace, one.places) == (other.trace, other.places)
+            names = other.arrays.objects
+            for word, numbers in other.decided_by.items():
+                own = [one.decided_by[word].margin(name, 0) for name in names]
+                assert own == [numbers.margin(name, 0) for name in names]
+
+
+def test_drives_of_different_lengths():
+    cars = [
+        steady(7, 0, 0, steps=8),
+        steady(8, 20, 0, steps=8),
+        steady(9, 12, 4, first=2, steps=5, kind="truck"),
+        steady(10, 35, 0, first=4, steps=4),
+    ]
+    assert_alike(recording(lanes(2), cars), ("7", "8", "9", "10"))
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not RECORDINGS.is_dir(), reason="no recordings")
+def test_recorded_drives():
+    for path in sorted(RECORDINGS.glob("*.xml")):
+        found = read_recording(RecordingSource(path))
+        assert_alike(found, Drives(found, "right").egos())
