@@ -178,6 +178,12 @@ COSTLY = {
         2,
         "R0718",
     ),
+    "a state of 300,000 names that nobody has declared": (
+        {"t.jsonl": lambda: traces(of_states([{f"p{n}": True for n in range(300_000)}]))},
+        ["verify", "t.jsonl", "-r", "./soon.rules"],
+        2,
+        "R0502",
+    ),
     "100,000 objects in a state": (
         {"-": lambda: traces({"objects": {f"o{n}": "car" for n in range(100_000)}, "state": {}})},
         ["monitor", "./crowd.rules"],

@@ -193,11 +193,11 @@ def _form_of(first: bytes, comma: bytes, colon: bytes, objects: Mapping[str, str
     if not parts.add_state(state) or not parts.paths:
         return None
     form = _Form(
-        comma, parts.text + comma, tuple(parts.named), tuple(parts.paths), first.count(b'"')
+        comma, bytes(parts.text + comma), tuple(parts.named), tuple(parts.paths), first.count(b'"')
     )
-    place = 0
+    place, whole = 0, first + comma
     for part in form.between([name.encode(errors="surrogatepass") for name in objects]):
-        place = (first + comma).find(part, place)
+        place = whole.find(part, place)
         if place < 0:
             return None  # it is written in some other style
     return form
@@ -207,7 +207,7 @@ class _Parts:
     """What stands between the values of a state that is written in a style."""
 
     def __init__(self, comma: bytes, colon: bytes, places: Mapping[str, int]) -> None:
-        self.text = b""
+        self.text = bytearray()  # which grows in place: a state may have any number of names
         self.paths: list[ColumnPath] = []
         self.named: list[int] = []
         self._comma, self._colon = comma, colon
