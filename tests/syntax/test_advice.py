@@ -11,6 +11,10 @@ NAMES = "names are made of letters, digits and `_`, and begin with a letter"
 BOUNDS = "a bound is written `[<= 3 s]`, `[>= 1 s]`, `[1 s .. 4 s]` or `[2 steps]`"
 BEHIND = "a bound stands behind its operator, such as `always[<= 3 s] p`"
 OVER_TIME = "only operators over time take a bound, such as `always[<= 3 s]`"
+BOTH_UNITS = "write the unit at both ends, and `..` between: `{}`"
+BETWEEN_WORDS = "between two words stands an operator, such as `and`"
+OF_AN_OBJECT = f"{BETWEEN_WORDS}; what is of an object is written `{{}}`"
+OR_AND = "write `or` where one of them is enough, `and` where it takes all"
 TWO_ENDS = "write `..` between the two ends, such as `[3 s .. 4 s]`"
 BY_SIGNS = "a quantity is compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
 CHAINS = "`else` chains: write it "
@@ -57,7 +61,7 @@ FORMULAS = [
     ("if not p then q", "if", "write `p implies q` for `if p then q`"),
     ("⧫ p", "⧫", "write `once` or `O`"),
     ("Previously p", "p", "did you mean `previously`?"),
-    ("GHp p", "p", ""),
+    ("GHp p", "p", OF_AN_OBJECT.format("GHp(p)")),
     ("OH p", "p", "`OH` is read as one name; write `O H`"),
     # Bounds.
     ("always[3] p", "]", "say what it counts: `3 s` or `3 steps`"),
@@ -66,7 +70,16 @@ FORMULAS = [
     ("p U[= 3 s] q", "=", "for exactly that time write `[3 s]`"),
     ("p since[3 s, 4 s] q", ",", TWO_ENDS),
     ("p then[3 s to 4 s] q", "to", TWO_ENDS),
-    ("always[3..4 s] p", "..", "write the unit at both ends, such as `[3 s .. 4 s]`"),
+    ("always[3..4 s] p", "..", BOTH_UNITS.format("[3 s .. 4 s]")),
+    ("always[1-3 s] p", "1-3", BOTH_UNITS.format("[1 s .. 3 s]")),
+    ("always[<= 0,5 s] p", ",", "write a point: `0.5`"),
+    ("always[<= three seconds] p", "seconds", "write the number in digits: `3 seconds`"),
+    ("always[3 s <=] p", "<=", "the sign stands before the time: `[<= 3 s]`"),
+    ("p and eventualy[<= 3 s] q", "[", "did you mean `eventually`?"),
+    ("speed is less than 50 km/h", "is", "for `is less than` write `<`"),
+    ("speed is below 50 km/h", "is", "for `is below` write `<`"),
+    ("the driver stops", "driver", f"{BETWEEN_WORDS}, `or` or `implies`; a name is one word"),
+    ("ahead_of v", "v", OF_AN_OBJECT.format("ahead_of(v)")),
     ("always[3 s ..] p", "]", "without an upper end write `[>= 3 s]`"),
     ("always[.. 3 s] p", "..", "without a lower end write `[<= 3 s]`"),
     ("always[3 s p", "p", "close the bound with `]`"),
@@ -168,8 +181,8 @@ FORMULAS = [
     ),
     ("(when p then q)", "when", f"{IN_A_FORMULA} `p implies q`; {A_CLAUSE}"),
     ("(unless p then q)", "unless", f"{IN_A_FORMULA} `not p implies q`; {A_CLAUSE}"),
-    ("p, q", ",", "formulas are joined by `and`"),
-    ("p; q", ";", "formulas are joined by `and`"),
+    ("p, q", ",", OR_AND),
+    ("p; q", ";", OR_AND),
     ("{ p }", "{", "a formula stands in parentheses, or alone, but not in braces"),
     ("weak p", "weak", "`weak` stands before `until`, `next` or `previously`"),
     ("p weak since q", "weak", "`weak` stands before `until`, `next` or `previously`"),
@@ -301,7 +314,7 @@ LINES = [
     (
         "param x = 3 m in force from 1.4.2020",
         "1.4.2020",
-        "a date is written year-month-day, such as `2006-03-28`",
+        "a date is written year-month-day: `2020-04-01`",
     ),
     ("set x to on", "to", "write `=` for `to`"),
     ("set x = on in force from 2027-01-01", "in", NO_DATES),

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from fractions import Fraction
 from itertools import count
 
 from rulec.diagnostics import Diagnostic
@@ -20,6 +21,7 @@ _CLAUSES = (
 )
 _NEXT_CLAUSE = re.compile(rf"[ \t]*(?:\b(?:{_CLAUSES})\b|\bin\s+force\b|\}})|\n")
 _NUMBER_WITH_UNIT = re.compile(r"\d[\d.,/]*(?: \w[\w/]*)?")
+_TWO_ENDS = re.compile(r"(\d[\w. /-]*?)(?:\s*\.\.\s*|\s+until\s+)(\d[\w. /-]*)")
 _CHANGED_BY = re.compile(r"`(?P<head>(?:set|redefine) \w+) = …`")
 _SCOPE = re.compile(r"\b(?:throughout|at\s+start|at\s+end|at\s+some\s+point|initially)\b")
 _QUANTIFIED = re.compile(r"\b(?:every|some|no)\s+\w+\s*:\s*\w+[^()]*\(\s*$")
@@ -61,10 +63,15 @@ def described_edits(
     if " can mean " in message:
         for reading in re.findall(r"`([^`]+)`", message)[1:]:
             yield _one(f"Write `{reading}`", start, end, reading)
+    if help_text.startswith("exchange the") and (ends := _TWO_ENDS.search(own)):
+        (low, low_end), (high, high_end) = ends.span(1), ends.span(2)
+        turned = own[:low] + ends[2] + own[low_end:high] + ends[1] + own[high_end:]
+        yield _one(f"Write `{turned}`", start, end, turned)
     if help_text.startswith("the nearest multiple"):
         was = message.split("`")[1]
         begin = text.find(was, start, end)
-        for number in _NUMBER_WITH_UNIT.findall(help_text) if begin >= 0 else ():
+        near = [said for said in _NUMBER_WITH_UNIT.findall(help_text) if _is_near(said, was)]
+        for number in near if begin >= 0 else ():
             yield _one(f"Write `{number}`", begin, begin + len(was), number)
     if found := re.match(r"that month has (\d+) days", help_text):
         last_day = re.sub(r"\d+$", found[1], own)
@@ -80,6 +87,12 @@ def described_edits(
         yield _one("Write `1`", start + found.start(), start + found.end(), "1")
     for said in re.findall(r"`([^`…]+)`", help_text):
         yield from _beginning_before(said, text, start, end)
+
+
+def _is_near(said: str, was: str) -> bool:
+    """Tell whether a number differs from another by a twentieth at most: no other law."""
+    first, second = (Fraction(number.split()[0].replace(",", "")) for number in (said, was))
+    return abs(first - second) * 20 <= second
 
 
 def another_name(finding: Diagnostic, text: str, start: int, end: int) -> Iterator[Edit]:

@@ -25,6 +25,9 @@ _QUOTED = re.compile(r"`([^`…]+)`")
 _MOST_TRIED = 12
 """So many edits are tried for one message: each is checked as if it had been typed."""
 
+_SEVERAL = re.compile(r", | or |such as")
+"""Where several things may stand, none of them is what was meant."""
+
 _EITHER = "Say `traffic "
 """What begins so is offered beside another one that would do, for only the author knows."""
 
@@ -39,7 +42,7 @@ _HIDING = frozenset({"R0117", "R0206", "R0213", "R0703"})
 _UNREADABLE = frozenset({"R0104", "R0105", "R0108", "R0109", "R0117"})
 
 _RULE_HEAD = re.compile(r"(?:hard|soft)\s+rule\s+$")
-_DELETING = ("delete", "leave", "keep one", "exchange")
+_DELETING = ("delete", "leave", "keep one")
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +128,13 @@ def _quoted_edits(
     finding: Diagnostic, text: str, start: int, end: int
 ) -> Iterator[tuple[str, TextChange]]:
     """Edits with what the help quotes."""
-    asked = [*_QUOTED.findall(finding.help), *_QUOTED.findall(finding.expected)]
+    asked = [
+        word
+        for word in _QUOTED.findall(finding.help)
+        if not _is_example(word, finding.help, text[start:end])
+    ]
+    if not _SEVERAL.search(finding.expected):
+        asked += _QUOTED.findall(finding.expected)
     if finding.help.startswith(_DELETING):
         yield from _deletions(text, start, end)
     if finding.help.startswith("did you mean") and asked:
@@ -159,6 +168,12 @@ def _quoted_edits(
             yield f"Put `{_short(word)}` behind it", TextChange(end, end, f" {word}")
     if "leave" in finding.help or "delete" in finding.help:
         yield from _deletions(text, start, end)
+
+
+def _is_example(word: str, help_text: str, own: str) -> bool:
+    """Tell whether a help shows by these words how something looks, not what is to be written."""
+    behind = f"such as `{word}`" in help_text
+    return behind and own not in word and word.partition(" ")[0] not in DECLARATION_WORDS
 
 
 def _misspelt(word: str, text: str, start: int) -> Iterator[tuple[str, TextChange]]:

@@ -32,6 +32,14 @@ OVER_TIME: Final = (OPERATOR_WORDS | OPERATOR_LETTERS | {"[]", "<>"}) - _BOOLEAN
 _BETWEEN: Final = ("to", "-", ",", ";", ":", "...", "and", "until")
 _OPENINGS: Final = ("<=", ">=", "<", ">", "=", "{", "in", "within")
 _FORMS: Final = "a bound is written `[<= 3 s]`, `[>= 1 s]`, `[1 s .. 4 s]` or `[2 steps]`"
+_NUMBER: Final = re.compile(r"\d+(?:\.\d+)?")
+_RANGE: Final = re.compile(r"(\d+)[-–](\d+)")
+_IN_DIGITS: Final = {
+    name: number
+    for number, name in enumerate(
+        ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=1
+    )
+}
 _WITHIN: Final = {"within": "eventually", "for": "always", "during": "always", "after": "next"}
 
 
@@ -42,6 +50,8 @@ def advise_on_bound(scene: ParseContext) -> str:
     text, before = scene.text, scene.text_before
     if text == "[" and scene.operand and before in _BOOLEAN:
         return "only operators over time take a bound, such as `always[<= 3 s]`"
+    if text == "[" and scene.operator and (near := did_you_mean(before, UNARY_OPERATORS)):
+        return near
     if text == "[" and (scene.operand or scene.operator):
         return "a bound stands behind its operator, such as `always[<= 3 s] p`"
     if scene.operand and before in OVER_TIME and text in _OPENINGS:
@@ -56,10 +66,18 @@ def advise_on_bound(scene: ParseContext) -> str:
 
 def _inside(scene: ParseContext) -> str:
     text, before = scene.text, scene.text_before
+    if found := _RANGE.fullmatch(text):
+        return _both_ends(found[1], found[2], scene.text_behind)
     if scene.accepted == {"UNIT"}:
+        if text == "," and scene.is_number(scene.at + 1):
+            return f"write a point: `{before}.{scene.text_behind}`"
         if text == "..":
-            return "write the unit at both ends, such as `[3 s .. 4 s]`"
+            return _both_ends(before, scene.text_behind, scene.text_at(scene.at + 2))
         return f"say what it counts: `{before} s` or `{before} steps`"
+    if before.casefold() in _IN_DIGITS and scene.is_word():
+        return f"write the number in digits: `{_IN_DIGITS[before.casefold()]} {text}`"
+    if text in ("<=", ">=") and scene.is_number(scene.at - 2):
+        return f"the sign stands before the time: `[{text} {scene.text_at(scene.at - 2)} {before}]`"
     if before == "[" and text in ("<", "=<", ">", "=>"):
         sign = "<=" if "<" in text else ">="
         return f"a bound includes its end: write `[{sign} 3 s]`"
@@ -76,6 +94,13 @@ def _inside(scene: ParseContext) -> str:
     if scene.accepted <= {"RSQB", "TO", "LPAR"} and text not in ("+", "*", "/", "-", ".."):
         return "close the bound with `]`"
     return _FORMS
+
+
+def _both_ends(low: str, high: str, unit: str) -> str:
+    """How a stretch of time is written, with what its ends are where these are known."""
+    if not (_NUMBER.fullmatch(low) and _NUMBER.fullmatch(high) and unit.isalpha()):
+        low, high, unit = "3", "4", "s"
+    return f"write the unit at both ends, and `..` between: `[{low} {unit} .. {high} {unit}]`"
 
 
 def _end_of_amount(scene: ParseContext, at: int) -> int:
@@ -98,7 +123,7 @@ def _quotes(scene: ParseContext) -> str:
     grouped = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
     if token.kind == "quoted" or (token.text in _SINGLE and not grouped):
         return 'texts stand in straight double quotes: "…"'
-    if scene.accepted == {"STRING"} and token.kind != "symbol":
+    if scene.accepted == {"STRING"} and (token.kind != "symbol" or token.text == "§"):
         return 'put the text in double quotes: "…"'
     if token.kind == "string" and "STRING" not in scene.accepted:
         inside = token.text[1:-1]

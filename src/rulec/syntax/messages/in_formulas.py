@@ -37,6 +37,16 @@ _QUANTIFIERS: Final = {
     **dict.fromkeys(("forall", "all", "each", "∀", "for"), "every"),
     **dict.fromkeys(("number", "sum", "#"), "count"),
 }
+_IN_WORDS: Final[dict[tuple[str, ...], str]] = {
+    ("less", "than"): "<",
+    ("more", "than"): ">",
+    ("greater", "than"): ">",
+    ("at", "least"): ">=",
+    ("at", "most"): "<=",
+    ("equal", "to"): "=",
+    ("below",): "<",
+    ("above",): ">",
+}
 RELATIONS: Final = ("<", "<=", "=", "!=", ">=", ">")
 _AGGREGATES: Final = ("some", "every", "count")
 
@@ -151,6 +161,12 @@ def _comparisons(scene: ParseContext) -> str:
     numbers = scene.is_number(scene.at + 1) or scene.is_number(scene.at - 1)
     if scene.operator and text == "=>" and numbers:
         return "write `>=` for at least; `=>` would be `implies`"
+    if scene.operator and text == "is":
+        words = (scene.text_behind, scene.text_at(scene.at + 2))
+        said = words[:1] if words[:1] in _IN_WORDS else words
+        if sign := _IN_WORDS.get(said):
+            return f"for `is {' '.join(said)}` write `{sign}`"
+        return "quantities are compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
     if scene.operator and text == "==":
         return "quantities are compared by `=`, formulas by `iff`"
     if (scene.operator or scene.quantity) and text in _SIGNS:
@@ -165,7 +181,8 @@ def _comparisons(scene: ParseContext) -> str:
         return _chain(scene)
     if scene.operator and text == "in" and scene.text_behind in ("{", "(", "["):
         return _any_value(scene)
-    if scene.operator and text in ("between", "in"):
+    ahead = any(scene.is_number(scene.at + number) for number in (1, 2))
+    if scene.operator and text in ("between", "in") and ahead:
         return "write `a <= x and x <= b`"
     if text == "+" and scene.quantity:
         return "delete the `+`"
@@ -228,7 +245,17 @@ def _joined(scene: ParseContext) -> str:
         return f"what is of an object is written `{scene.text_behind}({scene.text_before})`"
     more = behind is not None and behind.text not in {")", *keywords.CLAUSE_WORDS}
     if scene.operator and more and scene.text in (",", ";", "."):
-        return "formulas are joined by `and`"
+        return "write `or` where one of them is enough, `and` where it takes all"
+    words = (scene.before, scene.unexpected)
+    if scene.operator and all(
+        one is not None and one.kind == "word" and one.text not in keywords.RESERVED
+        for one in words
+    ):
+        joined = "between two words stands an operator, such as `and`"
+        if len(scene.text) == 1:
+            of_object = f"{scene.text_before}({scene.text})"
+            return f"{joined}; what is of an object is written `{of_object}`"
+        return f"{joined}, `or` or `implies`; a name is one word"
     return ""
 
 

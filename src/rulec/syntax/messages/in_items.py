@@ -6,6 +6,7 @@ from collections.abc import Container
 from typing import Final
 
 from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED
+from rulec.syntax.messages.literals import how_a_date_is_written
 from rulec.syntax.messages.parse_context import SCOPES, ParseContext
 
 FORMS: Final = {
@@ -95,7 +96,7 @@ def advise_on_item(scene: ParseContext) -> str:
 def advise_on_dates(scene: ParseContext) -> str:
     """At ``in force from DATE until DATE``."""
     if scene.accepted == {"DATE"} and scene.unexpected is not None:
-        return "a date is written year-month-day, such as `2006-03-28`"
+        return how_a_date_is_written(scene.source.text[scene.unexpected.start :][:16])
     if scene.first not in _DATED and scene.kind != "clause":
         return ""
     if scene.text in ("from", "force") and "IN" in scene.accepted:

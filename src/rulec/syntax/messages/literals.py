@@ -8,6 +8,8 @@ from calendar import monthrange
 
 _ISO_DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
 
+_DAY_FIRST = re.compile(r"([0-9]{1,2})\. ?([0-9]{1,2})\. ?([0-9]{4})\b")
+
 _DIRECTION_CONTROLS = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 """Unicode's bidirectional controls: they show a text in another order than it is read."""
 
@@ -15,7 +17,7 @@ _DIRECTION_CONTROLS = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u206
 def why_not_a_day(text: str) -> str:
     """Empty for a day of the Gregorian calendar in ISO 8601's form."""
     if not _ISO_DATE.fullmatch(text):
-        return "a date is written year-month-day, such as `2006-03-28`"
+        return how_a_date_is_written(text)
     year, month, day = (int(part) for part in text.split("-"))
     if year < 1:
         return "years begin with 0001"
@@ -23,6 +25,16 @@ def why_not_a_day(text: str) -> str:
         return "months go from 01 to 12"
     days = monthrange(year, month)[1]
     return "" if 1 <= day <= days else f"that month has {days} days"
+
+
+def how_a_date_is_written(text: str) -> str:
+    """The way out for what is no date in ISO 8601's form: in that form, where it is one."""
+    if found := _DAY_FIRST.match(text):
+        day, month, year = (int(part) for part in found.groups())
+        written = f"{year:04}-{month:02}-{day:02}"
+        if not why_not_a_day(written):
+            return f"a date is written year-month-day: `{written}`"
+    return "a date is written year-month-day, such as `2006-03-28`"
 
 
 def misleads(character: str) -> bool:
