@@ -76,6 +76,12 @@ def test_a_file_without_a_line():
     assert show(SourceLocation("a.rules")) == "error[R0202]: message\n --> a.rules\n\n1 error\n"
 
 
+def test_a_row_of_which_only_the_line_is_known_has_no_empty_line():
+    lines = show(SourceLocation("cars.csv", 3), expected="expected a number").splitlines()
+    assert "  = note: expected a number" in lines
+    assert not any("|" in line for line in lines)
+
+
 @pytest.mark.parametrize("place", [None, SourceLocation("a.rules")])
 def test_what_was_expected_is_said_without_a_line_too(place):
     lines = show(place, expected="expected this", help="do that").splitlines()

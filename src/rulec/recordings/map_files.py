@@ -131,6 +131,9 @@ def read_map(path: str | Path, step_s: float) -> RoadMap:
     for form in MAP_FORMATS:
         if form.recognises(glance):
             return form.read(path, step_s)
+    if heads.is_track_head(heads.head_of(glance)):
+        why = "it has tracks, and no lanes"
+        raise MAP.refused(path, why, help_text="give it as the recording, and its map with --map")
     with opened(path):
         # A file that is not there, or must not be read, says so by itself.
         why = f"it is XML of `{short(glance.root)}`" if glance.root else "it is of no known format"

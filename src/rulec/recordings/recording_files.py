@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
+from rulec.files import opened
+from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.encodings.safe_xml import is_xml
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.format_table import FORMATS
@@ -97,7 +99,24 @@ def _format_of(source: RecordingSource) -> RecordingFormat:
     if glance.root:
         why = f"it is XML of `{short(glance.root)}`"
         raise RECORDING.refused(source.path, why, expected="expected `commonRoad` or `fcd-export`")
+    check_readable(source.path)
     raise RECORDING.refused(source.path, "it is of no known format")
+
+
+def check_readable(path: Path) -> None:
+    """Refuse a file that is not there, or that is no Parquet though it is called so.
+
+    Raises RulecError R0610, R0701, R0706.
+    """
+    if path.is_dir():
+        return
+    with opened(path):
+        pass
+    if path.name.lower().endswith(PARQUET):
+        # NumPy and Arrow, only for those who have such a file.
+        from rulec.trace.formats.arrow.parquet_columns import parquet_names
+
+        parquet_names(path, lambda why, **more: RECORDING.refused(path, why, **more))
 
 
 def _some(names: list[str]) -> str:

@@ -218,7 +218,8 @@ def test_a_file_of_traces_is_none(tmp_path):
         (HEAD, "a,0.3,inf,0", 5, "column `x` holds `inf`"),
         (HEAD, "a,0.3,,0", 5, "column `x` is empty here"),
         (HEAD, ",0.3,20,0", 5, "column `track` is empty here"),
-        (HEAD, "a,0.3,20", 5, "its row has 3 cells, its head 4 names"),
+        (HEAD, "a,0.3,nan,0", 5, "or says that it is none, as `nan` does"),
+        (HEAD, "a,0.3,20", 5, "cut short: its last row has 3 cells, its head 4 names"),
         (HEAD, "a,0.2,20,0", 5, "track `a` is twice at 0.2 s"),
         (HEAD, "a,0.3,1e12,0", 5, "its `x` is 1e+12"),
         (HEAD, "a,0.345,20,0", 5, "its times are uneven: 0.345 s"),
@@ -252,6 +253,83 @@ def test_ways_out(tmp_path):
     assert wrong.help == "did you mean `pedestrian`?"
 
 
+def test_a_short_row_in_the_middle_is_no_end(tmp_path):
+    found = message(tmp_path, HEAD, "a,0,20,0", "a,0.1", "a,0.2,22,0")
+    assert "its row has 2 cells" in found.message
+    assert "cut short" not in found.message
+
+
+def milliseconds(column, step=100, speed=14.0):
+    """Rows of somebody with times in milliseconds."""
+    rows = [f"a,{k * step},{20 + speed * k * step / 1000},0" for k in range(9)]
+    return f"track,{column},x,y", *rows
+
+
+def test_milliseconds_are_no_seconds(tmp_path):
+    # 1.4 m in what would be 100 s
+    found = message(tmp_path, *milliseconds("time"))
+    assert found.code == "R0610"
+    assert "100 s apart, in which nobody moves faster than 0.014 m/s" in found.message
+    assert found.help == "call the column `t_ms`; or `t_s`, if these are seconds"
+    assert (
+        "`t` seems to hold microseconds"
+        in message(tmp_path, *milliseconds("t", step=10_000, speed=0.14)).message
+    )
+    assert read(tmp_path, *milliseconds("t_ms")).step_s == 0.1
+    assert read(tmp_path, *milliseconds("time_s")).step_s == 100
+
+
+def test_tracks_that_are_seen_seldom_are_read(tmp_path):
+    # By satellite: 14 m/s, every 30 s
+    rows = [f"a,{30 * k},{20 + 14 * 30 * k},0" for k in range(9)]
+    assert read(tmp_path, "track,time,x,y", *rows).step_s == 30
+
+
+@pytest.mark.parametrize(
+    ("stated", "said"),
+    [
+        (
+            36.0,
+            "speeds are 3.6 times what places and times say, by which it is judged: call",
+        ),
+        (36.0, "call the column `speed_kmh` if it holds km/h"),
+        (22.4, "call the column `speed_mph`"),
+        (1.0, "speeds are 0.1 times what places and times say, by which it is judged: look at the"),
+        (10.5, ""),
+    ],
+)
+def test_speeds_that_places_contradict(tmp_path, stated, said):
+    recording = read(tmp_path, f"{HEAD},speed", *driving(steps=40, more=f",{stated}"))
+    found = [remark for remark in recording.remarks if remark.startswith("speeds are ")]
+    assert (len(found), said in "".join(found)) == (bool(said), True)
+
+
+def test_a_file_that_is_not_what_it_is_called(tmp_path):
+    (tmp_path / "lanes.csv").write_text(LANES)
+    file = tmp_path / "cars.parquet"
+    file.write_text(table(HEAD, *driving()))
+    with pytest.raises(RulecError, match="it is no Parquet, but text") as refused:
+        read_recording(file)
+    assert refused.value.diagnostics[0].help == "if it is CSV, call it `.csv`"
+    with pytest.raises(RulecError, match="no such file") as refused:
+        read_recording(tmp_path / "nothing.csv")
+    assert refused.value.diagnostics[0].code == "R0701"
+
+
+def test_tracks_are_no_map(tmp_path):
+    cars = written(tmp_path, table(HEAD, *driving()))
+    with pytest.raises(RulecError, match="it has tracks, and no lanes") as refused:
+        read_recording(cars, cars)
+    assert "its map with --map" in refused.value.diagnostics[0].help
+
+
+def test_lanes_beside_in_parquet(tmp_path):
+    cars = written(tmp_path, table(HEAD, *driving()), lanes="")
+    lanes = pa.table({"lane": ["r", "r"], "x": [0.0, 200.0], "y": [0.0, 0.0]})
+    parquet.write_table(lanes, tmp_path / "lanes.parquet")
+    assert [*read_recording(cars).lanelets] == ["r"]
+
+
 def test_headings_of_a_compass(tmp_path):
     """90° is east on a compass: in radians all of those who drive east are turned by 90°."""
     found = message(tmp_path, f"{HEAD},heading_deg", *driving(steps=40, more=",90"))
@@ -279,6 +357,7 @@ def test_without_a_map(tmp_path):
     found = message(tmp_path, HEAD, *driving(), lanes="")
     assert (found.code, found.message) == ("R0614", "`cars.csv` has tracks, but no roads")
     assert "--map" in found.help
+    assert "`cars.lanes.csv` or `lanes.csv` beside it would be found" in found.help
 
 
 def test_far_from_the_roads(tmp_path):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -143,6 +144,13 @@ def command(
     about["input_format"] = None
     option = scenario_options.given_drives_option({"egos": egos, **about})
     if option and not recordings and not inputs.problems:
+        # Formats of recordings, as above.
+        from rulec.recordings.recording_files import check_readable
+        from rulec.recordings.recording_inputs import STANDARD_INPUT
+
+        for path in inputs.paths:
+            if path != STANDARD_INPUT:
+                check_readable(Path(path))
         raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
     if ends is not None and recordings:
         raise click.UsageError("--end is for traces; a recording is always cut.")

@@ -188,7 +188,12 @@ def _check_full(columns: Columns, name: str, kind: ColumnKind) -> None:
     empty = texts[name].having("") if kind.is_text else np.isnan(numbers[name])
     if empty.any():
         row = int(np.argmax(empty))
-        raise columns.wrong(row, f"its column `{short(name)}` is empty here", "expected a value")
+        why = f"its column `{short(name)}` is empty here"
+        if kind.is_text:
+            raise columns.wrong(row, why, "expected a value")
+        raise columns.wrong(
+            row, f"{why}, or says that it is none, as `nan` does", "expected a number"
+        )
 
 
 def checked_numbers(values: Sequence[str], largest: float = LARGEST) -> tuple[Floats, int | None]:

@@ -166,7 +166,7 @@ def _read(
         count += len(block)
         if count > MOST_ROWS:
             raise refused(f"it has more than {MOST_ROWS:,} rows", line)
-        _check_lengths(block, names, own, refused)
+        _check_lengths(block, names, own, refused, is_last=len(own) < _ROWS_AT_ONCE)
         cells = list(zip(*block, strict=True))
         lines.append(own)
         for name in numbers if block else ():
@@ -190,12 +190,22 @@ def _read(
 
 
 def _check_lengths(
-    block: Sequence[Sequence[str]], names: Sequence[str], lines: NDArray[int64], refused: Any
+    block: Sequence[Sequence[str]],
+    names: Sequence[str],
+    lines: NDArray[int64],
+    refused: Any,
+    *,
+    is_last: bool,
 ) -> None:
     if set(map(len, block)) <= {len(names)}:
         return
     at = next(place for place, row in enumerate(block) if len(row) != len(names))
-    why = f"its row has {len(block[at])} cells, its head {len(names)} names"
+    n_cells = f"{len(block[at])} {'cell' if len(block[at]) == 1 else 'cells'}"
+    why = f"its row has {n_cells}, its head {len(names)} names"
+    if is_last and at == len(block) - 1 and len(block[at]) < len(names):
+        why = f"it seems to be cut short: its last row has {n_cells}, its head {len(names)} names"
+        way_out = "write or copy the file again; or take out its last row"
+        raise refused(why, int(lines[at]), help_text=way_out)
     raise refused(why, int(lines[at]), help_text="cells with commas in them stand in quotes")
 
 

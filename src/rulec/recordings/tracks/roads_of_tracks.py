@@ -22,13 +22,19 @@ from rulec.recordings.tracks.track_rows import TrackRows, read_tracks
 NEAR_M = 50.0
 """Somebody in the table is no farther from the box around the roads than this."""
 
-_LANES = (".lanes.csv", ".lanes.parquet")
+_LANES = (".csv", ".parquet")
 
 
 def lanes_beside(path: Path) -> list[Path]:
     """The tables of lanes that belong to a table of tracks by their names."""
     stem = path.name.removesuffix(".gz").rpartition(".")[0]
-    return [*(path.with_name(stem + end) for end in _LANES), path.with_name("lanes.csv")]
+    named = [path.with_name(f"{stem}.lanes{end}") for end in _LANES]
+    return [*named, *(path.with_name(f"lanes{end}") for end in _LANES)]
+
+
+def _usual(beside: Sequence[Path]) -> list[Path]:
+    """The first two names to be told to somebody without a map."""
+    return [file for file in beside if file.suffix != ".parquet"][:2]
 
 
 def roads_of(path: Path, map_path: Path | None, step_s: float, beside: Sequence[Path]) -> RoadMap:
@@ -38,7 +44,7 @@ def roads_of(path: Path, map_path: Path | None, step_s: float, beside: Sequence[
     """
     found = map_path or next((file for file in beside if file.is_file()), None)
     if found is None:
-        names = " or ".join(f"`{file.name}`" for file in beside[:2])
+        names = " or ".join(f"`{file.name}`" for file in _usual(beside))
         raise NET_MISSING.error(
             SourceLocation(str(path)),
             f"`{path.name}` has tracks, but no roads",

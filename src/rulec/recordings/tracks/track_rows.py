@@ -27,6 +27,9 @@ _NAMED = 3
 _MOVING_MPS = 2.0
 _BACKING_MPS = 0.5
 _TURNED = np.pi / 4
+_ALIKE = 1.25
+_ENOUGH = 20
+_UNITS = ((3.6, "`speed_kmh` if it holds km/h"), (2.237, "`speed_mph` if it holds miles an hour"))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -234,8 +237,41 @@ class _Reading:
         if usual:
             more = f", and {len(usual) - _NAMED} more" if len(usual) > _NAMED else ""
             yield f"what is not stated is taken to be as usual: {', '.join(usual[:_NAMED])}{more}"
+        yield from _speeds_that_differ(self.rows)
         if self.rows.times.start_s:
             yield f"times count from the first one, {self.rows.times.start_s:.10g} s"
+
+
+def _speeds_that_differ(rows: TrackRows) -> Iterator[str]:
+    """What to say of speeds that are another multiple of what places say: they have no say."""
+    if rows.speed is None or rows.front:
+        return
+    order, follow, (dx, dy) = _motions(rows)
+    moved, stated = np.hypot(dx, dy), np.abs(rows.speed[order][:-1])
+    chosen = follow & ~np.isnan(stated) & (np.maximum(moved, stated) > _MOVING_MPS)
+    if chosen.sum() < _ENOUGH:
+        return
+    by_places, by_column = float(np.median(moved[chosen])), float(np.median(stated[chosen]))
+    if by_places < 1e-3 or not by_column or 1 / _ALIKE <= by_column / by_places <= _ALIKE:
+        return
+    factor = by_column / by_places
+    near = (name for times, name in _UNITS if abs(factor / times - 1) < 0.05)
+    unit = next(near, "")
+    yield (
+        f"speeds are {factor:.3g} times what places and times say, by which it is judged: "
+        + (f"call the column {unit}" if unit else "look at the units of `speed`, times and places")
+    )
+
+
+def _motions(rows: TrackRows) -> tuple[NDArray[np.intp], NDArray[np.bool_], tuple[Floats, Floats]]:
+    """The rows by track and time, which of them the next one of its track follows, and velocities.
+
+    The latter two are of each but the last.
+    """
+    order = np.lexsort((rows.times.steps, rows.track.codes))
+    follow = (np.diff(rows.track.codes[order]) == 0) & (np.diff(rows.times.steps[order]) == 1)
+    dx, dy = (np.diff(place[order]) / rows.times.step_s for place in (rows.x, rows.y))
+    return order, follow, (dx, dy)
 
 
 def _filled(values: Floats, others: Floats) -> Floats:
@@ -296,12 +332,10 @@ def _check_headings(rows: TrackRows) -> None:
         why = f"its heading is {heading[row]:g}, which is no angle in radians"
         way_out = "call the column `heading_deg` if it holds degrees"
         raise rows.columns.wrong(row, why, help_text=way_out)
-    order = np.lexsort((rows.times.steps, rows.track.codes))
-    follow = (np.diff(rows.track.codes[order]) == 0) & (np.diff(rows.times.steps[order]) == 1)
-    dx, dy = (np.diff(place[order]) / rows.times.step_s for place in (rows.x, rows.y))
+    order, follow, (dx, dy) = _motions(rows)
     moving = follow & (np.hypot(dx, dy) > _MOVING_MPS) & ~np.isnan(heading[order][:-1])
     off = np.abs(motion.wrapped(np.arctan2(dy, dx) - heading[order][:-1]))[moving]
-    if len(off) > 20 and np.median(off) > _TURNED:
+    if len(off) > _ENOUGH and np.median(off) > _TURNED:
         row = int(order[:-1][moving][int(np.argmax(off))])
         why = (
             f"headings do not fit the motion: most of those who move are turned by more than 45° "

@@ -35,6 +35,8 @@ TRACKS = XmlFormat(
     4_000_000_000,
 )
 
+_SPARSE_S = 5.0
+_CREEPING_MPS = 0.5
 _KMH, _MPH, _DEG = 1 / 3.6, 0.44704, pi / 180
 _LAMPS = cast("tuple[Lamp, ...]", get_args(Lamp))
 
@@ -121,10 +123,11 @@ def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
     if velocity is not None and any(np.isnan(part).any() for part in velocity):
         # Who has no velocity somewhere has none: places tell it as well
         velocity = None
+    times = even_times(numbers["t"], named.columns)
     rows = TrackRows(
         columns=named.columns,
         track=named.texts["track"],
-        times=even_times(numbers["t"], named.columns),
+        times=times,
         x=numbers["x"],
         y=numbers["y"],
         heading=numbers.get("heading"),
@@ -139,4 +142,32 @@ def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
         front=front,
         lamps={lamp: numbers[lamp] for lamp in _LAMPS if lamp in numbers},
     )
+    _check_seconds(rows, heads)
     return rows, unread_remark(named.unread, TRACK_COLUMNS)
+
+
+def _check_seconds(rows: TrackRows, heads: set[str]) -> None:
+    """Refuse times without a unit that cannot be seconds: states far apart, and nobody moves.
+
+    A car that is seen ten times a second would move a metre in 100 s if milliseconds were seconds.
+    Tracks that are seen seldom, by satellite for one, move much farther from one row to the next.
+    """
+    column = next((name for name in ("t", "time") if name in heads), None)
+    step_s = rows.times.step_s
+    if column is None or step_s < _SPARSE_S or len(rows.x) < 2:
+        return
+    order = np.lexsort((rows.times.steps, rows.track.codes))
+    same = np.diff(rows.track.codes[order]) == 0
+    moved = np.hypot(np.diff(rows.x[order]), np.diff(rows.y[order]))
+    took = np.maximum(np.diff(rows.times.steps[order]), 1) * step_s
+    fastest = float(np.max(moved[same] / took[same], initial=0.0))
+    if fastest > _CREEPING_MPS:
+        return
+    unit = "milliseconds" if step_s < 1000 * _SPARSE_S else "microseconds or nanoseconds"
+    names = "`t_ms`" if step_s < 1000 * _SPARSE_S else "`t_us` or `t_ns`"
+    why = (
+        f"its times are {step_s:g} s apart, in which nobody moves faster than {fastest:.2g} m/s: "
+        f"`{column}` seems to hold {unit}, not seconds"
+    )
+    way_out = f"call the column {names}; or `t_s`, if these are seconds"
+    raise rows.columns.refused(why, help_text=way_out)

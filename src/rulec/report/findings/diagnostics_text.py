@@ -178,11 +178,7 @@ def _block(diagnostic: Diagnostic, paint: _Paint, columns: int) -> Iterator[str]
         for left, text, style in _lines(shown, severity, columns):
             yield f"{paint(f'{left:>{width}} |', _FRAME)} {paint(text, style)}".rstrip()
     # Without a line there is no underlined place for it to stand beside.
-    unplaced = (
-        ""
-        if diagnostic.place is not None and diagnostic.place.line is not None
-        else diagnostic.expected
-    )
+    unplaced = "" if _is_shown(diagnostic.place) else diagnostic.expected
     notes = (("note", note) for note in diagnostic.notes)
     for word, text in (("note", unplaced), ("help", diagnostic.help), *notes):
         if text:
@@ -191,12 +187,21 @@ def _block(diagnostic: Diagnostic, paint: _Paint, columns: int) -> Iterator[str]
 
 def _by_file(diagnostic: Diagnostic) -> list[list[Underline]]:
     """The marks of a diagnostic by file, the primary place's file first."""
-    marks = (
-        [] if diagnostic.place is None else [Underline(diagnostic.place, diagnostic.expected, "^")]
-    )
+    place = diagnostic.place
+    expected = diagnostic.expected if _is_shown(place) else ""
+    marks = [] if place is None else [Underline(place, expected, "^")]
     marks += [Underline(label.place, label.message, "-") for label in diagnostic.labels]
     files = list(dict.fromkeys(mark.place.file for mark in marks))
     return [[mark for mark in marks if mark.place.file == file] for file in files]
+
+
+def _is_shown(place: SourceLocation | None) -> bool:
+    """True for a place in a line; of a row of a table the line alone is known, not its text."""
+    return (
+        place is not None
+        and place.line is not None
+        and (place.column is not None or bool(place.excerpt.strip()))
+    )
 
 
 def _lines(

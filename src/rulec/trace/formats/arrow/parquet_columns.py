@@ -14,6 +14,8 @@ from rulec.trace.formats.arrow.parquet import arrow
 
 Refused = Callable[..., RulecError]
 
+_MAGIC, _GLANCE = b"PAR1", 64
+
 
 def parquet_names(path: Path, refused: Refused) -> tuple[str, ...]:
     """The names of a file's columns.
@@ -21,6 +23,11 @@ def parquet_names(path: Path, refused: Refused) -> tuple[str, ...]:
     Raises RulecError R0706 if pyarrow is missing, R0701 if the file cannot be opened; else what
     ``refused`` makes of the reason.
     """
+    with opened(path) as stream:
+        start = stream.read(_GLANCE)
+        if start and not start.startswith(_MAGIC) and start.isascii() and b"\0" not in start:
+            way_out = "if it is CSV, call it `.csv`"
+            raise refused("it is no Parquet, but text", help_text=way_out)
     pyarrow, parquet = arrow(str(path))
     with opened(path) as stream:
         try:
