@@ -8,6 +8,8 @@ from dataclasses import fields, is_dataclass
 from importlib import import_module
 from typing import Any
 
+from rulec.version import install_command
+
 LONGEST_REPR = 160
 """A ``repr`` has at most so many characters and no line's end."""
 
@@ -71,7 +73,7 @@ class Rows:
             arrow = import_module("pyarrow")
         except ImportError as error:
             raise ImportError(
-                "an Arrow table takes pyarrow: pip install 'rulec[parquet]'"
+                f"an Arrow table takes pyarrow: {install_command('parquet')}"
             ) from error
         rows = self.rows()
         columns: dict[str, Any] = {}

@@ -65,3 +65,26 @@ def test_rates_are_those_of_the_command(cars, capsys):
     assert rule.group == (file,)
     with pytest.raises(rulec.RulecError, match="R0716"):
         rulec.rates_of_findings([written, written])
+
+
+def test_what_takes_no_name_says_what_to_call():
+    with pytest.raises(TypeError, match=r"rulec\.Monitor\(rulec\.compile_rulebook"):
+        rulec.Monitor("nl")
+    with pytest.raises(TypeError, match=r"rulec\.verify_recording\(path, rules\)"):
+        rulec.verify("cars.csv", "de")
+
+
+def test_a_recorded_violation_is_explained_with_what_it_was_decided_by(tmp_path):
+    book = tmp_path / "near.rules"
+    book.write_text(
+        "rulebook near\nuse road\n"
+        "hard rule far (v: vehicle) { require always (behind(v) implies gap(v) >= 5 m) }\n"
+    )
+    verdicts = rulec.verify_recording(three_cars(tmp_path), str(book))
+    (found,) = (one for one in verdicts.answers() if one.answer.violations)
+    (violation,) = found.answer.violations
+    # 4 is 4 m behind 3
+    (margin,) = rulec.explain(violation, found.drive, str(book)).margins()
+    assert (margin.text, margin.relation, margin.limit) == ("gap(3)", "<", 5.0)
+    (same,) = rulec.explain(violation, found.drive.trace, verdicts.rules).margins()
+    assert same == margin

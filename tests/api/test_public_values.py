@@ -4,6 +4,7 @@ import copy
 import inspect
 import json
 import pickle
+import re
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import fields, is_dataclass, replace
@@ -16,6 +17,7 @@ import numpy as np
 import pytest
 
 import rulec
+from rulec.version import install_command
 
 TRACES = "docs/samples/traces.jsonl"
 RECORDING = Path("docs/samples/passing.fcd.xml")
@@ -202,7 +204,7 @@ def test_html_escapes():
 
 def test_without_pyarrow_the_way_out_is_said(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "pyarrow", None)
-    with pytest.raises(ImportError, match=r"rulec\[parquet\]"):
+    with pytest.raises(ImportError, match=re.escape(install_command("parquet"))):
         values()["Verdict"].to_arrow()
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from rulec.cli.main import VERBS, main
 from rulec.cli.usage_help import EXAMPLES
-from rulec.diagnostics.install_command import install_command
+from rulec.version import install_command
 
 
 def said(capsys, *arguments):

@@ -77,3 +77,51 @@ def test_the_table_takes_the_width_that_there_is(rules):
     # The first state stays, however narrow.
     heads = next(line for line in narrow.splitlines() if line.lstrip().startswith("state"))
     assert heads.split()[1] == "0"
+
+
+def test_what_only_says_when_the_rule_asks_is_no_margin(tmp_path):
+    book = tmp_path / "kept.rules"
+    book.write_text(
+        "rulebook kept\nuse road\n"
+        "hard rule indicator_on { require always (speed >= 1 km/h implies wet) }\n"
+        "hard rule far (v: vehicle) {\n"
+        "  require always (speed >= 1 km/h and wet implies gap(v) >= 15 m)\n}\n"
+    )
+    rules = compile_rulebook(book)
+    near = {"speed": 50.0, "wet": True, "gap": {"c": 5.5}}
+    trace = Trace("t", 1.0, {"c": "car"}, (near, near | {"wet": False}))
+    dry, far = sorted(verify(trace, rules).violations, key=lambda one: one.rule == "far")
+    assert explain(dry, trace, rules).margins() == []
+    explanation = explain(far, trace, rules)
+    assert [str(one) for one in explanation.margins()] == ["gap(c) 5.5 m < 15.0 m"]
+    lines = str(explanation).splitlines()
+    assert lines[0] == "hard rule far for v = c: violated in state 0"
+    assert "  gap(c) 5.5 m < 15.0 m" in lines
+    assert "  wet: true" in lines
+
+
+def test_of_an_interval_there_are_bounds_and_no_middle():
+    middle, half = (3.03 + 1000) / 2, (1000 - 3.03) / 2
+    wide = Margin("x", middle, ">=", 3.0, "s", value_error=half, error=half)
+    assert wide.value_bounds == (3.03, 1000.0)
+    assert (wide.by, wide.at_least) == (0.03, 0.03)
+    narrow = Margin("x", 12.3, "<", 15.5, "m", value_error=0.1, limit_error=0.1, error=0.2)
+    assert narrow.value_bounds is None
+    assert (narrow.by, narrow.at_least) == (3.2, 3.0)
+
+
+def test_numbers_are_rounded_to_what_their_errors_leave():
+    found = Margin(
+        *("x", 15.877499999999998, "<", 31.754, "m"),
+        value_error=0.34323825544364955,
+        limit_error=0.0500001,
+        error=0.39,
+    ).rounded()
+    assert (found.value, found.limit) == (15.877, 31.754)
+    # Errors are rounded up
+    assert (found.value_error, found.limit_error) == (0.344, 0.051)
+    exact = Margin("x", 0.1 + 0.2, "<", 50.000000000001, "m").rounded()
+    assert (exact.value, exact.limit) == (0.3, 50.0)
+    # Numbers that differ stay apart, however large the error is
+    apart = Margin("x", 14.9996, "<", 15.0, "m", value_error=0.3, error=0.3).rounded()
+    assert apart.value < apart.limit

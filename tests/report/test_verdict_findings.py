@@ -57,6 +57,7 @@ SLOW = of(
     vehicle="4",
     from_s=0.5,
     to_s=2.5,
+    at_s=0.75,
     by=5.4,
     unit="km/h",
     measure="speed 50.4 km/h > 45 km/h",
@@ -102,6 +103,7 @@ def test_csv_has_a_row_for_each_finding(rules):
         "5.4",
         "km/h",
     )
+    assert first["at_s"] == "0.75"
     # A number below 0 stays one.
     assert first["y"] == "-1.5"
     assert [row[head.index("outcome")] for row in rows] == [
@@ -168,6 +170,9 @@ def test_sarif_has_results_for_what_is_violated_or_open(rules):
     assert invocation["executionSuccessful"] is False
     notes = invocation["toolExecutionNotifications"]
     assert [note["level"] for note in notes] == ["note", "error"]
+    properties = run["results"][0]["properties"]
+    assert (properties["at_s"], properties["x"], properties["lanelet"]) == (0.75, 2.0, "7")
+    assert "at 0.75 s (from 0.5 s to 2.5 s)" in run["results"][0]["message"]["text"]
     prints = [one["partialFingerprints"]["rulec/v1"] for one in run["results"]]
     assert len(set(prints)) == 3
 
@@ -205,7 +210,7 @@ def test_the_quality_checkers_results(rules):
         "1",
         slow.find("AddressedRule").get("ruleUID"),
     )
-    assert issue.find("Locations/TimeLocation").get("time") == "0.5"
+    assert issue.find("Locations/TimeLocation").get("time") == "0.75"
     assert issue.find("Locations/InertialLocation").attrib == {"x": "2.0", "y": "-1.5", "z": "0.0"}
     assert [one.get("level") for one in distance.findall("Issue")] == ["2", "3"]
     assert {one.get("status") for one in second.findall("Checker")} == {"error"}
@@ -230,17 +235,21 @@ def messages(content):
 def test_mcap_has_an_event_for_each_finding_with_a_time(rules):
     content = written(rules, "mcap", FOUND)
     found = messages(content)
-    half, one = 500_000_000, 1_000_000_000
+    decided, one = 750_000_000, 1_000_000_000
     assert [(at, line["rule"]) for at, line in found["/rulec/findings"]] == [
-        (half, "slow"),
+        (decided, "slow"),
         (one, "distance"),
     ]
-    assert [(at, line["level"]) for at, line in found["/rulec/log"]] == [(half, 4), (one, 3)]
-    assert found["/rulec/log"][0][1]["timestamp"] == {"sec": 0, "nsec": half}
+    assert [(at, line["level"]) for at, line in found["/rulec/log"]] == [(decided, 4), (one, 3)]
+    assert found["/rulec/log"][0][1]["timestamp"] == {"sec": 0, "nsec": decided}
     # Of the other one nobody knows where it was.
     ((at, update),) = found["/rulec/scene"]
     (entity,) = update["entities"]
-    assert (at, entity["frame_id"], entity["lifetime"]) == (half, "global", {"sec": 2, "nsec": 0})
+    assert (at, entity["frame_id"], entity["lifetime"]) == (
+        decided,
+        "global",
+        {"sec": 1, "nsec": decided},
+    )
     (label,) = entity["texts"]
     assert label["pose"]["position"] == {"x": 2.0, "y": -1.5, "z": 3.0}
     assert label["text"] == SLOW.says

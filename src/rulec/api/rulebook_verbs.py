@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rulec.book_tests.example_runs import ExampleRun
     from rulec.diagnostics import Diagnostic
     from rulec.diagnostics.code import Code
+    from rulec.extraction.to_trace import Drive
     from rulec.logic.sentences.language import LanguageCode
     from rulec.monitoring.explain.explanation import Explanation
     from rulec.monitoring.verdict import Violation
@@ -187,12 +188,18 @@ class RulebookVerbs(SessionSettings):
     def explain(self, subject: str) -> Code: ...
 
     @overload
-    def explain(self, subject: Violation, trace: Trace, rules: Rules) -> Explanation: ...
+    def explain(self, subject: Violation, trace: Trace | Drive, rules: Rules) -> Explanation: ...
 
     def explain(
-        self, subject: str | Violation, trace: Trace | None = None, rules: Rules | None = None
+        self,
+        subject: str | Violation,
+        trace: Trace | Drive | None = None,
+        rules: Rules | None = None,
     ) -> Code | Explanation:
         """Explain a code such as R0104, or a trace's violations by state.
+
+        A recorded ``Drive`` knows by which numbers its words were decided, and its margins have
+        these, too.
 
         Raises KeyError for a code that there is not.
         """
@@ -204,10 +211,15 @@ class RulebookVerbs(SessionSettings):
                 raise KeyError(f"there is no code {subject}")
             return code
         from rulec.monitoring.explain.explanation import explain
+        from rulec.trace import Trace
 
         if trace is None or rules is None:
             raise TypeError("explaining a violation takes the trace and the rules")
-        return explain(subject, trace, self._compiled(rules).fitted_to(trace.step_s))
+        if isinstance(trace, Trace):
+            return explain(subject, trace, self._compiled(rules).fitted_to(trace.step_s))
+        from rulec.extraction.recording_verdicts import explain_drive
+
+        return explain_drive(subject, trace, self._compiled(rules))
 
     def diff(
         self,

@@ -64,9 +64,17 @@ class TraceVerbs(SessionSettings):
 
         Raises:
             RulecError: R0501 to R0508 if it is no trace, or the rules cannot judge it.
+            TypeError: for the path of a file, which other verbs take.
         """
         from rulec.monitoring.verify import verify
+        from rulec.trace import Trace
 
+        if not isinstance(trace, Trace):
+            raise TypeError(
+                f"verify takes a Trace, not {type(trace).__name__}: those that "
+                "rulec.read_traces(path) yields; recorded traffic goes to "
+                "rulec.verify_recording(path, rules)"
+            )
         if assumptions is not None:
             trace = assumptions.applied(trace)
         return verify(trace, self._compiled(rules))

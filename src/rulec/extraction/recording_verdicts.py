@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -15,10 +15,13 @@ from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
-from rulec.monitoring.verdict import NotJudged, Verdict, agreed
+from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import Rows, short_repr
+
+if TYPE_CHECKING:
+    from rulec.monitoring.explain.explanation import Explanation
 
 MOST_STATES = 1 << 13
 """Drives are verified together once they have this many states; more take more memory."""
@@ -33,6 +36,18 @@ def rounded_rulebooks(rulebook: CompiledRulebook, step_s: float) -> tuple[Compil
             raise
         # Of each drive it is said that it cannot be judged.
         return (rulebook,)
+
+
+def explain_drive(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Explanation:
+    """Explain a violation by a drive, with the numbers by which its words were decided.
+
+    ``rules`` may be of any step that its recording's verdicts can be of.
+    """
+    # Explanations, 20 ms: only where something is violated.
+    from rulec.monitoring.explain.explanation import explain
+
+    (rounded, *_) = rounded_rulebooks(rules, drive.arrays.step_s)
+    return explain(violation, drive.trace, rounded, drive.decided_by)
 
 
 @dataclass(frozen=True, slots=True)

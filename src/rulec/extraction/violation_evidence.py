@@ -24,8 +24,8 @@ class ViolationEvidence:
 
     The names that its rule reads were ``measured`` in all states, be it to a tolerance, ``assumed``
     by the user, presumed (or taken by default, if that was asked for), or ``unknown`` in some state
-    without making a difference. It lasts from ``from_s`` to ``to_s`` (s of the recording);
-    ``margins`` say by how much, ``place`` where ego is when it begins.
+    without making a difference. It lasts from ``from_s`` to ``to_s`` (s of the recording), and is
+    decided ``at_s``; ``margins`` say by how much, ``place`` where ego is then.
     """
 
     measured: tuple[str, ...]
@@ -34,6 +34,7 @@ class ViolationEvidence:
     unknown: tuple[str, ...]
     from_s: float
     to_s: float
+    at_s: float
     margins: tuple[Margin, ...]
     place: Place | None
 
@@ -64,8 +65,9 @@ def evidence_of(
         unknown=tuple([name for name in read if name in partial or name in unknown]),
         from_s=drive.time_s(first),
         to_s=drive.time_s(last),
+        at_s=drive.time_s(explained.decisive),
         margins=tuple(explained.margins()),
-        place=drive.places[first] if drive.places else None,
+        place=drive.places[explained.decisive] if drive.places else None,
     )
 
 

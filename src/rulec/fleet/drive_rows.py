@@ -92,11 +92,7 @@ class DriveRows:
         yield from self._rules(own, verdict, trace)
         if found is None:
             found = list(trace_findings(str(own.get("file", "")), trace, verdict, used, []))
-        at_s = [
-            round((len(trace.states) - 1 if one.step is None else one.step) * trace.step_s, 9)
-            for one in verdict.violations
-        ]
-        yield from self._findings(own, verdict, at_s, found)
+        yield from self._findings(own, verdict, found)
 
     def of_nothing(self, own: Row, why: str) -> Row:
         """The row of what could not be judged: a file, a recording, a vehicle or a trace."""
@@ -116,8 +112,7 @@ class DriveRows:
             "distance_m": driven_m(drive),
         }
         yield from self._rules(own, verdict, drive.arrays)
-        at_s = [drive.time_s(violation.step) for violation in verdict.violations]
-        yield from self._findings(own, verdict, at_s, found)
+        yield from self._findings(own, verdict, found)
 
     def _judged(
         self,
@@ -159,18 +154,17 @@ class DriveRows:
             yield row
 
     def _findings(
-        self, own: Row, verdict: Verdict, at_s: list[float], found: Sequence[VerdictFinding]
+        self, own: Row, verdict: Verdict, found: Sequence[VerdictFinding]
     ) -> Iterator[Row]:
         """A row for each violation, with when it was lost, and for each that is open."""
-        lost = iter(zip(verdict.violations, at_s, strict=True))
+        violations = iter(verdict.violations)
         for finding in found:
             if finding.outcome == "not_judged":
                 continue  # its rule's row says so
             row: dict[str, Cell] = {name: getattr(finding, name) for name in OF_FINDINGS}
             row |= {**self.shared, **own, "kind": "finding"}
             if finding.outcome == "violated":
-                violation, when = next(lost)
-                row |= {"state": violation.step, "at_s": when}
+                row |= {"state": next(violations).step}
             yield row
 
 

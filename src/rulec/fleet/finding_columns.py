@@ -21,7 +21,6 @@ COLUMNS: Mapping[str, type] = {
     **verdict_finding.COLUMNS,
     **dict.fromkeys(("ego", "source", "country", "road"), str),
     "state": int,
-    "at_s": float,
     "states": int,
     **dict.fromkeys(("duration_s", "distance_m"), float),
     **dict.fromkeys(("opportunities", "perhaps_opportunities"), int),

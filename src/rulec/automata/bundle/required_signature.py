@@ -19,8 +19,8 @@ from rulec.automata.bundle.minisign import (
     public_key,
 )
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.diagnostics.install_command import install_command
 from rulec.resource_limits import variable_set
+from rulec.version import install_command
 
 VARIABLE = "RULEC_REQUIRE_SIGNED"
 """The path of a public key, or the key itself; unset or empty if nothing has to be signed."""

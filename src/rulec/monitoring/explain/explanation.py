@@ -103,11 +103,46 @@ class Explanation:
     looked_at: tuple[int, int] | None = None
 
     def margins(self) -> list[Margin]:
-        """By how much: the comparisons of quantities that decide, in the decisive state."""
+        """By how much: the comparisons of quantities that decide, in the decisive state.
+
+        What only says when the rule asks for anything, such as that ego drives at all, is none.
+        """
         at = self.states.index(self.decisive)
-        margins = [fact.margins[at] for fact in self.facts if fact.decides and fact.margins]
-        margins += [part.margins[at] for part in self.parts if part.decides and part.margins]
+        when = set() if self.rule.trigger is None else set(ltl.atoms_of(self.rule.trigger))
+        asked = [part for part in self.parts if part.decides and part.formula not in when]
+        names = {part.formula.name for part in asked if isinstance(part.formula, ltl.Atom)}
+        margins = [
+            fact.margins[at]
+            for fact in self.facts
+            if fact.decides and fact.margins and fact.text.partition("(")[0] in names
+        ]
+        margins += [part.margins[at] for part in asked if part.margins]
         return [margin for margin in dict.fromkeys(margins) if margin is not None]
+
+    def __str__(self) -> str:
+        """The rule, since when it cannot be kept, by how much, and what would have kept it."""
+        rule, about = self.rule, self.violation.binding
+        cite = f" [{rule.cite}]" if rule.cite else ""
+        bound = ", ".join(f"{name} = {item}" for name, item in about.items())
+        whom = f" for {bound}" if bound else ""
+        lines = [f"{rule.strength} rule {rule.name}{cite}{whom}: violated in state {self.decisive}"]
+        lines += [rule.says] if rule.says else []
+        lines += map(str, self.margins())
+        at = self.states.index(self.decisive)
+        lines += [
+            f"{fact.text}: {_in_a_word(fact.values[at], fact.unit)}"
+            for fact in self.facts
+            if fact.decides
+        ]
+        return "\n  ".join(lines)
+
+
+def _in_a_word(value: Value | Interval | None, unit: str) -> str:
+    if isinstance(value, Interval):
+        text = f"{value.low:g} to {value.high:g}"
+    else:
+        text = "unknown" if value is None else str(value).lower()
+    return f"{text} {unit}".rstrip()
 
 
 class Deciding(Protocol):

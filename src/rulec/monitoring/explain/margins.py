@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, floor
+from math import ceil, floor, log10
 
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import Between, Unknown, weighted_sum
@@ -46,13 +46,46 @@ class Margin:
 
     @property
     def by(self) -> float:
-        """By how much, as measured."""
-        return abs(self.value - self.limit)
+        """By how much, as measured; for sure, where one of the numbers has no more than bounds."""
+        if self.value_bounds or self.limit_bounds:
+            return self.at_least
+        return _without_noise(abs(self.value - self.limit))
 
     @property
     def at_least(self) -> float:
         """By how much for sure."""
-        return max(self.by - self.error, 0.0)
+        return _without_noise(max(abs(self.value - self.limit) - self.error, 0.0))
+
+    @property
+    def value_bounds(self) -> tuple[float, float] | None:
+        """What the value lies between, if that is all that is known of it, such as 3.9 to 1000."""
+        return _bounds(self.value, self.value_error)
+
+    @property
+    def limit_bounds(self) -> tuple[float, float] | None:
+        """The same of the limit."""
+        return _bounds(self.limit, self.limit_error)
+
+    def rounded(self) -> Margin:
+        """To the digits that its errors leave: two of each error, which is rounded up."""
+        known = [error for error in (self.value_error, self.limit_error) if error > 0]
+        if not known:
+            return replace(self, value=_in_nine(self.value), limit=_in_nine(self.limit))
+        places = max(1 - floor(log10(min(known))), 0)
+        while places < _MOST_PLACES and round(self.value, places) == round(self.limit, places):
+            places += 1
+
+        def up(error: float) -> float:
+            return ceil(error * 10**places - _HAIR) / 10**places
+
+        return replace(
+            self,
+            value=round(self.value, places),
+            limit=round(self.limit, places),
+            value_error=up(self.value_error),
+            limit_error=up(self.limit_error),
+            error=up(self.error),
+        )
 
     @property
     def sides(self) -> str:
@@ -76,6 +109,22 @@ class Margin:
         if self.limit_error:
             limit = number_with_error(self.limit, self.limit_error, places)
         return value, limit
+
+
+def _bounds(number: float, error: float) -> tuple[float, float] | None:
+    """The bounds of a number that is known no better than to half of it."""
+    if error <= abs(number) / 2:
+        return None
+    return _without_noise(number - error), _without_noise(number + error)
+
+
+def _without_noise(number: float) -> float:
+    """A difference of numbers without what the last bits of both leave behind."""
+    return round(number, 9)
+
+
+def _in_nine(number: float) -> float:
+    return float(f"{number:.9g}")
 
 
 def margin_in(

@@ -59,7 +59,7 @@ class Monitor:
         cut: what was before the first state, and before an object was there, is unknown.
 
     Raises RulecError R0507 if a rule was compiled for another step and cannot be compiled again,
-    R0403 if it is cut and Spot is not installed.
+    R0403 if it is cut and Spot is not installed, TypeError for rules that are not compiled.
     """
 
     def __init__(
@@ -70,6 +70,11 @@ class Monitor:
         told: Iterable[str] | None = None,
         cut: bool = False,
     ) -> None:
+        if not isinstance(rulebook, CompiledRulebook):
+            raise TypeError(
+                f"a monitor takes a compiled rulebook, not {type(rulebook).__name__}: "
+                "rulec.Monitor(rulec.compile_rulebook(name_or_path))"
+            )
         steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
         self._step_s = exact_step(step_s) if step_s is not None else steps[0] if steps else None
         if self._step_s is not None:

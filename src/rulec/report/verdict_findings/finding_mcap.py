@@ -83,9 +83,10 @@ def _channels() -> tuple[JsonChannel, ...]:
 
 def _messages(finding: VerdictFinding) -> Iterator[TimedMessage]:
     """The messages of a finding; what has no time is none."""
-    if finding.from_s is None:
+    at_s = finding.from_s if finding.at_s is None else finding.at_s
+    if at_s is None:
         return
-    begin_ns = max(0, round(finding.from_s * _NS))
+    begin_ns = max(0, round(at_s * _NS))
     yield TimedMessage(0, begin_ns, as_json(finding))
     yield TimedMessage(1, begin_ns, json.dumps(_log(finding, begin_ns)))
     if finding.outcome == "violated" and finding.x is not None and finding.y is not None:
@@ -104,7 +105,8 @@ def _log(finding: VerdictFinding, begin_ns: int) -> dict[str, Any]:
 
 
 def _scene_update(finding: VerdictFinding, begin_ns: int) -> dict[str, Any]:
-    lasts_s = max((finding.to_s or 0.0) - (finding.from_s or 0.0), LEAST_SHOWN_S)
+    begins_s = begin_ns / _NS
+    lasts_s = max((finding.to_s or 0.0) - begins_s, LEAST_SHOWN_S)
     position = {"x": finding.x, "y": finding.y, "z": _TEXT_HEIGHT_M}
     label = {
         "pose": {"position": position, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}},

@@ -90,12 +90,16 @@ def _result(finding: VerdictFinding, number: int) -> dict[str, Any]:
         "partialFingerprints": {"rulec/v1": sha256("\0".join(key).encode(*_BYTES)).hexdigest()},
         "properties": {
             name: getattr(finding, name)
-            for name in ("recording", "vehicle", "other", "from_s", "to_s", "by", "unit", "open_on")
+            for name in _PROPERTIES
             if getattr(finding, name) not in (None, "", ())
         },
     }
 
 
+_PROPERTIES = (
+    *("recording", "vehicle", "other", "from_s", "to_s", "at_s", "x", "y", "lanelet"),
+    *("by", "unit", "open_on"),
+)
 _BYTES = ("utf-8", "surrogatepass")
 
 

@@ -114,11 +114,11 @@ class QualityCheckerWriter:
 
 
 def _locations(issue: ElementTree.Element, finding: VerdictFinding) -> None:
-    """When it begins, and where the vehicle is then."""
-    if finding.from_s is None:
+    """When it is decided, and where the vehicle is then."""
+    at_s = finding.from_s if finding.at_s is None else finding.at_s
+    if at_s is None:
         return
-    about = f"{finding.vehicle} at {finding.from_s:g} s"
-    locations = element(issue, "Locations", description=about)
-    element(locations, "TimeLocation", time=finding.from_s)
+    locations = element(issue, "Locations", description=f"{finding.vehicle} at {at_s:g} s")
+    element(locations, "TimeLocation", time=at_s)
     if finding.x is not None and finding.y is not None:
         element(locations, "InertialLocation", x=finding.x, y=finding.y, z=0.0)

@@ -21,10 +21,11 @@ class VerdictFinding:
 
     ``file`` and ``recording`` say where; of traces ``recording`` is empty. ``vehicle`` is the drive
     or the trace, empty for all of them, ``other`` whom the rule is about. It lasts ``from_s`` to
-    ``to_s`` (s of the recording); what is open does somewhere in between. ``measure`` is the
-    comparison that decides most narrowly, ``by`` how much, in ``unit``. What is open or not judged
-    is so on ``open_on``, names that are not told, ``because`` of something. ``x`` and ``y`` (m)
-    and ``lanelet`` are where the vehicle is then. Without a rule the file was not judged.
+    ``to_s`` (s of the recording); what is open does somewhere in between. ``at_s`` it is decided:
+    from then on the rule cannot be kept. ``measure`` is the comparison that decides most narrowly,
+    ``by`` how much, in ``unit``. What is open or not judged is so on ``open_on``, names that are
+    not told, ``because`` of something. ``x`` and ``y`` (m) and ``lanelet`` are where the vehicle is
+    ``at_s``. Without a rule the file was not judged.
     ``inherited_from`` is the rulebook whose law the rule is, if that of the finding has not
     confirmed it; else empty.
     """
@@ -43,6 +44,7 @@ class VerdictFinding:
     other: tuple[str, ...] = ()
     from_s: float | None = None
     to_s: float | None = None
+    at_s: float | None = None
     by: float | None = None
     unit: str = ""
     measure: str = ""
@@ -82,12 +84,13 @@ def named_rule(rule: CompiledRule) -> dict[str, str]:
 
 
 def when(finding: VerdictFinding) -> str:
-    """From when to when, in words."""
+    """When it is decided, and from when to when it lasts, in words."""
     if finding.from_s is None:
         return ""
+    at = finding.from_s if finding.at_s is None else finding.at_s
     if finding.to_s in (None, finding.from_s):
-        return f" at {finding.from_s:g} s"
-    return f" from {finding.from_s:g} s to {finding.to_s:g} s"
+        return f" at {at:g} s"
+    return f" at {at:g} s (from {finding.from_s:g} s to {finding.to_s:g} s)"
 
 
 class FindingLine(JsonDocument, frozen=True, kw_only=True):
@@ -109,6 +112,7 @@ class FindingLine(JsonDocument, frozen=True, kw_only=True):
     other: tuple[str, ...]
     from_s: float | None
     to_s: float | None
+    at_s: float | None
     by: float | None
     unit: str
     measure: str
@@ -123,7 +127,7 @@ COLUMNS: Mapping[str, type] = {
     **dict.fromkeys(("file", "recording", "rulebook", "rule", "provision", "inherited_from"), str),
     **dict.fromkeys(("strength", "outcome", "vehicle"), str),
     "other": list,
-    **dict.fromkeys(("from_s", "to_s", "by"), float),
+    **dict.fromkeys(("from_s", "to_s", "at_s", "by"), float),
     **dict.fromkeys(("unit", "measure"), str),
     "open_on": list,
     "because": str,

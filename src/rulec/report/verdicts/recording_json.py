@@ -13,6 +13,7 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.violation_evidence import ViolationEvidence, evidence_of
 from rulec.monitoring.explain.explanation import Explanation
+from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.verdict import NotJudged
 from rulec.report.json_document import JsonDocument, as_line, filled
 from rulec.report.verdicts import verdict_json
@@ -52,12 +53,28 @@ class NotDriven(JsonDocument, frozen=True, kw_only=True):
     why_not: str
 
 
+def _margin_data(margin: Margin) -> verdict_json.MarginData:
+    value, limit = margin.value_bounds, margin.limit_bounds
+    return filled(
+        verdict_json.MarginData,
+        margin,
+        value=margin.value if value is None else _bounds_data(*value),
+        limit=margin.limit if limit is None else _bounds_data(*limit),
+        value_error=margin.value_error if value is None else 0.0,
+        limit_error=margin.limit_error if limit is None else 0.0,
+    )
+
+
+def _bounds_data(low: float, high: float) -> verdict_json.BoundsData:
+    return verdict_json.BoundsData(low=low, high=high)
+
+
 def _evidence_data(evidence: ViolationEvidence) -> verdict_json.EvidenceData:
     place = evidence.place
     return filled(
         verdict_json.EvidenceData,
         evidence,
-        margins=[filled(verdict_json.MarginData, margin) for margin in evidence.margins],
+        margins=[_margin_data(margin.rounded()) for margin in evidence.margins],
         place=None if place is None else filled(verdict_json.DrivePlaceData, place),
     )
 

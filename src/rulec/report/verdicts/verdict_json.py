@@ -88,13 +88,15 @@ class ErrorData(JsonPart, frozen=True, kw_only=True):
 class MarginData(JsonPart, frozen=True, kw_only=True):
     """A comparison that decides: ``value`` stands in ``relation`` to ``limit``, in ``unit``.
 
-    Both may be wrong by their errors. They differ ``by`` so much, for sure by ``at_least``.
+    Both may be wrong by their errors; of a number that is known no better than to half of it there
+    are bounds, and no error. They differ ``by`` so much, for sure by ``at_least``; with bounds both
+    are for sure.
     """
 
     text: str
-    value: float
+    value: float | BoundsData
     relation: str
-    limit: float
+    limit: float | BoundsData
     unit: str
     value_error: float
     limit_error: float
@@ -115,7 +117,7 @@ class EvidenceData(JsonPart, frozen=True, kw_only=True):
 
     The names that the rule reads were ``measured``, ``assumed`` by the user, taken ``by_default``,
     or ``unknown`` in some state without making a difference. ``from_s`` and ``to_s`` are times of
-    the recording; ``place`` is ego's at ``from_s``.
+    the recording; ``place`` is ego's when the rule is lost, at ``time_s`` of the violation.
     """
 
     measured: Sequence[str]
