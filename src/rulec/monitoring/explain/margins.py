@@ -75,8 +75,10 @@ class Margin:
         while places < _MOST_PLACES and round(self.value, places) == round(self.limit, places):
             places += 1
 
+        scale = 10.0**places
+
         def up(error: float) -> float:
-            return ceil(error * 10**places - _HAIR) / 10**places
+            return ceil(error * scale - _HAIR) / scale
 
         return replace(
             self,
