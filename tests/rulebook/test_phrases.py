@@ -33,6 +33,23 @@ def test_every_word_has_a_phrase_of_its_own(language):
     assert len(said) == len(set(said))
 
 
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_words_that_books_add_have_phrases_too(language):
+    added = load_rulebook("schemas").vocabulary.declarations.keys()
+    added -= load_vocabulary("road").declarations.keys()
+    phrases = phrases_in("schemas", language)
+    assert phrases.keys() == added
+    for name, phrase in phrases.items():
+        declared = load_rulebook("schemas").vocabulary.declarations[name]
+        affirmed, denied = forms(phrase)
+        assert (affirmed == denied) is isinstance(declared, Quantity), name
+        for form in (affirmed, denied):
+            assert form.count("{}") == len(declared.parameters), name
+            assert form == " ".join(form.split()), name
+    spoken = phrases_of(load_rulebook("nl"), language)
+    assert spoken["ahead_for"] == phrases["ahead_for"]
+
+
 def test_sentences_speak_in_phrases_and_keep_their_reading():
     rule = next(rule for rule in load_rulebook("vienna").rules if rule.name == "near_side_passing")
     phrases = phrases_of(load_rulebook("vienna"))

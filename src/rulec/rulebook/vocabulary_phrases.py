@@ -30,8 +30,8 @@ class HasSources(Protocol):
 def phrases_of(rulebook: HasSources, language: str = "en") -> Mapping[str, str]:
     """The phrases for the words of a rulebook, by the names of signals, values and quantities.
 
-    They are those of the vocabularies that it uses as they ship, from ``vocabulary/phrases``; none
-    for words of its own.
+    They are those of the vocabularies, and of rulebooks with words of their own, that it uses as
+    they ship, from ``vocabulary/phrases``; none for words of its own.
     """
     phrases: dict[str, str] = {}
     for name in _vocabularies(rulebook):
@@ -48,11 +48,16 @@ def types_of(rulebook: HasSources, language: str) -> Mapping[str, TypeWords]:
 
 
 def _vocabularies(rulebook: HasSources) -> Iterator[str]:
-    """The vocabularies that ship and that a rulebook uses as they are."""
+    """What ships, has phrases, and is used by a rulebook as it is: vocabularies, and books."""
     for source in rulebook.sources:
-        path = rulebooks_folder() / "vocabulary" / Path(source.name).name
-        if path.is_file() and sha256(path.read_bytes()).hexdigest() == source.sha256:
-            yield path.stem
+        file = Path(source.name)
+        folders = ["vocabulary"]
+        if _file_of(f"{file.stem}.en.toml").is_file():
+            folders.append(file.stem)
+        for folder in folders:
+            path = rulebooks_folder() / folder / file.name
+            if path.is_file() and sha256(path.read_bytes()).hexdigest() == source.sha256:
+                yield path.stem
 
 
 def phrases_in(vocabulary: str, language: str) -> Mapping[str, str]:
@@ -87,9 +92,13 @@ def synonyms_of_the_field() -> Mapping[str, Sequence[str]]:
     return _file("synonyms.toml")
 
 
+def _file_of(name: str) -> Path:
+    return rulebooks_folder() / "vocabulary" / "phrases" / name
+
+
 @cache
 def _file(name: str) -> Mapping[str, Any]:
-    path = rulebooks_folder() / "vocabulary" / "phrases" / name
+    path = _file_of(name)
     if not path.is_file():
         return MappingProxyType({})
     text = path.read_text(encoding="utf-8")
