@@ -72,6 +72,36 @@ def test_the_first_violation_is_explained(verify):
     assert "mirrored" not in out
 
 
+def test_the_first_row_is_the_one_that_is_explained(tmp_path, capsys):
+    # 3 drives 43 km/h; 4, the next one of the file, is as fast, and alone has somebody near ahead
+    book = tmp_path / "rows.rules"
+    distance = (
+        "hard rule distance (v: vehicle) { require always (behind(v) implies gap(v) >= 5 m) }"
+    )
+    slow = "hard rule slow { require always speed <= 20 km/h }"
+    book.write_text(f"rulebook rows\nuse road\n{distance}\n{slow}\n")
+    main(["verify", three_cars(tmp_path), "-r", str(book), *DEFAULTS])
+    lines = capsys.readouterr().out.splitlines()
+    rows = [line.split()[0] for line in lines if " hard " in line and "/3" in line]
+    explained = next(line for line in lines if line.startswith("  hard rule "))
+    assert len(rows) == 2
+    assert explained.split()[2].rstrip(":") == rows[0] == "slow"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [("nothere.csv", None, "no such file"), ("cars.parquet", "track,t,x,y\n", "no Parquet")],
+)
+def test_a_file_that_is_missing_or_misnamed_is_named(tmp_path, capsys, name, text, said):
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    file = str(tmp_path / name)
+    assert main(["verify", file, "--map", three_cars(tmp_path), "-r", "esterle2019"]) == 2
+    err = capsys.readouterr().err
+    assert said in err
+    assert name in err
+
+
 def test_what_is_assumed_is_not_missing(verify):
     status, out, _ = verify("--assume", "built_up=true")
     assert status == 0

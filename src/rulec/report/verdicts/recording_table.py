@@ -114,7 +114,9 @@ def _table(verdicts: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
     if not tally.first_s:
         return
     defaults = verdicts.by_default(tally.words or frozenset())
-    rules = [rule for rule in verdicts.rules.rules if rule.name in tally.first_s]
+    # As they were found, so that the first one is the first that is explained
+    by_name = {rule.name: rule for rule in verdicts.rules.rules}
+    rules = [by_name[name] for name in tally.first_s]
     names = [verdict_report.short_title(rule) for rule in rules]
     titles = [shorten(name, LONGEST_RULE, placeholder=" …]") for name in names]
     rows = [("violated", "", " drives", "   first", "by")]
