@@ -84,4 +84,4 @@ def test_the_extension_is_packed_by_one_command_and_starts_the_server(
 
     nowhere = tmp_path / "nowhere"
     said = done(program("node"), activate, folder / manifest["main"], nowhere)
-    assert "pip install 'rulec[lsp]'" in said
+    assert "pip install -e '.[lsp]'" in said

@@ -18,7 +18,8 @@ function start() {
   return client.start().catch(() =>
     vscode.window.showErrorMessage(
       `rulec: \`${command.join(" ")} lsp\` does not start. ` +
-        "`pip install 'rulec[lsp]'` installs it; the setting `rulec.command` says where it is.",
+        "In rulec's checkout `.venv/bin/python -m pip install -e '.[lsp]'` installs it; " +
+        "the setting `rulec.command` says where it is.",
     ),
   );
 }

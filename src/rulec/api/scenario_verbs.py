@@ -135,7 +135,7 @@ class ScenarioVerbs(SessionSettings):
 
         A trace is judged by ``rules`` and cannot be drawn without. ``maneuver`` is the one to show,
         of maneuvers the cheapest, if there is one; ``as_graph`` takes the navigation graph instead
-        of the scene. A PNG takes ``rulec[pictures]``. The answer is the content of a file.
+        of the scene. A PNG takes the extra ``pictures``. The answer is the content of a file.
         """
         from rulec.api import pictures
         from rulec.partition import NavigationGraph

@@ -250,7 +250,7 @@ class TraceVerbs(SessionSettings):
 
         Raises:
             RulecError: R0701, R0706, R0715 if drives were judged differently, R0716 for what has
-                none, R0717 without ``rulec[rates]``.
+                none, R0717 without the extra ``rates``.
         """
         from rulec.rates.rates_of_findings import rates_of_findings
 
@@ -274,7 +274,7 @@ class TraceVerbs(SessionSettings):
 
         ``ego`` is a vehicle, or a drive such as ``373#2``; if empty it is the first vehicle that
         violates a rule. ``only`` are the names of the rules whose violations are shown, if not all.
-        A page (``"html"``) has all moments. PNG and PDF take ``rulec[pictures]``.
+        A page (``"html"``) has all moments. PNG and PDF take the extra ``pictures``.
 
         Raises:
             RulecError: R0612 for a drive that is not there, R0707 for a file that cannot be made,

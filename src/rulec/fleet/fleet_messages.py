@@ -97,8 +97,9 @@ OTHER_FLEET = Code(
 ENGINE_MISSING = Code(
     "R0713",
     title="an engine is not installed",
-    why="Ray and Spark are installed on request: `pip install 'rulec[ray]'`, `pip install "
-    "'rulec[spark]'`, which takes Java 17 as well. `--engine local` needs neither.",
+    why="Ray and Spark are installed on request: `.venv/bin/python -m pip install -e '.[ray]'` "
+    "in the checkout, or `'.[spark]'`, which takes Java 17 as well. `--engine local` needs "
+    "neither.",
     kind="circumstance",
 )
 

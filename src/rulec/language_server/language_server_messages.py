@@ -10,7 +10,7 @@ LANGUAGE_SERVER_UNAVAILABLE = Code(
     "R0760",
     title="the language server takes a package that is not installed",
     why="What editors ask while a rulebook is written takes the package `pygls`, which is "
-    "installed on request: `pip install 'rulec[lsp]'`.",
+    "installed on request: `.venv/bin/python -m pip install -e '.[lsp]'` in the checkout.",
     kind="circumstance",
 )
 

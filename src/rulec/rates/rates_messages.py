@@ -41,8 +41,8 @@ rulec rates found.jsonl""",
 RATES_UNAVAILABLE = Code(
     "R0717",
     title="intervals take a package that is not installed",
-    why="Exact intervals take the package `scipy`, which is installed on request: `pip install "
-    "'rulec[rates]'`.",
+    why="Exact intervals take the package `scipy`, which is installed on request: "
+    "`.venv/bin/python -m pip install -e '.[rates]'` in the checkout.",
     kind="circumstance",
 )
 

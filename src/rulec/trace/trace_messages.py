@@ -54,9 +54,9 @@ NOT_A_TABLE = Code(
 PARQUET_UNAVAILABLE = Code(
     "R0706",
     title="a Parquet file cannot be read or written here",
-    why="It takes the package `pyarrow`, which is installed on request: `pip install "
-    "'rulec[parquet]'`. And it takes a file: a Parquet file has its table of contents at the "
-    "end, so it cannot be read from a pipe.",
+    why="It takes the package `pyarrow`, which is installed on request: "
+    "`.venv/bin/python -m pip install -e '.[parquet]'` in the checkout. And it takes a file: a "
+    "Parquet file has its table of contents at the end, so it cannot be read from a pipe.",
     bad="echo PAR1 | rulec verify - --input-format parquet -r esterle2019",
     good="echo '{\"states\": [{}]}' | rulec verify - --input-format jsonl -r esterle2019",
     kind="command",

@@ -69,8 +69,8 @@ NO_KEY = Code(
 NO_CRYPTOGRAPHY = Code(
     "R0414",
     title="signatures cannot be checked: the package `cryptography` is missing",
-    why="Ed25519 takes the package `cryptography`, which is installed on request: `pip install "
-    "'rulec[signed]'`.",
+    why="Ed25519 takes the package `cryptography`, which is installed on request: "
+    "`.venv/bin/python -m pip install -e '.[signed]'` in the checkout.",
     kind="circumstance",
 )
 

@@ -76,7 +76,8 @@ def command(context: click.Context) -> None:
     """Draw a recorded drive, the scene over time, the navigation graph, or a trace.
 
     As SVG, PNG, PDF or a page (HTML). SVG and HTML need nothing else and come in light and dark, as
-    the reader prefers; PNG and PDF take `pip install 'rulec[pictures]'`.
+    the reader prefers; PNG and PDF take the extra `pictures`: in a checkout
+    `.venv/bin/python -m pip install -e '.[pictures]'`.
     """
     if context.invoked_subcommand is None:
         click.echo(context.get_help())

@@ -13,7 +13,8 @@ def command(*, stdio: bool) -> None:  # noqa: ARG001 - what editors say, and wha
     """Answer an editor: diagnostics, completion, renaming and the like.
 
     Editors start it themselves and speak the Language Server Protocol with it, over standard input
-    and output; docs/editors.md says how each is told. Takes `pip install 'rulec[lsp]'`.
+    and output; docs/editors.md says how each is told. Takes the extra
+    `lsp`: in a checkout `.venv/bin/python -m pip install -e '.[lsp]'`.
     """
     # The message, 5 ms: not for --help.
     from rulec.language_server.language_server_messages import no_pygls

@@ -73,7 +73,7 @@ def command(
     several rulebooks.
 
     Each rate has two intervals: an exact one for independent opportunities, and one over drives.
-    Takes `pip install 'rulec[rates]'`.
+    Takes the extra `rates`: in a checkout `.venv/bin/python -m pip install -e '.[rates]'`.
     """
     # numpy, Arrow and what shows rates, 150 ms: not for --help.
     from rulec.rates.rates_of_findings import rates_of_findings
