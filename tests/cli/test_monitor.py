@@ -61,7 +61,11 @@ def test_blank_lines_and_a_mark_at_the_beginning_are_no_states(answer):
 
 
 def test_nothing_to_judge(answer):
-    assert answer([]) == (0, [], "")
+    message = "rulec: no state came on standard input: nothing was judged\n"
+    assert answer([]) == (2, [], message)
+    assert answer([" "]) == (2, [], message)
+    answer([SIGN], "--save", "saved.json")
+    assert answer([], "--restore", "saved.json") == (1, [], "")
 
 
 BAD = [

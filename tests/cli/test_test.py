@@ -161,6 +161,38 @@ def test_junit(odd, capsys):
     assert "`f(v)` is never true" in suite.find("system-out").text
 
 
+def test_junit_has_the_error_of_a_rulebook_that_could_not_be_tested(odd, capsys, tmp_path):
+    (tmp_path / "bad.rules").write_text("rulebook bad\nuse paper\nhard rule A { require q }\n")
+    status, out, _ = run(capsys, odd, "bad.rules", "--output-format", "junit")
+    assert status == 2
+    root = ElementTree.fromstring(out)
+    assert [root.get(name) for name in ("tests", "failures", "errors")] == ["5", "3", "1"]
+    suite = root.findall("testsuite")[-1]
+    case = suite.find("testcase")
+    assert (suite.get("name"), suite.get("errors")) == ("bad.rules", "1")
+    assert (case.get("name"), case.get("file"), case.get("line")) == ("reading", "bad.rules", "3")
+    assert case.find("error").get("type") == "R0202"
+    assert "nothing is called `q`" in case.find("error").text
+
+
+def test_junit_has_what_falls_short_as_a_failure(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    source = "rulebook a\nsignal p\nhard rule r { require always p accept { p } }\n"
+    (tmp_path / "a.rules").write_text(source)
+    status, out, _ = run(capsys, "a.rules", "--threshold", "90", "--output-format", "junit")
+    assert status == 1
+    root = ElementTree.fromstring(out)
+    assert [root.get(name) for name in ("tests", "failures", "errors")] == ["2", "1", "0"]
+    case = root.findall("testsuite")[-1].find("testcase")
+    assert (case.get("classname"), case.get("name")) == ("rulec", "coverage")
+    assert case.find("failure").get("message").endswith("below the 90 % asked for")
+    (tmp_path / "a.rules").write_text(source.replace(" accept { p }", ""))
+    status, out, _ = run(capsys, "a.rules", "--fail-on-empty", "--output-format", "junit")
+    assert status == 1
+    failure = ElementTree.fromstring(out).find("testsuite/testcase/failure")
+    assert failure.get("message") == "there is no example to run"
+
+
 def test_junit_of_what_xml_cannot_hold(odd, capsys, tmp_path):
     (tmp_path / "odd.rules").write_text(ODD.replace("never", "a\uffffb\ufffec"), encoding="utf-8")
     assert run(capsys, odd)[0] == 1

@@ -341,6 +341,23 @@ def test_what_is_no_snapshot_of_these_rules_is_refused(damage):
     assert [one.code for one in refused.value.diagnostics] == ["R0510"]
 
 
+def test_rules_of_another_step_are_named_as_that(tmp_path):
+    path = tmp_path / "soon.rules"
+    path.write_text(
+        "rulebook soon\nsignal p, q\n"
+        "hard rule r { require always (p implies eventually[<= 2 s] q) }\n"
+    )
+    saved = Monitor(rulec.compile_rulebook(path, step_s=1), 1).snapshot()
+    with pytest.raises(RulecError) as refused:
+        Monitor.restore(rulec.compile_rulebook(path, step_s=Fraction(1, 10)), saved)
+    (problem,) = refused.value.diagnostics
+    assert (problem.code, problem.message) == (
+        "R0510",
+        "this monitor was saved for a step of 1 s, and these rules are compiled for 1/10 s",
+    )
+    assert "`--step`" in problem.help
+
+
 @pytest.mark.parametrize("data", [None, [], 1, "text", {}])
 def test_what_is_no_snapshot_at_all_is_refused(data):
     with pytest.raises(RulecError, match="not a saved monitor"):

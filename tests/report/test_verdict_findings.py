@@ -151,6 +151,16 @@ def test_junit_fails_for_hard_rules_alone(rules):
     assert second.get("errors") == "1"
 
 
+def test_a_rule_that_is_only_open_does_not_pass_in_junit(rules):
+    found = FoundInRecording("a b.xml", "A", 3, (OPEN,))
+    suite = ElementTree.fromstring(written(rules, "junit", found)).find("testsuite")
+    skipped = {case.get("name"): case.find("skipped") for case in suite}
+    assert (skipped["slow"], skipped["quiet"], suite.get("skipped")) == (None, None, "1")
+    assert skipped["distance"].get("message") == (
+        "open in 1 of 3 drives: whether 5 violates distance towards 3 is open: depends on gap"
+    )
+
+
 def test_sarif_has_results_for_what_is_violated_or_open(rules):
     document = json.loads(written(rules, "sarif", FOUND, BROKEN))
     (run,) = document["runs"]

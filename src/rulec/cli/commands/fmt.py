@@ -37,8 +37,9 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
     ignores or rulec.toml excludes, and for environments); without one it is the working folder. `-`
     formats standard input to standard output.
 
-    A file with mistakes of spelling is left as it is, and its mistakes are shown. What is written
-    means the same and has the same comments, or nothing is written.
+    A file that breaks the grammar is left as it is, and its mistakes are shown. Form is all that
+    is looked at: misspelt names are what `rulec check` finds. What is written means the same and
+    has the same comments, or nothing is written.
 
     Exit status: 0 done, 1 --check or --diff found something to change, 2 a file could not be
     formatted.

@@ -23,7 +23,7 @@ from rulec.cli.output import answer_lines, open_session, print_written
 from rulec.cli.standard_input import STANDARD_INPUT, standard_input
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.report.findings.diagnostics_text import Complaints
-from rulec.report.text.console import print_result
+from rulec.report.text.console import print_remark, print_result
 
 
 def _no_states(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -73,7 +73,8 @@ def command(
     changes nothing.
 
     Exit status: 0 every hard rule is kept if the trace ends here, 1 one is violated, 2 a state
-    could not be judged. With --save the trace is not over, and what is pending is no violation.
+    could not be judged, or none came. With --save the trace is not over, and what is pending is
+    no violation.
     """
     # Monitors and the reader of states, 60 ms: not for --help.
     from rulec.monitoring.online import monitor_sources
@@ -111,6 +112,9 @@ def command(
         print_result(json.dumps(monitor.snapshot()), "json")
     else:
         print_written(to.path, to)
+    if restore is None and monitor.so_far.state < 0 and not refused:
+        print_remark("rulec: no state came on standard input: nothing was judged")
+        return ExitStatus.NOT_ANSWERED
     violated = {"violated"} if save is not None else {"violated", "pending"}
     return ExitStatus.after(answered=not refused, failed=monitor.so_far.best in violated)
 

@@ -18,7 +18,7 @@ from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import print_lost, put_answer, sources_of_rulebooks
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import Diagnostic, RulecError
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_remark
 from rulec.settings import search_path
@@ -118,22 +118,25 @@ def _tested(
     from rulec.book_tests.book_test_messages import nothing_to_run
     from rulec.book_tests.example_coverage import uncovered_verdicts
     from rulec.report.tests.example_formats import render
-    from rulec.report.tests.example_text import shortcomings
+    from rulec.report.tests.example_text import Besides, shortcomings
     from rulec.rulebook.allowances import without_allowed
 
     rulebooks = sources_of_rulebooks(references, "has no examples")
     runs: list[ExampleRun] = []
     coverages: list[tuple[RuleCoverage, ...]] = []
+    unread: dict[str, Sequence[Diagnostic]] = {}
     request = ExampleRequest(search_path(), wanted.at, wanted.pattern, wanted.measured)
-    for answer in measured_runs(request, rulebooks, jobs, partial(print_lost, "tested")):
+    answers = measured_runs(request, rulebooks, jobs, partial(print_lost, "tested"))
+    for name, answer in zip(rulebooks, answers, strict=True):
         if isinstance(answer, RulecError):
             print_diagnostics(answer.diagnostics)
+            unread[name] = answer.diagnostics
             continue
         run, covers = answer
         print_diagnostics(without_allowed([*run.warnings, *uncovered_verdicts(run)]))
         runs.append(run)
         coverages.append(covers)
-    answered = len(runs) == len(rulebooks)
+    answered = not unread
     if (
         wanted.pattern is not None
         and answered
@@ -142,10 +145,10 @@ def _tested(
         names = dict.fromkeys(rule.name for run in runs for rule in run.rulebook.rules)
         raise RulecError([nothing_to_run(wanted.pattern, list(names))])
     covered = coverages if wanted.measured else None
-    if runs or to.form != "full":
-        put_answer(render(runs, covered, to.form), to)
     short = shortcomings(runs, covered, threshold, fail_on_empty=wanted.fails_empty)
-    for sentence in short:
+    if runs or to.form != "full":
+        put_answer(render(runs, covered, to.form, Besides(unread, short)), to)
+    for sentence in short.values():
         print_remark(f"rulec: {sentence}")
     failed = any(not outcome.passed for run in runs for outcome in run.outcomes)
     return ExitStatus.after(answered=answered, failed=failed or bool(short))

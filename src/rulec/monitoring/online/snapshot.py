@@ -187,6 +187,9 @@ def from_data(
             if saved.rulebook == rulebook.name
             else f"rulebook `{saved.rulebook}`, not of `{rulebook.name}`"
         )
+        steps = {rule.step_s for rule in rulebook.rules} - {None}
+        if saved.rulebook == rulebook.name and steps and step_s not in steps:
+            raise _at_another_step(step_s, steps, place)
         raise _refused(f"this monitor was saved with the rules of {whose}", place)
     if saved.states < 0 or (step_s is not None and step_s <= 0):
         raise _refused("this saved monitor is damaged", place)
@@ -271,6 +274,18 @@ def _violation(saved: _Violation, n_states: int, rules: Mapping[str, CompiledRul
     if saved.step is not None and not 0 <= saved.step < n_states:
         raise ValueError
     return Violation(rule.name, rule.strength, saved.binding, saved.step)
+
+
+def _at_another_step(
+    saved: Fraction | None, steps: Set[Fraction | None], place: SourceLocation | None
+) -> RulecError:
+    own = " and ".join(f"{number} s" for number in sorted(filter(None, steps)))
+    was = "any step" if saved is None else f"a step of {saved} s"
+    return UNRESTORABLE_MONITOR.error(
+        place,
+        f"this monitor was saved for {was}, and these rules are compiled for {own}",
+        help="leave `--step` out, so that it is the saved one, or begin anew",
+    )
 
 
 def _refused(message: str, place: SourceLocation | None) -> RulecError:

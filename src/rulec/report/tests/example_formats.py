@@ -6,15 +6,19 @@ from collections.abc import Sequence
 
 from rulec.book_tests.example_coverage import RuleCoverage
 from rulec.book_tests.example_runs import ExampleRun
-from rulec.report.tests.example_text import as_text
+from rulec.report.tests.example_text import Besides, as_text
 
 
 def render(
     runs: Sequence[ExampleRun],
     covered: Sequence[Sequence[RuleCoverage]] | None,
     output_format: str,
+    besides: Besides,
 ) -> str:
-    """Write runs as ``full``, ``json`` or ``junit``, with coverage unless None."""
+    """Write runs as ``full``, ``json`` or ``junit``, with coverage unless None.
+
+    ``besides`` is in ``junit`` alone, of which nothing but the file may be looked at.
+    """
     match output_format:
         case "json":
             # msgspec and its types take 9 ms.
@@ -25,6 +29,6 @@ def render(
             # ElementTree takes 4 ms.
             from rulec.report.tests.junit import as_junit
 
-            return as_junit(runs, covered)
+            return as_junit(runs, covered, besides)
         case _:
             return as_text(runs, covered)

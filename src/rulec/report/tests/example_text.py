@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from rulec.automata.thresholds import exact
 from rulec.book_tests.example_coverage import RuleCoverage, UncoveredEdge, percent
@@ -20,6 +20,17 @@ from rulec.vocabulary import Quantity, Vocabulary
 
 MOST_MISSING = 5
 """So many missing edges of a rule are shown; JSON has them all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Besides:
+    """What ails a run besides its examples.
+
+    ``unread`` is by rulebook why it could not be tested, ``short`` is what ``shortcomings`` says.
+    """
+
+    unread: Mapping[str, Sequence[Diagnostic]]
+    short: Mapping[str, str]
 
 
 def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
@@ -88,16 +99,18 @@ def shortcomings(
     threshold: float | None,
     *,
     fail_on_empty: bool,
-) -> list[str]:
-    """Sentences on results below the required thresholds."""
-    names = []
+) -> dict[str, str]:
+    """What is below the required thresholds, ``examples`` or ``coverage`` -> a sentence on it."""
+    short = {}
     if fail_on_empty and not any(run.outcomes for run in runs):
-        names.append("there is no example to run")
+        short["examples"] = "there is no example to run"
     if covered is not None and threshold is not None:
         part = percent(rule for rules in covered for rule in rules)
         if part < threshold:
-            names.append(f"coverage is {as_percent(part)}, below the {threshold:g} % asked for")
-    return names
+            short["coverage"] = (
+                f"coverage is {as_percent(part)}, below the {threshold:g} % asked for"
+            )
+    return short
 
 
 def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Iterator[str]:

@@ -9,13 +9,22 @@ from rulec.book_tests.example_coverage import RuleCoverage, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.report.findings.diagnostics_text import render_diagnostics
-from rulec.report.tests.example_text import coverage_lines, failure
-from rulec.report.text.xml_text import HEAD, xml_text
+from rulec.report.tests.example_text import Besides, coverage_lines, failure
+from rulec.report.text.xml_text import HEAD, element, xml_text
 
 
-def as_junit(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
-    """A suite for each rulebook, in it a case for each example."""
-    root = ElementTree.Element("testsuites", {"name": "rulec", **_counts(runs)})
+def as_junit(
+    runs: Sequence[ExampleRun],
+    covered: Sequence[Sequence[RuleCoverage]] | None,
+    besides: Besides,
+) -> str:
+    """A suite for each rulebook, in it a case for each example.
+
+    A rulebook that could not be tested has one case, with its error; what all of them fall short of
+    is a failure in a suite of its own.
+    """
+    counts = _counts(runs, errors=len(besides.unread), short=len(besides.short))
+    root = ElementTree.Element("testsuites", {"name": "rulec", **counts})
     for number, run in enumerate(runs):
         suite = ElementTree.SubElement(
             root, "testsuite", {"name": xml_text(run.rulebook.name), **_counts([run])}
@@ -30,15 +39,33 @@ def as_junit(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage
             lines = coverage_lines(covered[number], run.rulebook.vocabulary)
             output = ElementTree.SubElement(suite, "system-out")
             output.text = xml_text("\n".join(lines))
+    for name, problems in besides.unread.items():
+        suite = element(root, "testsuite", name=name, **_counts([], errors=1))
+        place = next((found for one in problems if (found := one.place)), None)
+        where = {"file": name} if place is None else {"file": place.file, "line": place.line}
+        case = element(suite, "testcase", classname=name, name="reading", **where)
+        first = problems[0]
+        error = element(case, "error", type=first.code, message=first.message)
+        error.text = xml_text(render_diagnostics(problems, summary=False))
+    if besides.short:
+        suite = element(root, "testsuite", name="rulec", **_counts([], short=len(besides.short)))
+        for what, sentence in besides.short.items():
+            case = element(suite, "testcase", classname="rulec", name=what)
+            element(case, "failure", type="threshold", message=sentence)
     ElementTree.indent(root)
     written = ElementTree.tostring(root, encoding="unicode")
     return f"{HEAD}{written}"
 
 
-def _counts(runs: Sequence[ExampleRun]) -> dict[str, str]:
+def _counts(runs: Sequence[ExampleRun], *, errors: int = 0, short: int = 0) -> dict[str, str]:
     outcomes = [outcome for run in runs for outcome in run.outcomes]
-    failures = sum(not outcome.passed for outcome in outcomes)
-    return {"tests": str(len(outcomes)), "failures": str(failures), "errors": "0", "skipped": "0"}
+    failures = sum(not outcome.passed for outcome in outcomes) + short
+    return {
+        "tests": str(len(outcomes) + errors + short),
+        "failures": str(failures),
+        "errors": str(errors),
+        "skipped": "0",
+    }
 
 
 def _case(suite: ElementTree.Element, rulebook: str, example_outcome: ExampleOutcome) -> None:

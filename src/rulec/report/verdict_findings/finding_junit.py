@@ -19,7 +19,8 @@ class JUnitWriter:
     """A suite for each recording, in it a case for each rule.
 
     A case fails if a hard rule is violated, as the exit status does; what soft rules find is its
-    output. It is skipped if the rule could be judged for nobody.
+    output. It is skipped, with the reason, if the rule could be judged for nobody, or if it is open
+    and nobody is known to violate it: nothing passes that nobody saw.
     """
 
     def __init__(self, stream: IO[bytes], about: FindingsOf) -> None:
@@ -78,6 +79,10 @@ def _case(
     elif nowhere and not violated and not others:
         words = ", ".join(nowhere[0].open_on)
         element(case, "skipped", message=nowhere[0].because or f"not told: {words}")
+    elif others and not violated:
+        drives = len({one.vehicle for one in others})
+        what = f"open in {drives:,} of {found.drives:,} drives"
+        element(case, "skipped", message=f"{what}: {others[0].says}")
     lines += [one.says for one in others]
     if lines:
         element(case, "system-out").text = xml_text("\n".join(lines))
