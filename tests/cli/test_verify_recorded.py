@@ -237,3 +237,21 @@ def test_rules_without_a_verdict_are_named_hard_ones_first(tmp_path, capsys, mon
     assert lines[lines.index("no verdict  hard: fog, thick_fog") + 1] == (
         " " * 12 + "(visibility); loaded"
     )
+
+
+def test_of_what_is_known_as_an_interval_evidence_has_the_bounds(tmp_path, capsys):
+    # 4 has been behind 3 since it was seen first, and for how long before nobody knows
+    book = tmp_path / "behind.rules"
+    book.write_text(
+        "rulebook behind\nuse road\nextends schemas\n"
+        "hard rule short (v: vehicle) { require always ahead_for(v) < 1 s }\n"
+    )
+    main(["verify", three_cars(tmp_path), "-r", str(book), "--ego", "4", "--json"])
+    violations = json.loads(capsys.readouterr().out)["violations"]
+    violation = next(one for one in violations if one["binding"] == {"v": "3"})
+    (margin,) = violation["evidence"]["margins"]
+    bounds = margin["value"]
+    assert 1.0 <= bounds["from"] < 3.0
+    assert bounds["to"] == 1000.0
+    assert (margin["limit"], margin["value_error"]) == (1.0, 0.0)
+    assert margin["by"] == margin["at_least"] == pytest.approx(bounds["from"] - 1.0, abs=1e-9)

@@ -105,6 +105,7 @@ def test_of_an_interval_there_are_bounds_and_no_middle():
     wide = Margin("x", middle, ">=", 3.0, "s", value_error=half, error=half)
     assert wide.value_bounds == (3.03, 1000.0)
     assert (wide.by, wide.at_least) == (0.03, 0.03)
+    assert wide.rounded().value_bounds == (3.03, 1000.0)
     narrow = Margin("x", 12.3, "<", 15.5, "m", value_error=0.1, limit_error=0.1, error=0.2)
     assert narrow.value_bounds is None
     assert (narrow.by, narrow.at_least) == (3.2, 3.0)

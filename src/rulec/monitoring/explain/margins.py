@@ -67,7 +67,12 @@ class Margin:
         return _bounds(self.limit, self.limit_error)
 
     def rounded(self) -> Margin:
-        """To the digits that its errors leave: two of each error, which is rounded up."""
+        """To the digits that its errors leave: two of each error, which is rounded up.
+
+        Bounds, which are a hundredth's to begin with, stay as they are.
+        """
+        if self.value_bounds or self.limit_bounds:
+            return self
         known = [error for error in (self.value_error, self.limit_error) if error > 0]
         if not known:
             return replace(self, value=_in_nine(self.value), limit=_in_nine(self.limit))
