@@ -120,6 +120,27 @@ def test_who_has_left_gives_away_the_seat(esterle):
 
 
 @needs_a_compiler
+def test_a_rule_without_variables_is_about_nobody(tmp_path):
+    path = tmp_path / "mixed.rules"
+    path.write_text(
+        "rulebook mixed\ntype car\nsignal p, q(c: car)\n"
+        "hard rule alone { require always p }\n"
+        "hard rule other (c: car) { require always q(c) }\n"
+    )
+    library = CLibrary(monitor_layout(rulec.compile_rulebook(path, step_s=1), {"car": 2}))
+    about = library.call("about")
+    monitor = CMonitor(library)
+    given = library.input_type()
+    cars = (library.object_type * 1)()
+    cars[0].id = 7
+    given.n_objects, given.objects = 1, cars
+    assert monitor.take(given) == 0
+    state = monitor.state
+    assert [about(state, rule, 0) for rule in (0, 1)] == [0, 7]
+    assert about(state, 1, 1) == 0
+
+
+@needs_a_compiler
 @pytest.mark.parametrize(
     ("kinds", "ids", "status"), [([0, 99], [1, 2], 2), ([1, 1], [3, 3], 3), ([1, 1], [3, 4], 0)]
 )

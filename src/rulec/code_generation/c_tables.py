@@ -89,6 +89,8 @@ def text_tables(layout: MonitorLayout) -> Iterator[str]:
         for text in texts:
             yield f"    {c_string(text)},"
         yield "};"
+    numbers = _listed(f"{len(own.rule.variables)}u" for own in layout.rules)
+    yield f"const uint8_t rulec_rule_variables[RULEC_RULES] = {{{numbers}}};"
 
 
 def _rows(layout: MonitorLayout) -> Iterator[str]:

@@ -775,7 +775,7 @@ rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verd
 uint32_t rulec_about(const rulec_state *state, uint32_t rule, uint32_t variable)
 {
     uint32_t id = 0u;
-    if ((rule < RULEC_RULES) && (variable < RULEC_VARIABLES)) {
+    if ((rule < RULEC_RULES) && (variable < rulec_rule_variables[rule])) {
         id = state->about[rule][variable];
     }
     return id;

@@ -43,6 +43,7 @@ typedef struct {
 
 extern const char *const rulec_rule_names[RULEC_RULES];
 extern const char *const rulec_rule_articles[RULEC_RULES];
+extern const uint8_t rulec_rule_variables[RULEC_RULES]; /* how many objects each is about */
 extern const char *const rulec_sources[RULEC_N_SOURCES]; /* each with its SHA-256 */
 
 /* An input of which nothing is said but the defaults, or nothing at all; and an object. */
@@ -60,7 +61,8 @@ void rulec_init(rulec_state *state);
  * step has been taken. */
 rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verdict *verdict);
 
-/* The object that a variable of a rule, from 0, stands for where its verdict is the worst. */
+/* The id of the object that a variable of a rule, from 0, stands for where its verdict is the worst.
+ * 0 if the rule has no such variable, as one about ego alone has none, or if nobody is there. */
 uint32_t rulec_about(const rulec_state *state, uint32_t rule, uint32_t variable);
 
 #ifdef __cplusplus

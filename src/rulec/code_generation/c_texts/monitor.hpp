@@ -76,7 +76,8 @@ public:
         return result;
     }
 
-    /* The object that a rule's variable, from 0, stands for where its verdict is the worst. */
+    /* The id of the object that a rule's variable, from 0, stands for where its verdict is the
+     * worst; 0 if the rule has no such variable. */
     [[nodiscard]] std::uint32_t about(std::uint32_t rule, std::uint32_t variable) const noexcept
     {
         return rulec_about(&state_, rule, variable);

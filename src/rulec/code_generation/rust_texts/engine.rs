@@ -332,10 +332,12 @@ impl Monitor {
         Self { kept, work }
     }
 
-    /// The object that a rule's variable, from 0, stands for where its verdict is the worst.
+    /// The id of the object that a rule's variable, from 0, stands for where its verdict is the
+    /// worst; none if the rule has no such variable.
     #[must_use]
     pub fn about(&self, rule: usize, variable: usize) -> Option<u32> {
-        self.kept.about.get(rule)?.get(variable).copied()
+        let about = self.kept.about.get(rule)?;
+        about[..RULE_TABLE[rule].variables.len()].get(variable).copied()
     }
 
     /// Takes the next state. An object that is no longer there has left; if it comes back, or under
